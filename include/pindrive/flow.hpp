@@ -1,0 +1,187 @@
+/// The closed form of one mode: between two events the pin is a damped sinusoid plus a line.
+///
+/// Every mode obeys  m x'' + c x' + κ x = f + g τ  with constant coefficients, so
+///
+///     x(τ) = x₀ + y (Φ(τ) − 1) + y' Ψ(τ) + p τ,
+///
+/// where y and y' are value and slope of the free oscillation at τ = 0, p is the slope of the line,
+/// and Φ, Ψ are the responses of the free oscillator to a unit displacement and a unit velocity.
+/// Each derivative of x has the same form. Written as a change from the start, a quantity that is
+/// set exactly at an event (a velocity at its level) stays exact there.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace pindrive {
+
+/// How the free oscillator has moved on after a time τ.
+template <class T>
+struct Transition {
+  T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
+  T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
+};
+
+/// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinity where there is none.
+template <class T>
+struct Zeros {
+  T first;
+  T spacing;
+};
+
+/// The free oscillator  y'' = 2α y' − ω₀² y  of a mode, in every damping regime.
+template <class T>
+class Oscillator {
+ public:
+  Oscillator() = default;
+
+  /// m x'' + c x' + κ x; mass and stiffness > 0, damping of either sign.
+  Oscillator(T mass, T damping, T stiffness)
+      : alpha_(-damping / (2 * mass)), omega0_squared_(stiffness / mass) {
+    using std::abs;
+    using std::sqrt;
+    const T omega0 = sqrt(omega0_squared_);
+    discriminant_ = (omega0 - abs(alpha_)) * (omega0 + abs(alpha_));
+    omega_ = sqrt(abs(discriminant_));
+    if (discriminant_ <= 0) {
+      // The root that needs no subtraction first; the other from their product ω₀².
+      const T large = alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_;
+      slowest_ = alpha_ < 0 ? omega0_squared_ / large : large;
+    }
+  }
+
+  T alpha() const { return alpha_; }                    ///< α = −c/2m, 1/s
+  T omega0_squared() const { return omega0_squared_; }  ///< ω₀² = κ/m, 1/s²
+  T omega() const { return omega_; }                    ///< |ω₀² − α²|^½, rad/s
+  bool oscillates() const { return discriminant_ > 0; }
+
+  /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
+  T slowest_rate() const { return oscillates() ? alpha_ : slowest_; }
+
+  /// The second derivative of a free oscillation from its value and slope.
+  T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
+
+  /// Φ(τ) − 1 and Ψ(τ) for finite τ ≥ 0.
+  Transition<T> after(T tau) const {
+    using std::abs;
+    using std::cos;
+    using std::expm1;
+    using std::sin;
+    const T z = discriminant_ * tau * tau;
+    if (abs(z) < series_reach) return damped(tau, cosine_series(z), tau * sine_series(z));
+    if (oscillates()) {
+      const T angle = omega_ * tau;
+      return damped(tau, cos(angle) - 1, sin(angle) / omega_);
+    }
+    const auto [slow, slow_change] = exponential(slowest_ * tau);
+    const T gain = -slow * expm1(-2 * omega_ * tau) / (2 * omega_);
+    return {slow_change - slowest_ * gain, gain};
+  }
+
+  /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
+  Zeros<T> zeros(T value, T slope) const {
+    using std::atan2;
+    using std::log1p;
+    constexpr T never = std::numeric_limits<T>::infinity();
+    if (oscillates()) {
+      T angle = atan2(-value * omega_, slope - alpha_ * value);
+      if (angle <= 0) angle += pi;
+      return {angle / omega_, pi / omega_};
+    }
+    const T ratio = value / (slowest_ * value - slope);
+    if (!(ratio > 0) || 2 * omega_ * ratio >= 1) return {never, never};
+    return {omega_ > 0 ? -log1p(-2 * omega_ * ratio) / (2 * omega_) : ratio, never};
+  }
+
+ private:
+  static constexpr T pi = T(3.141592653589793238462643383279502884L);
+  static constexpr T series_reach = T(0.1);
+
+  /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
+  static T cosine_series(T z) {
+    return -z / 2 *
+           (1 - z / 12 *
+                    (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
+  }
+  static T sine_series(T z) {
+    return 1 - z / 6 *
+                   (1 - z / 20 *
+                            (1 - z / 42 *
+                                     (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
+  }
+
+  struct Exponential {
+    T value, change;
+  };
+  /// e^u and e^u − 1, each without cancellation.
+  static Exponential exponential(T u) {
+    using std::abs;
+    using std::exp;
+    using std::expm1;
+    if (abs(u) < T(0.5)) {
+      const T change = expm1(u);
+      return {1 + change, change};
+    }
+    const T value = exp(u);
+    return {value, value - 1};
+  }
+
+  Transition<T> damped(T tau, T cosine_change, T sine) const {
+    const auto [decay, decay_change] = exponential(alpha_ * tau);
+    const T gain = decay * sine;
+    return {decay_change + decay * cosine_change - alpha_ * gain, gain};
+  }
+
+  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, slowest_{};
+};
+
+/// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ.
+template <class T>
+struct Path {
+  T start;  ///< its value at τ = 0
+  T value;  ///< the oscillating part's value at τ = 0
+  T slope;  ///< the oscillating part's derivative at τ = 0
+  T drift;  ///< slope of the line
+
+  T at(const Transition<T>& moved, T tau) const {
+    return start + value * moved.decline + slope * moved.gain + drift * tau;
+  }
+  T at(const Oscillator<T>& oscillator, T tau) const { return at(oscillator.after(tau), tau); }
+
+  Path derivative(const Oscillator<T>& oscillator) const {
+    return {slope + drift, slope, oscillator.bend(value, slope), T(0)};
+  }
+  /// Where the path oscillates about; for drift 0 and a decaying mode, where it ends.
+  T centre() const { return start - value; }
+};
+
+/// Position, velocity and acceleration in one mode as functions of the time τ since it began.
+template <class T>
+struct Flow {
+  Oscillator<T> oscillator;
+  Path<T> position, velocity, acceleration;
+
+  /// Free to slide from x, v under m x'' + c x' + κ x = f; the acceleration at τ = 0 is given, so
+  /// that a start which is exactly tangential can say so.
+  static Flow sliding(const Oscillator<T>& oscillator, T x, T v, T acceleration, T rest) {
+    const T y = x - rest;
+    const T jerk = oscillator.bend(v, acceleration);
+    return {oscillator,
+            {x, y, v, T(0)},
+            {v, v, acceleration, T(0)},
+            {acceleration, acceleration, jerk, T(0)}};
+  }
+  /// Stuck to a surface that moves at v.
+  static Flow stuck(const Oscillator<T>& oscillator, T x, T v) {
+    return {oscillator, {x, T(0), T(0), v}, {v, T(0), T(0), T(0)}, {T(0), T(0), T(0), T(0)}};
+  }
+
+  /// Half the width of the oscillation about its centre if it were undamped from now on, m.
+  T amplitude() const {
+    using std::hypot;
+    const T y = position.value;
+    return hypot(y, (position.slope - oscillator.alpha() * y) / oscillator.omega());
+  }
+};
+
+}  // namespace pindrive

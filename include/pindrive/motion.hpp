@@ -1,0 +1,100 @@
+/// A finished motion: the state at any time, from the segments and the cycle that repeats them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "pindrive/friction.hpp"
+#include "pindrive/model.hpp"
+
+namespace pindrive {
+
+/// Which limit is asked for at an event.
+enum class Side : signed char { left, right };
+
+/// What a simulation was given and what it found. It owns nothing: the segments live elsewhere.
+template <class T>
+class Motion {
+ public:
+  Motion(const Drive<T>& drive, const Inputs<T>& inputs, const Segment<T>* first, std::size_t count,
+         const Outcome<T>& outcome)
+      : drive_(drive), inputs_(inputs), first_(first), count_(count), outcome_(outcome) {}
+
+  const Drive<T>& drive() const { return drive_; }
+  const Inputs<T>& inputs() const { return inputs_; }
+  const Outcome<T>& outcome() const { return outcome_; }
+  Friction<T> friction() const { return {drive_, inputs_.mouse_velocity}; }
+
+  const Segment<T>* begin() const { return first_; }
+  const Segment<T>* end() const { return first_ + count_; }
+
+  /// The last time at which the state is known: for ever once the ending is.
+  T known_until() const {
+    return outcome_.end == End::moving ? outcome_.until : std::numeric_limits<T>::infinity();
+  }
+
+  struct Place {
+    const Segment<T>* segment;
+    T tau;
+  };
+
+  /// The segment that holds time t in [0, known_until()], and the time since it began.
+  Place locate(T t, Side side) const {
+    t = folded(t, side);
+    const auto before = [&](const Segment<T>& segment) {
+      return side == Side::right ? segment.end <= t : segment.end < t;
+    };
+    const Segment<T>* low = first_;
+    std::size_t length = count_ - 1;  // the last segment holds whatever the others do not
+    while (length > 0) {
+      const std::size_t half = length / 2;
+      if (before(low[half])) {
+        low += half + 1;
+        length -= half + 1;
+      } else {
+        length = half;
+      }
+    }
+    return {low, std::min(std::max(t - low->begin, T(0)), low->end - low->begin)};
+  }
+
+  /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often).
+  template <class Visitor>
+  void stretches(T until, Visitor&& visit) const {
+    const T repeats = outcome_.end == End::stick_slip && until > outcome_.until
+                          ? std::floor((until - outcome_.until) / outcome_.period)
+                          : T(0);
+    stretch(T(0), std::min(until, outcome_.until), T(1), visit);
+    if (outcome_.end != End::stick_slip || until <= outcome_.until) return;
+    const T cycle = outcome_.until - outcome_.period;
+    if (repeats > 0) stretch(cycle, outcome_.until, repeats, visit);
+    stretch(cycle, until - (1 + repeats) * outcome_.period, T(1), visit);
+  }
+
+ private:
+  /// Time in a stick-slip cycle is brought back to the cycle that was simulated.
+  T folded(T t, Side side) const {
+    if (outcome_.end != End::stick_slip || t < outcome_.until) return t;
+    const T cycles = (t - outcome_.until) / outcome_.period;
+    return t - outcome_.period * (side == Side::right ? std::floor(cycles) + 1 : std::ceil(cycles));
+  }
+
+  template <class Visitor>
+  void stretch(T from, T to, T times, Visitor& visit) const {
+    for (const Segment<T>& segment : *this) {
+      if (segment.begin > to || segment.end <= from) continue;
+      visit(segment, std::max(from - segment.begin, T(0)),
+            std::min(to, segment.end) - segment.begin, times);
+    }
+  }
+
+  Drive<T> drive_;
+  Inputs<T> inputs_;
+  const Segment<T>* first_;
+  std::size_t count_;
+  Outcome<T> outcome_;
+};
+
+}  // namespace pindrive

@@ -1,0 +1,137 @@
+/// Every root of a damped sinusoid plus a line, in order and with certainty: by isolation.
+///
+/// A guard  G(τ) = oscillation + constant + D τ  is monotone between the zeros of G', G' is monotone
+/// between the zeros of G'', and the zeros of G'' are known in closed form. So each root lies alone
+/// in a bracket whose ends differ in sign; nothing is sampled and nothing can be stepped over.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/flow.hpp"
+
+namespace pindrive {
+
+/// The one root in a bracket where the path is monotone, of sign `side` at `low`, not at `high`.
+template <class T>
+T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side) {
+  using std::abs;
+  constexpr T rounding = 2 * std::numeric_limits<T>::epsilon();
+  const Path<T> derivative = path.derivative(oscillator);
+  T tau = low + (high - low) / 2;
+  for (;;) {
+    const Transition<T> moved = oscillator.after(tau);
+    const T value = path.at(moved, tau);
+    (side * value > 0 ? low : high) = tau;
+    T next = tau - value / derivative.at(moved, tau);
+    if (!(next > low && next < high)) next = low + (high - low) / 2;
+    if (abs(next - tau) <= rounding * next || next <= low || next >= high) return next;
+    tau = next;
+  }
+}
+
+/// The sign changes of a path in (0, horizon], one by one; infinity when there are no more.
+/// Degree 1: an oscillation with a constant; 2: with a line too (the horizon is finite then).
+///
+/// `side` is the sign of the path just after τ = 0, which the mode has chosen: a path that starts
+/// at its zero, or tangentially to it, leaves it to that side, and that zero is no root. Where
+/// rounded numbers contradict the side, they are rounding.
+template <class T, int Degree>
+class Roots {
+ public:
+  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
+      : oscillator_(oscillator),
+        path_(exact_at_start(path, side)),
+        side_(side),
+        horizon_(horizon),
+        extrema_(oscillator, path_.derivative(oscillator), side_of_slope(), horizon),
+        before_(path_.start),
+        exhausted_(shrinks() && path_.start == 0 && slope() == 0) {}
+
+  T next() {
+    while (!exhausted_ && left_ < horizon_) {
+      const T extremum = extrema_.next();
+      const bool turned = extremum <= horizon_;
+      const T right = turned ? extremum : end_of_search();
+      const T value = path_.at(oscillator_, right);
+      const T low = left_;
+      const bool fell = side_ * value < side_ * before_;
+      left_ = right;
+      before_ = value;
+      if (side_ * value < 0) {
+        const T root = root_between(oscillator_, path_, low, right, side_);
+        side_ = -side_;
+        return root;
+      }
+      // A decaying oscillation that turned back before zero never comes as far again.
+      exhausted_ = exhausted_ || (shrinks() && turned && fell);
+    }
+    return std::numeric_limits<T>::infinity();
+  }
+
+ private:
+  bool shrinks() const { return Degree == 1 && oscillator_.alpha() <= 0; }
+
+  T slope() const { return path_.slope + path_.drift; }
+
+  static Path<T> exact_at_start(Path<T> path, int side) {
+    if (!(side * path.start > 0)) path.start = T(0);
+    if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) path.slope = -path.drift;
+    return path;
+  }
+
+  int side_of_slope() const {
+    if (slope() != 0) return slope() > 0 ? 1 : -1;
+    if (path_.start == 0) return side_;
+    return oscillator_.bend(path_.value, path_.slope) > 0 ? 1 : -1;
+  }
+
+  /// With no extremum ahead the path runs monotonically to the horizon or, without one, to its
+  /// centre: far enough to see it change sign, if it will.
+  T end_of_search() {
+    if (horizon_ < std::numeric_limits<T>::infinity()) return horizon_;
+    exhausted_ = true;
+    if (!shrinks() || !(side_ * path_.centre() < 0)) return left_;
+    T step = -1 / oscillator_.slowest_rate();
+    while (side_ * path_.at(oscillator_, left_ + step) > 0) step *= 2;
+    return left_ + step;
+  }
+
+  Oscillator<T> oscillator_;
+  Path<T> path_;
+  int side_;
+  T horizon_;
+  Roots<T, Degree - 1> extrema_;
+  T left_{0};
+  T before_;
+  bool exhausted_;
+};
+
+/// Degree 0, a pure oscillation: its zeros are known in closed form.
+template <class T>
+class Roots<T, 0> {
+ public:
+  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int, T horizon)
+      : zeros_(oscillator.zeros(path.start, path.slope)), horizon_(horizon) {}
+
+  T next() {
+    const T zero = count_ == 0 ? zeros_.first : zeros_.first + T(count_) * zeros_.spacing;
+    ++count_;
+    return zero <= horizon_ ? zero : std::numeric_limits<T>::infinity();
+  }
+
+ private:
+  Zeros<T> zeros_;
+  T horizon_;
+  long long count_{0};
+};
+
+/// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
+template <class T>
+T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
+  if (path.drift == 0) return Roots<T, 1>(oscillator, path, side, horizon).next();
+  return Roots<T, 2>(oscillator, path, side, horizon).next();
+}
+
+}  // namespace pindrive

@@ -1,0 +1,430 @@
+"""A simulated motion: closed forms that are evaluated at any time, events, and the numbers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+import numpy as np
+
+from pindrive import _core
+from pindrive.drive import Drive, Profile
+from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Event", "Motion", "Segment", "simulate"]
+
+Side = Literal["left", "right"]
+ContactName = Literal["plate", "finger"]
+EventKind = Literal["stick", "slip", "cross"]
+ModeName = Literal["slip", "carried", "resting"]
+
+# In the order of `Kind` and `Slide` in model.hpp.
+_KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
+_CONTACTS: tuple[Literal["plate", "finger", "both"], ...] = ("plate", "finger", "both")
+_ABSENT = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A change of mode."""
+
+    time: float
+    """s"""
+    contact: Literal["plate", "finger", "both"]
+    """Where; `both` when plate and finger have one velocity."""
+    kind: EventKind
+    """`stick`: sliding stopped and the contact holds; `slip`: it breaks loose; `cross`: sliding
+    reversed without sticking."""
+    position: float
+    """m"""
+    velocity: float
+    """m/s"""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A stretch of time in one mode, where the motion is one closed form."""
+
+    begin: float
+    """s"""
+    end: float
+    """s; infinite for a mode that lasts for ever."""
+    mode: ModeName
+    """`slip`; `carried` (stuck to the plate); `resting` (stuck to the finger, or to both)."""
+    plate: int | None
+    """Sign of the sliding velocity, 0 while stuck, None for a frictionless contact."""
+    finger: int | None
+
+
+class Motion:
+    """What a pin does after its release, exactly: made by `simulate`.
+
+    Attributes:
+        drive: the drive that was simulated.
+        mouse_velocity: the plate's velocity in the housing, m/s.
+        displacement: x(0), m.
+        initial_velocity: x'(0), m/s.
+        plate_load: factor on the plate's friction.
+        duration: s; the one asked for, or long enough to see the ending.
+    """
+
+    def __init__(
+        self,
+        core: _core.Motion,
+        drive: Drive,
+        mouse_velocity: float,
+        displacement: float,
+        initial_velocity: float,
+        plate_load: float,
+    ) -> None:
+        self._core = core
+        self.drive = drive
+        self.mouse_velocity = mouse_velocity
+        self.displacement = displacement
+        self.initial_velocity = initial_velocity
+        self.plate_load = plate_load
+        self.duration: float = core.duration
+
+    def __repr__(self) -> str:
+        """How it ends, and after how long, in a line."""
+        return (
+            f"<Motion of {self.duration:.6g} s, {len(self.events)} events, "
+            f"{self.ending.kind} since {self.ending.since:.6g} s, "
+            f"settling time {self.transient.settling_time:.6g} s>"
+        )
+
+    # ---- the motion over time --------------------------------------------------------------------
+
+    @overload
+    def position(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def position(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def position(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Deflection x of the pin from the spring's rest, m.
+
+        Args:
+            t: s, any shape, from 0 on; beyond `duration` where the ending is known.
+            side: which limit to take at an event.
+
+        Raises:
+            ValueError: a time is negative, NaN, or later than the motion is known.
+        """
+        return self._evaluate(self._core.position, t, side)
+
+    @overload
+    def velocity(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def velocity(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def velocity(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Velocity x' of the pin in the housing, m/s; arguments as for `position`."""
+        return self._evaluate(self._core.velocity, t, side)
+
+    @overload
+    def acceleration(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def acceleration(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def acceleration(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Acceleration x'' of the pin in the housing, m/s²; it jumps where friction does."""
+        return self._evaluate(self._core.acceleration, t, side)
+
+    @overload
+    def force(self, contact: ContactName, t: float, side: Side = ...) -> float: ...
+    @overload
+    def force(
+        self, contact: ContactName, t: ArrayLike, side: Side = ...
+    ) -> NDArray[np.float64]: ...
+    def force(
+        self, contact: ContactName, t: ArrayLike, side: Side = "right"
+    ) -> float | NDArray[np.float64]:
+        """Friction force of the plate or the finger on the pin, N; `t` and `side` as above."""
+        if contact not in ("plate", "finger"):
+            raise ValueError(refusal("contact", '"plate" or "finger"', repr(contact)))
+        of_contact = self._core.plate_force if contact == "plate" else self._core.finger_force
+        return self._evaluate(of_contact, t, side)
+
+    def _evaluate(
+        self,
+        closed_form: Callable[[NDArray[np.float64], bool], NDArray[np.float64]],
+        t: ArrayLike,
+        side: Side,
+    ) -> float | NDArray[np.float64]:
+        if side not in ("left", "right"):
+            raise ValueError(refusal("side", '"left" or "right"', repr(side)))
+        times = np.asarray(t, dtype=np.float64)
+        known = self._core.known_until
+        good = (times >= 0.0) & (times <= known) & (times < inf)
+        if not good.all():
+            required = f"from 0 s to {known!r} s" if known < inf else "finite and at least 0 s"
+            raise ValueError(refusal("t", required, f"{float(times[~good].flat[0])!r} s"))
+        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
+        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+
+    # ---- what happened ---------------------------------------------------------------------------
+
+    @cached_property
+    def _table(self) -> dict[str, NDArray[Any]]:
+        return self._core.segments()
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """Every change of mode, in order; of a stick-slip cycle, one round of it."""
+        table = {name: column.tolist() for name, column in self._table.items()}
+        return tuple(
+            Event(table["end"][i], _CONTACTS[contacts - 1], _KINDS[kind - 1], *state)
+            for i, (kind, contacts) in enumerate(
+                zip(table["event"], table["event_contacts"], strict=True)
+            )
+            if kind
+            for state in [self._state_after(table, i)]
+        )
+
+    def _state_after(self, table: dict[str, list[Any]], i: int) -> tuple[float, float]:
+        """Position and velocity at the end of segment i: where the next one starts."""
+        if i + 1 < len(table["end"]):
+            return table["position"][i + 1], table["velocity"][i + 1]
+        return self.position(table["end"][i], "left"), self.velocity(table["end"][i], "left")
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
+        columns = ("begin", "end", "plate", "finger")
+        rows = zip(*(self._table[name].tolist() for name in columns), strict=True)
+        return tuple(
+            Segment(
+                begin,
+                end,
+                _mode(plate, finger),
+                None if plate == _ABSENT else plate,
+                None if finger == _ABSENT else finger,
+            )
+            for begin, end, plate, finger in rows
+        )
+
+    @cached_property
+    def status(self) -> str:
+        """ "ok", or what stopped the simulation and what to do about it."""
+        if self._core.status == 0:
+            return "ok"
+        return (
+            f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
+            "and damping are too weak to end the motion; give a shorter duration"
+        )
+
+    # ---- the numbers -----------------------------------------------------------------------------
+
+    @cached_property
+    def _numbers(self) -> dict[str, Any]:
+        return self._core.transient(self.duration, _core.settling_band)
+
+    @cached_property
+    def transient(self) -> Transient:
+        """The transient's numbers, from the closed forms."""
+        numbers = {k: v for k, v in self._numbers.items() if k not in ("end_position", "amplitude")}
+        plate, finger = ContactUse(**numbers.pop("plate")), ContactUse(**numbers.pop("finger"))
+        return Transient(**numbers, plate=plate, finger=finger)
+
+    @cached_property
+    def ending(self) -> Ending:
+        """How the motion ends."""
+        return Ending.of(self._core, self._numbers)
+
+    def settling_time(self, band: float = _core.settling_band) -> float:
+        """The settling time (s) for another band, a part of |x(0) - x_end| above 0; NaN if none."""
+        band = check("settling_band", band, label="band")
+        return float(self._core.transient(self.duration, band)["settling_time"])
+
+    @cached_property
+    def energy(self) -> Ledger:
+        """The energy ledger over [0, duration]."""
+        return Ledger(**self._core.ledger(self.duration))
+
+    def certificate(self) -> Certificate:
+        """The worst residual of each law over [0, duration], computed without the solver."""
+        return Certificate(**self._core.certificate(self.duration))
+
+    # ---- for other programs ----------------------------------------------------------------------
+
+    def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
+        """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
+        even = np.linspace(0.0, self.duration, count)
+        events = self._table["end"]
+        return np.union1d(even, events[events <= self.duration])
+
+    def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
+        """The motion over time, its events and its numbers, with units, as an xarray Dataset.
+
+        Args:
+            times: s, shape (n,); `sample_times()` unless given.
+
+        Returns:
+            Variables over `time` (right-hand limits) and over `event`; one scalar for each number;
+            the drive and the release in the attributes.
+        """
+        import xarray as xr
+
+        from pindrive import __version__
+
+        t = self.sample_times() if times is None else np.atleast_1d(np.asarray(times, np.float64))
+        series = {
+            "position": (self.position(t), "m", "deflection of the pin from the spring's rest"),
+            "velocity": (self.velocity(t), "m/s", "velocity of the pin in the housing"),
+            "acceleration": (
+                self.acceleration(t),
+                "m/s2",
+                "acceleration of the pin in the housing",
+            ),
+            "plate_force": (self.force("plate", t), "N", "friction force of the plate on the pin"),
+            "finger_force": (
+                self.force("finger", t),
+                "N",
+                "friction force of the finger on the pin",
+            ),
+        }
+        data: dict[str, Any] = {
+            name: ("time", values, {"units": unit, "long_name": meaning})
+            for name, (values, unit, meaning) in series.items()
+        }
+        for name, unit in (("time", "s"), ("position", "m"), ("velocity", "m/s")):
+            column = np.array([getattr(event, name) for event in self.events], dtype=np.float64)
+            data[f"event_{name}"] = ("event", column, {"units": unit})
+        for name in ("contact", "kind"):
+            data[f"event_{name}"] = ("event", [str(getattr(e, name)) for e in self.events])
+        for name, value in self.numbers().items():
+            quantity = QUANTITIES[name]
+            attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
+            data[name.replace(".", "_")] = (
+                (),
+                value,
+                {**attributes, "units": quantity.unit} if quantity.unit else attributes,
+            )
+        attributes = {
+            "title": "Motion of a tactile device's pin after release",
+            "source": f"pindrive {__version__}",
+            "status": self.status,
+            "ending": self.ending.kind,
+            "cycle": self.ending.cycle or "none",
+            **self.inputs(),
+        }
+        time = ("time", t, {"units": "s", "long_name": "time since the release"})
+        return xr.Dataset(data, coords={"time": time}, attrs=attributes)
+
+    def inputs(self) -> dict[str, float]:
+        """What was simulated, SI, by the names of the table of quantities."""
+        drive = self.drive
+        return {
+            "mass": drive.mass,
+            "stiffness": drive.stiffness,
+            "damping": drive.damping,
+            "plate.kinetic": drive.plate.kinetic,
+            "plate.static": drive.plate.static_friction,
+            "finger.kinetic": drive.finger.kinetic,
+            "finger.static": drive.finger.static_friction,
+            "mouse_velocity": self.mouse_velocity,
+            "displacement": self.displacement,
+            "velocity": self.initial_velocity,
+            "plate_load": self.plate_load,
+            "duration": self.duration,
+        }
+
+    def numbers(self) -> dict[str, float]:
+        """Every number of the transient, its ending and its energy, SI, by the table's names."""
+        groups = {
+            "transient": {**asdict(self.transient), "settled": self.transient.settled},
+            "ending": {k: v for k, v in asdict(self.ending).items() if k not in ("kind", "cycle")},
+            "energy": asdict(self.energy),
+        }
+        return dict(_flattened(groups))
+
+
+def _flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]:
+    rows = []
+    for name, value in tree.items():
+        if isinstance(value, dict):
+            rows += _flattened(value, f"{prefix}{name}.")
+        else:
+            rows.append((prefix + name, value))
+    return rows
+
+
+def _mode(plate: int, finger: int) -> ModeName:
+    if finger == 0:
+        return "resting"
+    return "carried" if plate == 0 else "slip"
+
+
+def simulate(
+    drive: Drive,
+    *,
+    mouse_velocity: float | Profile,
+    displacement: float = 0.0,
+    velocity: float | None = None,
+    plate_load: float | Profile = 1.0,
+    skin_stretch: float | None = None,
+    duration: float | None = None,
+) -> Motion:
+    """Follow the pin of a drive from its release, exactly.
+
+    Args:
+        drive: the drive.
+        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s.
+        displacement: x(0), deflection from the spring's rest, m.
+        velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
+        plate_load: factor on the plate's friction, at least 0.
+        skin_stretch: for a compliant finger; not simulated yet.
+        duration: s, greater than 0; None: long enough to see the ending.
+
+    Returns:
+        The motion. Sustained motions are recognised and reported in its `ending`.
+
+    Raises:
+        ValueError: a value is no number or out of its range, or asks for what is not simulated yet.
+    """
+    v_plate = check("mouse_velocity", _constant(mouse_velocity, "mouse_velocity"))
+    load = check("plate_load", _constant(plate_load, "plate_load"))
+    x = check("displacement", displacement)
+    v = v_plate if velocity is None else check("velocity", velocity)
+    end = inf if duration is None else check("duration", duration)
+    for label, contact in (("plate", drive.plate), ("finger", drive.finger)):
+        if not contact.rigid:
+            raise ValueError(
+                _not_yet(f"{label} stiffness", "infinite", f"{contact.stiffness!r} N/m")
+            )
+        if contact.curve is not None and len(contact.curve) > 1:
+            raise ValueError(_not_yet(f"{label} curve", "one row", f"{len(contact.curve)} rows"))
+    if skin_stretch is not None:
+        raise ValueError(_not_yet("skin_stretch", "None", f"{skin_stretch!r} m"))
+    core = _core.simulate(
+        drive.mass,
+        drive.stiffness,
+        drive.damping,
+        drive.plate.kinetic * load,
+        drive.plate.static_friction * load,
+        drive.finger.kinetic,
+        drive.finger.static_friction,
+        v_plate,
+        x,
+        v,
+        end,
+    )
+    return Motion(core, drive, v_plate, x, v, load)
+
+
+def _constant(value: float | Profile, name: str) -> float:
+    if not isinstance(value, Profile):
+        return value
+    if any(y != value.values[0] for y in value.values):
+        raise ValueError(_not_yet(name, "constant", "a profile that changes"))
+    return value.values[0]
+
+
+def _not_yet(label: str, required: str, given: str) -> str:
+    return refusal(label, f"{required} (anything else is not simulated yet)", given)
