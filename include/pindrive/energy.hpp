@@ -62,7 +62,7 @@ T square_integral(const Oscillator<T>& oscillator, T value, T slope, T to) {
   using std::sqrt;
   const T alpha = oscillator.alpha(), omega = oscillator.omega();
   const T omega0 = sqrt(oscillator.omega0_squared());
-  if (oscillator.oscillates() && omega > omega0 / 4) {
+  if (oscillator.oscillates() && omega > omega0 / 4 && omega * to > 2) {
     // w = e^ατ (A cos ωτ + B sin ωτ); its square is a constant and a wave of 2ω, both times e^2ατ.
     const T a = value, b = (slope - alpha * value) / omega;
     const T steady = (a * a + b * b) / 2;
@@ -73,7 +73,8 @@ T square_integral(const Oscillator<T>& oscillator, T value, T slope, T to) {
     const T angle = 2 * omega * to;
     return steady * mean + exp(2 * alpha * to) * (p * cos(angle) + q * sin(angle)) - p;
   }
-  // Near critical damping and beyond: panels that grow with time, as the decay allows.
+  // Where those terms would cancel, and beyond critical damping: panels that grow with time, as
+  // the decay allows.
   const auto square = [&](T tau) {
     const Path<T> wave{value, value, slope, T(0)};
     const T w = wave.at(oscillator, tau);
@@ -111,7 +112,9 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
     const Flow<T>& flow = segment.flow;
     const T x_from = flow.position.at(flow.oscillator, from);
     const T x_to = flow.position.at(flow.oscillator, to);
-    const T moved = x_to - x_from, span = to - from;
+    const T span = to - from;
+    const T moved =
+        flow.position.change(flow.oscillator, to) - flow.position.change(flow.oscillator, from);
 
     // v = constant + oscillation w, and ∫w is what the position moved beyond the constant.
     const Path<T>& v = flow.velocity;

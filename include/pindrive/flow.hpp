@@ -43,6 +43,7 @@ class Oscillator {
     const T omega0 = sqrt(omega0_squared_);
     discriminant_ = (omega0 - abs(alpha_)) * (omega0 + abs(alpha_));
     omega_ = sqrt(abs(discriminant_));
+    hurry_ = omega0 + abs(alpha_);
     if (discriminant_ <= 0) {
       // The root that needs no subtraction first; the other from their product ω₀².
       const T large = alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_;
@@ -67,6 +68,7 @@ class Oscillator {
     using std::cos;
     using std::expm1;
     using std::sin;
+    if (hurry_ * tau < early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
     if (abs(z) < series_reach) return damped(tau, cosine_series(z), tau * sine_series(z));
     if (oscillates()) {
@@ -84,8 +86,12 @@ class Oscillator {
     using std::log1p;
     constexpr T never = std::numeric_limits<T>::infinity();
     if (oscillates()) {
-      T angle = atan2(-value * omega_, slope - alpha_ * value);
+      // The phase in (0, π], by one formula for an oscillation and its mirror image.
+      const T cosine = slope - alpha_ * value;
+      const int mirror = cosine < 0 ? -1 : 1;
+      T angle = atan2(-mirror * value * omega_, mirror * cosine);
       if (angle <= 0) angle += pi;
+      if (alpha_ * angle < -extinct * omega_) return {never, never};
       return {angle / omega_, pi / omega_};
     }
     const T ratio = value / (slowest_ * value - slope);
@@ -96,6 +102,23 @@ class Oscillator {
  private:
   static constexpr T pi = T(3.141592653589793238462643383279502884L);
   static constexpr T series_reach = T(0.1);
+  static constexpr T early = T(0.2);
+  static constexpr T extinct = T(700);  ///< e^−700: what has decayed so far is zero in doubles
+
+  /// The power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: their first moments without cancellation.
+  Transition<T> soon_after(T tau) const {
+    const T damp = 2 * alpha_ * tau, pull = omega0_squared_ * tau * tau;
+    T before{0}, term = tau;
+    T gain = tau, integral = tau * tau / 2;
+    for (int n = 2; n <= 14; ++n) {
+      const T next = (damp * T(n - 1) * term - pull * before) / T(n * (n - 1));
+      before = term;
+      term = next;
+      gain += term;
+      integral += term * tau / T(n + 1);
+    }
+    return {-omega0_squared_ * integral, gain};
+  }
 
   /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
   static T cosine_series(T z) {
@@ -132,7 +155,7 @@ class Oscillator {
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
   }
 
-  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, slowest_{};
+  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, slowest_{}, hurry_{};
 };
 
 /// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ.
@@ -143,9 +166,14 @@ struct Path {
   T slope;  ///< the oscillating part's derivative at τ = 0
   T drift;  ///< slope of the line
 
-  T at(const Transition<T>& moved, T tau) const {
-    return start + value * moved.decline + slope * moved.gain + drift * tau;
+  /// What it has changed by since τ = 0.
+  T change(const Transition<T>& moved, T tau) const {
+    return value * moved.decline + slope * moved.gain + drift * tau;
   }
+  T change(const Oscillator<T>& oscillator, T tau) const {
+    return change(oscillator.after(tau), tau);
+  }
+  T at(const Transition<T>& moved, T tau) const { return start + change(moved, tau); }
   T at(const Oscillator<T>& oscillator, T tau) const { return at(oscillator.after(tau), tau); }
 
   Path derivative(const Oscillator<T>& oscillator) const {

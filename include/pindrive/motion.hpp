@@ -63,22 +63,21 @@ class Motion {
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often).
   template <class Visitor>
   void stretches(T until, Visitor&& visit) const {
-    const T repeats = outcome_.end == End::stick_slip && until > outcome_.until
-                          ? std::floor((until - outcome_.until) / outcome_.period)
-                          : T(0);
     stretch(T(0), std::min(until, outcome_.until), T(1), visit);
     if (outcome_.end != End::stick_slip || until <= outcome_.until) return;
-    const T cycle = outcome_.until - outcome_.period;
-    if (repeats > 0) stretch(cycle, outcome_.until, repeats, visit);
-    stretch(cycle, until - (1 + repeats) * outcome_.period, T(1), visit);
+    const T repeats = std::floor((until - outcome_.until) / outcome_.period);
+    const T rest = until - outcome_.until - repeats * outcome_.period;
+    if (repeats > 0) stretch(outcome_.cycle_begin, outcome_.until, repeats, visit);
+    stretch(outcome_.cycle_begin, outcome_.cycle_begin + rest, T(1), visit);
   }
 
  private:
   /// Time in a stick-slip cycle is brought back to the cycle that was simulated.
   T folded(T t, Side side) const {
     if (outcome_.end != End::stick_slip || t < outcome_.until) return t;
-    const T cycles = (t - outcome_.until) / outcome_.period;
-    return t - outcome_.period * (side == Side::right ? std::floor(cycles) + 1 : std::ceil(cycles));
+    const T cycles = std::floor((t - outcome_.until) / outcome_.period);
+    const T rest = t - outcome_.until - cycles * outcome_.period;
+    return rest > 0 || side == Side::right ? outcome_.cycle_begin + rest : outcome_.until;
   }
 
   template <class Visitor>

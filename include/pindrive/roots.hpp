@@ -31,6 +31,14 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   }
 }
 
+/// The path with the zeros that its side declares made exact.
+template <class T>
+Path<T> exact_at_start(Path<T> path, int side) {
+  if (!(side * path.start > 0)) path.start = T(0);
+  if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) path.slope = -path.drift;
+  return path;
+}
+
 /// The sign changes of a path in (0, horizon], one by one; infinity when there are no more.
 /// Degree 1: an oscillation with a constant; 2: with a line too (the horizon is finite then).
 ///
@@ -46,40 +54,34 @@ class Roots {
         side_(side),
         horizon_(horizon),
         extrema_(oscillator, path_.derivative(oscillator), side_of_slope(), horizon),
-        before_(path_.start),
+        approaching_(side_of_slope() != side),
         exhausted_(shrinks() && path_.start == 0 && slope() == 0) {}
 
   T next() {
     while (!exhausted_ && left_ < horizon_) {
       const T extremum = extrema_.next();
-      const bool turned = extremum <= horizon_;
-      const T right = turned ? extremum : end_of_search();
+      const T right = extremum < never ? extremum : end_of_search();
       const T value = path_.at(oscillator_, right);
       const T low = left_;
-      const bool fell = side_ * value < side_ * before_;
       left_ = right;
-      before_ = value;
       if (side_ * value < 0) {
         const T root = root_between(oscillator_, path_, low, right, side_);
         side_ = -side_;
         return root;
       }
       // A decaying oscillation that turned back before zero never comes as far again.
-      exhausted_ = exhausted_ || (shrinks() && turned && fell);
+      exhausted_ = exhausted_ || (shrinks() && approaching_);
+      approaching_ = !approaching_;
     }
-    return std::numeric_limits<T>::infinity();
+    return never;
   }
 
  private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
   bool shrinks() const { return Degree == 1 && oscillator_.alpha() <= 0; }
 
   T slope() const { return path_.slope + path_.drift; }
-
-  static Path<T> exact_at_start(Path<T> path, int side) {
-    if (!(side * path.start > 0)) path.start = T(0);
-    if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) path.slope = -path.drift;
-    return path;
-  }
 
   int side_of_slope() const {
     if (slope() != 0) return slope() > 0 ? 1 : -1;
@@ -90,7 +92,7 @@ class Roots {
   /// With no extremum ahead the path runs monotonically to the horizon or, without one, to its
   /// centre: far enough to see it change sign, if it will.
   T end_of_search() {
-    if (horizon_ < std::numeric_limits<T>::infinity()) return horizon_;
+    if (horizon_ < never) return horizon_;
     exhausted_ = true;
     if (!shrinks() || !(side_ * path_.centre() < 0)) return left_;
     T step = -1 / oscillator_.slowest_rate();
@@ -104,7 +106,7 @@ class Roots {
   T horizon_;
   Roots<T, Degree - 1> extrema_;
   T left_{0};
-  T before_;
+  bool approaching_;
   bool exhausted_;
 };
 
@@ -130,6 +132,8 @@ class Roots<T, 0> {
 /// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
 template <class T>
 T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
+  if (path.drift == 0 && path.centre() == 0)
+    return Roots<T, 0>(oscillator, path, side, horizon).next();
   if (path.drift == 0) return Roots<T, 1>(oscillator, path, side, horizon).next();
   return Roots<T, 2>(oscillator, path, side, horizon).next();
 }

@@ -118,6 +118,7 @@ class Simulation {
     if (released_before_) {
       outcome_.end = End::stick_slip;
       outcome_.period = carried.end - first_release_;
+      outcome_.cycle_begin = first_release_;
       outcome_.since = std::max(first_hold_, first_release_ - (carried.end - carried.begin));
     }
     released_before_ = true;

@@ -74,7 +74,7 @@ class Measurement {
       since = T(0);
       for (const Segment<T>& segment : motion_) follow_band(segment, x_end, width, since);
     }
-    return since <= duration_ ? since : Transient<T>::none;
+    return since <= duration_ && since < never ? since : Transient<T>::none;
   }
 
   T length(const Segment<T>& segment) const {
@@ -198,7 +198,7 @@ class Measurement {
     }
     T low = never, high = -never;
     const auto widen = [&](T time, T position) {
-      if (time < outcome.until - outcome.period) return true;
+      if (time < outcome.cycle_begin) return true;
       low = std::min(low, position);
       high = std::max(high, position);
       return true;
@@ -270,6 +270,8 @@ class Measurement {
       const Oscillator<T>& oscillator = segment.flow.oscillator;
       const T x_from = segment.flow.position.at(oscillator, from);
       const T x_to = segment.flow.position.at(oscillator, to);
+      const T moved =
+          segment.flow.position.change(oscillator, to) - segment.flow.position.change(oscillator, from);
       const auto use = [&](ContactUse<T>& contact, Slide slide, const Contact<T>& law, T surface,
                            bool arrived, T force_from, T force_to) {
         using std::abs;
@@ -277,7 +279,7 @@ class Measurement {
         if (slide == Slide::stuck) {
           contact.time_stuck += times * (to - from);
         } else {
-          const T distance = abs(x_to - x_from - surface * (to - from));
+          const T distance = abs(moved - surface * (to - from));
           contact.distance_slid += times * distance;
           contact.dissipated += times * law.kinetic * distance;
           const bool stopped = arrived && to >= segment.end - segment.begin;

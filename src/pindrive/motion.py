@@ -59,7 +59,7 @@ class Segment:
     end: float
     """s; infinite for a mode that lasts for ever."""
     mode: ModeName
-    """`slip`; `carried` (stuck to the plate); `resting` (stuck to the finger, or to both)."""
+    """`slip`; `carried` (stuck to the moving plate); `resting` (stuck to what does not move)."""
     plate: int | None
     """Sign of the sliding velocity, 0 while stuck, None for a frictionless contact."""
     finger: int | None
@@ -191,7 +191,7 @@ class Motion:
         """Position and velocity at the end of segment i: where the next one starts."""
         if i + 1 < len(table["end"]):
             return table["position"][i + 1], table["velocity"][i + 1]
-        return self.position(table["end"][i], "left"), self.velocity(table["end"][i], "left")
+        return self.position(table["end"][i]), self.velocity(table["end"][i])
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
@@ -202,12 +202,17 @@ class Motion:
             Segment(
                 begin,
                 end,
-                _mode(plate, finger),
+                self._mode(plate, finger),
                 None if plate == _ABSENT else plate,
                 None if finger == _ABSENT else finger,
             )
             for begin, end, plate, finger in rows
         )
+
+    def _mode(self, plate: int, finger: int) -> ModeName:
+        if 0 not in (plate, finger):
+            return "slip"
+        return "carried" if finger != 0 and self.mouse_velocity != 0.0 else "resting"
 
     @cached_property
     def status(self) -> str:
@@ -353,12 +358,6 @@ def _flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]
         else:
             rows.append((prefix + name, value))
     return rows
-
-
-def _mode(plate: int, finger: int) -> ModeName:
-    if finger == 0:
-        return "resting"
-    return "carried" if plate == 0 else "slip"
 
 
 def simulate(

@@ -1,0 +1,119 @@
+"""The numbers of a motion against what dense samples of the same motion show."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+
+import numpy as np
+import pytest
+from drives import Release, releases
+from hypothesis import given, settings
+
+from pindrive import Contact, Drive, Motion
+
+SAMPLES = 20_001
+
+
+def turning_points(t: np.ndarray, v: np.ndarray) -> list[int]:
+    """Samples at which the velocity has just changed its sign, or become zero."""
+    direction = np.sign(v)
+    return [i for i in range(1, len(t)) if direction[i] != direction[i - 1] != 0]
+
+
+@given(releases())
+@settings(max_examples=60)
+def test_numbers_against_samples(release: Release) -> None:
+    motion = release.run()
+    t = np.linspace(0.0, motion.duration, SAMPLES)
+    x, v = motion.position(t), motion.velocity(t)
+    step = t[1]
+    size = np.abs(x).max() + step * np.abs(v).max()
+    # Between two samples the position changes by this at most.
+    near = 2 * step * np.abs(v).max() + 1e-13 * size
+    transient = motion.transient
+
+    turns = turning_points(t, v)
+    outward = np.sign(motion.displacement or motion.initial_velocity or motion.mouse_velocity)
+    if transient.peak_time > 0:
+        assert transient.peak_displacement * outward >= motion.displacement * outward - 1e-15
+        assert transient.peak_time == pytest.approx(t[turns[0]], abs=2 * step)
+        assert transient.peak_displacement == pytest.approx(x[turns[0]], abs=near)
+    if isfinite(transient.trough_time):
+        after = [i for i in turns if t[i] > transient.peak_time + 1.5 * step]
+        # A velocity this far below its largest is rounding between two samples.
+        seen = bool(after) and abs(v[after[0] - 1]) > 1e-12 * np.abs(v).max()
+        if seen and transient.trough_time > transient.peak_time + 3 * step:
+            assert transient.trough_time == pytest.approx(t[after[0]], abs=2 * step)
+            assert transient.trough_displacement == pytest.approx(x[after[0]], abs=near)
+            between = (t >= transient.peak_time) & (t <= transient.trough_time)
+            fastest = (-outward * v[between]).max()
+            slack = 2 * step * np.abs(motion.acceleration(t)).max()
+            assert -outward * transient.return_velocity == pytest.approx(fastest, abs=slack)
+
+    if motion.ending.kind in ("resting", "decaying") and transient.settled:
+        band = 0.05 * abs(motion.displacement - motion.ending.position)
+        outside = np.flatnonzero(np.abs(x - motion.ending.position) > band + 1e-12 * size)
+        settled = transient.settling_time
+        assert not len(outside) or t[outside[-1]] <= settled + 1e-12
+        if settled > 0:
+            distance = abs(motion.position(settled) - motion.ending.position)
+            assert distance == pytest.approx(band, rel=1e-9, abs=1e-12 * size)
+
+    for use, surface, sliding in (
+        (transient.plate, motion.mouse_velocity, motion.drive.plate),
+        (transient.finger, 0.0, motion.drive.finger),
+    ):
+        if sliding.frictionless:
+            assert use.distance_slid == use.dissipated == use.reversals == 0
+            continue
+        distance = np.trapezoid(np.abs(v - surface), t)
+        slack = step * np.abs(v).max() * (3 + use.reversals) + 1e-9 * size
+        assert use.distance_slid == pytest.approx(distance, abs=slack, rel=1e-4)
+        assert use.dissipated == pytest.approx(use.distance_slid * sliding.kinetic, rel=1e-12)
+
+
+def example(**changes: float) -> Motion:
+    values = {"mouse_velocity": 0.1, "displacement": 1.5e-3, "duration": None, **changes}
+    drive = Drive(
+        mass=0.01, stiffness=100.0, damping=0.2, plate=Contact(0.02), finger=Contact(0.005)
+    )
+    return Release(drive, float(values["mouse_velocity"] or 0), float(values["displacement"] or 0)).run(
+        values["duration"]
+    )
+
+
+def test_not_settled_in_the_duration_is_nan_and_flagged() -> None:
+    settled = example()
+    cut = example(duration=0.5 * settled.transient.settling_time)
+    assert settled.transient.settled
+    assert not cut.transient.settled
+    assert isnan(cut.transient.settling_time)
+    assert cut.ending.kind == "moving"
+    assert isnan(cut.ending.position)
+
+
+def test_wider_band_settles_no_later() -> None:
+    motion = example()
+    times = [motion.settling_time(band) for band in (0.01, 0.02, 0.05, 0.1, 0.5, 2.0)]
+    assert times == sorted(times, reverse=True)
+    assert times[2] == motion.transient.settling_time
+    assert times[-1] == 0.0
+    with pytest.raises(ValueError, match="band must be"):
+        motion.settling_time(0.0)
+
+
+def test_steady_motion_settles_where_it_begins() -> None:
+    drive = Drive(
+        mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0)
+    )
+    motion = Release(drive, 0.1, 1.5e-3).run()
+    assert motion.transient.settling_time == motion.ending.since > 0
+
+
+def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
+    drive = Drive.with_damping_ratio(
+        mass=0.01, stiffness=100.0, damping_ratio=2.0, plate=Contact(0.02), finger=Contact(0.0)
+    )
+    transient = Release(drive, 0.1, 1.5e-3).run().transient
+    assert transient.trough_time == np.inf
+    assert transient.trough_displacement == pytest.approx(0.02 / 100.0, rel=1e-12)
