@@ -1,0 +1,42 @@
+"""pindrive: exact simulation of a tactile device's pin drive under dry friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pindrive.drive import Contact, Drive, Profile
+    from pindrive.motion import Motion, simulate
+
+    __version__: str
+
+__all__ = ["Contact", "Drive", "Motion", "Profile", "__version__", "simulate"]
+
+_HOME = {
+    "Contact": "pindrive.drive",
+    "Drive": "pindrive.drive",
+    "Profile": "pindrive.drive",
+    "Motion": "pindrive.motion",
+    "simulate": "pindrive.motion",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name at its first use, so that the command line starts fast."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        value: object = version("pindrive")
+    elif name in _HOME:
+        from importlib import import_module
+
+        value = getattr(import_module(_HOME[name]), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names, imported or not."""
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,5 @@
+"""`python -m pindrive`: the command line."""
+
+from pindrive.cli import main
+
+main()

@@ -1,0 +1,177 @@
+"""The command line. What a command needs is imported when it runs, so that help comes at once."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pindrive.config import DeviceFile
+    from pindrive.motion import Motion
+
+FIGURE_FORMATS = (".png", ".svg", ".pdf")
+
+app = typer.Typer(
+    name="pindrive",
+    help="Exact dynamics of the pin drives of tactile devices.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # plain help is here in a third of the time
+    pretty_exceptions_enable=False,
+)
+
+
+def main() -> None:
+    """Run the command line."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
+    app()
+
+
+@contextmanager
+def _refusing() -> Iterator[None]:
+    """Bad input ends the command with a line for each problem and exit status 2."""
+    try:
+        yield
+    except ValueError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(2) from None
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from pindrive import __version__
+
+        typer.echo(f"pindrive {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _program(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    pass
+
+
+DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
+
+
+@app.command()
+def init(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Write a commented device file to start from."""
+    from pindrive.config import template
+    from pindrive.output import OutputError, atomic_write
+
+    with _refusing():
+        if file.exists() and not force:
+            raise OutputError(f"{file}: exists already; --force replaces it")
+        with atomic_write(file) as part:
+            part.write_text(template(), encoding="utf-8")
+    typer.echo(f"Wrote {file}; try: pindrive simulate {file}")
+
+
+@app.command()
+def check(file: DeviceArgument) -> None:
+    """Say what is wrong with a device file, or what it describes."""
+    from pindrive.config import load
+
+    with _refusing():
+        device = load(file)
+    from pindrive.report import console, device_report
+
+    console().print(device_report(device))
+
+
+@app.command()
+def simulate(
+    file: DeviceArgument,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help='Another value, as in --set mass="12 g".'),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Samples over time.")] = None,
+    netcdf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Samples, events, numbers, with units.")
+    ] = None,
+    json: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Numbers, events and phases.")
+    ] = None,
+    samples: Annotated[
+        int, typer.Option(min=2, max=10_000_000, help="Even times in CSV and NetCDF.")
+    ] = 1001,
+) -> None:
+    """Release the pin of a device file and say how it moves."""
+    from pindrive import export
+    from pindrive.config import load
+    from pindrive.output import atomic_write, naming
+
+    with _refusing():
+        device = load(file, overrides or ())
+        outputs: dict[Path, Callable[[Motion, Path], None]] = {}
+        if plot:
+            suffix = _figure_format(plot)
+            outputs[plot] = lambda motion, part: export.write_figure(motion, part, suffix)
+        if csv:
+            outputs[csv] = lambda motion, part: export.write_csv(motion, part, samples)
+        if netcdf:
+            outputs[netcdf] = lambda motion, part: export.write_netcdf(motion, part, samples)
+        if json:
+            outputs[json] = lambda motion, part: export.write_json(motion, device, part)
+        _check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
+        with ExitStack() as stack:
+            parts = {path: stack.enter_context(atomic_write(path)) for path in outputs}
+            motion = _simulate(device)
+            for path, write in outputs.items():
+                with naming(path):
+                    write(motion, parts[path])
+    from pindrive.report import console, motion_report
+
+    screen = console()
+    screen.print(motion_report(motion))
+    for path in outputs:
+        screen.print(f"Wrote {path}", soft_wrap=True)
+
+
+def _simulate(device: DeviceFile) -> Motion:
+    from pindrive import simulate
+
+    return simulate(
+        device.drive,
+        mouse_velocity=device.mouse_velocity,
+        displacement=device.displacement,
+        velocity=device.velocity,
+        duration=device.duration,
+    )
+
+
+def _figure_format(path: Path) -> str:
+    suffix = path.suffix.lower()
+    if suffix not in FIGURE_FORMATS:
+        raise ValueError(f"--plot {path}: must end in {', '.join(FIGURE_FORMATS)}")
+    return suffix.removeprefix(".")
+
+
+def _check_distinct(paths: list[Path]) -> None:
+    """Refuse to write one file over another of the same command."""
+    seen: set[str] = set()
+    for path in paths:
+        real = os.path.realpath(path)
+        if real in seen:
+            raise ValueError(f"{path}: is named twice; give each file a name of its own")
+        seen.add(real)

@@ -1,0 +1,82 @@
+"""A motion as files: a figure, samples as CSV, everything as NetCDF, the numbers as JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import asdict
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pindrive.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from pindrive.config import DeviceFile
+    from pindrive.motion import Motion
+
+
+def write_figure(motion: Motion, path: Path, format: str) -> None:
+    """Draw the motion as "png", "svg" or "pdf"."""
+    from pindrive.plots import plot_motion, save
+
+    save(plot_motion(motion), path, format)
+
+
+def write_csv(motion: Motion, path: Path, samples: int) -> None:
+    """Write the motion, SI, at even times and at its events (right-hand limits), a row each."""
+    t = motion.sample_times(samples)
+    columns = {
+        "time_s": t,
+        "position_m": motion.position(t),
+        "velocity_m_per_s": motion.velocity(t),
+        "acceleration_m_per_s2": motion.acceleration(t),
+        "plate_force_N": motion.force("plate", t),
+        "finger_force_N": motion.force("finger", t),
+    }
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+
+
+def write_netcdf(motion: Motion, path: Path, samples: int) -> None:
+    """Write `motion.to_dataset` at even times and at its events."""
+    dataset = motion.to_dataset(motion.sample_times(samples))
+    dataset.to_netcdf(path, engine="h5netcdf")
+
+
+def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
+    """Write what was simulated and every number that came out; null where one does not exist."""
+    from pindrive import __version__
+
+    numbers = motion.numbers()
+    certificate = motion.certificate()
+    document = {
+        "pindrive": __version__,
+        "device": {
+            "file": str(device.path),
+            "name": device.name,
+            "description": device.description,
+        },
+        "config": device.values(),
+        "status": motion.status,
+        "inputs": motion.inputs(),
+        "ending": {"kind": motion.ending.kind, "cycle": motion.ending.cycle},
+        "numbers": numbers,
+        "units": {name: QUANTITIES[name].unit for name in (*motion.inputs(), *numbers)},
+        "certificate": {**asdict(certificate), "worst": certificate.worst},
+        "events": [asdict(event) for event in motion.events],
+        "segments": [asdict(segment) for segment in motion.segments],
+    }
+    text = json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _finite(value: Any) -> Any:
+    """`value` with null for NaN and infinity, which JSON does not have."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

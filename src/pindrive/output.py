@@ -1,0 +1,49 @@
+"""Files that are whole or not there: written beside their target, renamed when complete."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from secrets import token_hex
+
+
+class OutputError(ValueError):
+    """A file that cannot be written; says which and why."""
+
+
+@contextmanager
+def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
+    """A path beside `target` to write to; it takes the target's place when the block ends well.
+
+    Entering creates the file, so that a target that cannot be written is refused at once. After an
+    exception in the block nothing is left behind and an older file at `target` is as it was.
+
+    Raises:
+        OutputError: the target is no regular file, or cannot be created or replaced.
+    """
+    path = Path(os.path.realpath(target))  # a link stays, what it points to is replaced
+    part = path.with_name(f".{path.name[:200]}.{token_hex(4)}.part")
+    with naming(target):
+        if path.exists() and not path.is_file():
+            raise OSError("not a regular file")
+        if path.exists() and not os.access(path, os.W_OK):
+            raise PermissionError("it is read-only")
+        part.touch(exist_ok=False)
+    try:
+        yield part
+        with naming(target):
+            os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def naming(target: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn what the system refuses in the block into an `OutputError` that names `target`."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(f"{os.fspath(target)}: cannot be written: {reason}") from error

@@ -1,0 +1,152 @@
+"""A motion as a person reads it in a terminal: its phases, its numbers, how it ends."""
+
+from __future__ import annotations
+
+from math import isfinite, tau
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from pindrive.quantities import QUANTITIES, TRANSIENT, significant
+
+if TYPE_CHECKING:
+    from pindrive.config import DeviceFile
+    from pindrive.motion import Motion
+
+WIDTH = 100
+"""Columns where the output is no terminal."""
+HEAD, TAIL = 14, 6
+"""How many phases of a long motion are shown, from its start and from its end."""
+
+_MODES = {"slip": "slip", "carried": "carried by plate", "resting": "resting on finger"}
+_KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+_TIME, _POSITION, _VELOCITY = (QUANTITIES[q] for q in ("duration", "displacement", "velocity"))
+
+
+def console() -> Console:
+    """The standard output, as wide as the terminal."""
+    screen = Console(highlight=False, markup=False, emoji=False)
+    if not screen.is_terminal:
+        screen.width = WIDTH
+    return screen
+
+
+def device_report(device: DeviceFile) -> RenderableType:
+    """What a device file describes, and what follows from it."""
+    drive = device.drive
+    table = _table("Device", "key", "symbol", ">value", "unit", "meaning")
+    for key, value in device.values().items():
+        if value is not None:
+            name = key if key in QUANTITIES else key.partition(".")[2]
+            _add_number(table, name, value, key)
+    _add_number(table, "natural_frequency", drive.natural_frequency, "")
+    hertz = significant(drive.natural_frequency / tau)
+    words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
+    line = Text(f"{device.name or 'The drive'}: {words}.", no_wrap=True, overflow="ignore")
+    return Group(table, line)
+
+
+def regime(damping_ratio: float) -> str:
+    """The name of a damping regime."""
+    if damping_ratio == 0.0:
+        return "undamped"
+    if abs(damping_ratio - 1.0) < 1e-12:
+        return "critically damped"
+    return "underdamped" if damping_ratio < 1.0 else "overdamped"
+
+
+def motion_report(motion: Motion) -> RenderableType:
+    """Phases, numbers, and how the motion ends."""
+    words = [ending(motion), trust(motion)]
+    if motion.status != "ok":
+        words.append(f"The simulation {motion.status}.")
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
+    return Group(_phases(motion), _numbers(motion), *lines)
+
+
+def _phases(motion: Motion) -> Table:
+    """A line for each mode the motion goes through; the middle of many left out."""
+    table = _table("Phases", ">from", ">to", ">duration", "phase", ">x", ">v", "ends as")
+    t, x, v = _TIME.display_unit, _POSITION.display_unit, _VELOCITY.display_unit
+    table.add_row(t, t, t, "", x, v, "", style="dim")
+    causes: dict[float, list[str]] = {}
+    for event in motion.events:
+        causes.setdefault(event.time, []).append(f"{event.contact} {_KINDS[event.kind]}")
+    segments = motion.segments
+    for i, segment in enumerate(segments):
+        if HEAD <= i < len(segments) - TAIL:
+            if i == HEAD:
+                table.add_row("...", "", "", f"{len(segments) - HEAD - TAIL} more phases")
+            continue
+        lasts = isfinite(segment.end)
+        table.add_row(
+            _TIME.digits(segment.begin),
+            _TIME.digits(segment.end) if lasts else "",
+            _TIME.digits(segment.end - segment.begin) if lasts else "for ever",
+            _MODES[segment.mode],
+            _POSITION.digits(motion.position(segment.begin)),
+            _VELOCITY.digits(motion.velocity(segment.begin)),
+            ", ".join(causes.get(segment.end, [])),
+        )
+    return table
+
+
+def _numbers(motion: Motion) -> Table:
+    """The transient's numbers; those of an absent contact left out."""
+    followed = f"Transient, followed for {_TIME.text(motion.duration)}"
+    table = _table(followed, "symbol", ">value", "unit", "meaning")
+    values = motion.numbers()
+    absent = tuple(
+        f"transient.{name}."
+        for name, contact in (("plate", motion.drive.plate), ("finger", motion.drive.finger))
+        if contact.frictionless
+    )
+    for quantity in TRANSIENT:
+        if not quantity.name.startswith(absent) and quantity.name != "transient.settled":
+            _add_number(table, quantity.name, values[quantity.name])
+    return table
+
+
+def _table(title: str, *headings: str) -> Table:
+    """A table with headings; ">" aligns a column to the right."""
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+    for heading in headings:
+        right = heading.startswith(">")
+        last = heading == headings[-1]
+        table.add_column(
+            heading.removeprefix(">"), justify="right" if right else "left", no_wrap=not last
+        )
+    return table
+
+
+def _add_number(table: Table, name: str, value: float, *before: str) -> None:
+    """A row for the quantity called `name`: symbol, value, unit, meaning."""
+    quantity = QUANTITIES[name]
+    shown = f"{value:g}" if quantity.unit == "" else quantity.digits(value)
+    table.add_row(*before, quantity.symbol, shown, quantity.display_unit, quantity.meaning)
+
+
+def ending(motion: Motion) -> str:
+    """How the motion ends, in a sentence."""
+    end = motion.ending
+    since, place = _TIME.text(end.since), _POSITION.text(end.position)
+    if end.kind == "resting":
+        return f"At rest at x = {place} since {since}."
+    if end.kind == "decaying":
+        return f"Decays towards x = {place}, without another event since {since}."
+    if end.kind == "steady":
+        size, period = _POSITION.text(end.amplitude), _TIME.text(end.period)
+        return (
+            f"Steady {end.cycle} oscillation about x = {place} since {since}: "
+            f"amplitude {size}, period {period}."
+        )
+    return f"Still moving after {_TIME.text(motion.duration)}."
+
+
+def trust(motion: Motion) -> str:
+    """How well the motion keeps the laws, checked without the solver."""
+    worst = motion.certificate().worst
+    return f"Laws checked without the solver: largest relative residual {worst:.1e}."

@@ -1,0 +1,131 @@
+"""A drive as data: validated, frozen, quick to make."""
+
+import math
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pindrive import Contact, Drive, Profile
+
+WRONG: Any = 3
+PLATE, FINGER = Contact(kinetic=0.020, static=0.025), Contact(kinetic=0.005)
+
+
+def drive(**changes: object) -> Drive:
+    values = {"mass": 0.010, "stiffness": 100.0, "damping": 0.4, "plate": PLATE, "finger": FINGER}
+    return Drive(**(values | changes))  # type: ignore[arg-type]
+
+
+def test_drive_keeps_floats() -> None:
+    made = drive(mass=np.float32(0.5), stiffness=2)
+    assert (made.mass, made.stiffness) == (0.5, 2.0)
+    assert type(made.mass) is type(made.stiffness) is float
+    assert made == drive(mass=0.5, stiffness=2.0)
+    assert hash(made) == hash(drive(mass=0.5, stiffness=2.0))
+
+
+def test_drive_is_frozen() -> None:
+    with pytest.raises(FrozenInstanceError):
+        drive().mass = 1.0  # type: ignore[misc]
+
+
+def test_natural_frequency_and_damping_ratio() -> None:
+    assert drive().natural_frequency == pytest.approx(100.0, rel=1e-15)
+    assert drive().damping_ratio == pytest.approx(0.2, rel=1e-15)
+
+
+@given(
+    mass=st.floats(1e-9, 1e9), stiffness=st.floats(1e-9, 1e9), damping_ratio=st.floats(0.0, 100.0)
+)
+def test_damping_ratio_there_and_back(mass: float, stiffness: float, damping_ratio: float) -> None:
+    made = Drive.with_damping_ratio(
+        mass=mass, stiffness=stiffness, damping_ratio=damping_ratio, plate=PLATE, finger=FINGER
+    )
+    assert made.damping_ratio == pytest.approx(damping_ratio, rel=1e-14)
+
+
+def test_static_friction_is_kinetic_unless_given() -> None:
+    assert (PLATE.static_friction, FINGER.static_friction) == (0.025, 0.005)
+    assert Contact(0.02) == Contact(0.02, None, None, math.inf)
+
+
+def test_frictionless_and_rigid() -> None:
+    assert Contact(0).frictionless
+    assert not Contact(0, 0.1).frictionless
+    assert not Contact(0, curve=[(0, 0), (1, 0.1)]).frictionless
+    assert Contact(0).rigid
+    assert not Contact(0.1, stiffness=1000).rigid
+
+
+def test_curve_is_kept_as_rows() -> None:
+    curve = [[0, 0.02], [0.1, 0.01]]
+    contact = Contact(0.02, curve=curve)  # type: ignore[arg-type]
+    assert contact.curve == ((0.0, 0.02), (0.1, 0.01))
+    assert hash(contact)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: drive(mass=0.0), "mass must be finite and greater than 0 kg, got 0.0 kg"),
+        (lambda: drive(mass=-1.0), "mass must be finite and greater than 0 kg, got -1.0 kg"),
+        (lambda: drive(mass="10 g"), "mass must be a number in kg, got '10 g'"),
+        (
+            lambda: drive(stiffness=0),
+            "stiffness must be finite and greater than 0 N/m, got 0.0 N/m",
+        ),
+        (
+            lambda: drive(damping=-0.1),
+            "damping must be finite and at least 0 N*s/m, got -0.1 N*s/m",
+        ),
+        (lambda: drive(damping=math.nan), "damping must be finite and at least 0 N*s/m, got nan"),
+        (lambda: drive(mass=1e-300, stiffness=1e300), "natural_frequency must be finite"),
+        (lambda: drive(plate=0.02), "plate must be a Contact, got 0.02"),
+        (lambda: Contact(-0.1), "kinetic must be finite and at least 0 N, got -0.1 N"),
+        (lambda: Contact(0.1, math.inf), "static must be finite and at least 0 N, got inf N"),
+        (
+            lambda: Contact(0.1, 0.05),
+            "static must be at least the kinetic friction, 0.1 N, got 0.05 N",
+        ),
+        (lambda: Contact(0.1, stiffness=0.0), "stiffness must be greater than 0 N/m, got 0.0 N/m"),
+        (lambda: Contact(0.1, curve=[]), "curve must be at least one row of (speed, force)"),
+        (lambda: Contact(0.1, curve=WRONG), "curve must be rows of (speed, force), got 3"),
+        (lambda: Contact(0.1, curve=[WRONG]), "curve must be rows of (speed, force)"),
+        (lambda: Contact(0.1, curve=[(0.1, 0.1)]), "curve[0] speed must be 0 m/s, got 0.1 m/s"),
+        (lambda: Contact(0.1, curve=[(0, 0.2)]), "curve[0] force must be the kinetic friction"),
+        (
+            lambda: Contact(0.1, curve=[(0, 0.1), (1, 0.1), (1, 0.2)]),
+            "curve[2] speed must be greater than the one before, 1.0 m/s, got 1.0 m/s",
+        ),
+        (
+            lambda: Contact(0.1, curve=[(0, 0.1), (1, -0.1)]),
+            "curve[1] force must be finite and at least 0 N, got -0.1 N",
+        ),
+        (lambda: Profile([], []), "times must be at least one, got none"),
+        (lambda: Profile([0, 1], [0]), "values must be as many as times, 2, got 1"),
+        (lambda: Profile([0, 0], [0, 1]), "times[1] must be greater than the one before, 0.0 s"),
+        (lambda: Profile([0, math.nan], [0, 1]), "times[1] must be finite, got nan s"),
+        (lambda: Profile([0, 1], [0, math.inf]), "values[1] must be finite, got inf"),
+        (lambda: Profile(WRONG, WRONG), "a profile must be sequences of numbers, got 3"),
+    ],
+)
+def test_bad_values_are_refused(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError) as refused:
+        make()
+    assert str(refused.value).startswith(message)
+    assert "\n" not in str(refused.value)
+
+
+def test_profile_is_linear_between_rows_and_constant_outside() -> None:
+    profile = Profile([0.0, 1.0, 3.0], [0.0, 2.0, -2.0])
+    times = [-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0]
+    values = [0.0, 0.0, 1.0, 2.0, 0.0, -2.0, -2.0]
+    assert [profile(t) for t in times] == values
+    assert profile(np.array(times)).tolist() == values
+    assert profile(np.reshape(times[:6], (2, 3))).shape == (2, 3)
+    assert Profile([5], [1])(0) == 1.0
