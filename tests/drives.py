@@ -1,4 +1,4 @@
-"""Random drives and releases for the property tests, every damping regime and limit case among them."""
+"""Random drives and releases for the property tests, in every damping regime."""
 
 from __future__ import annotations
 

@@ -6,10 +6,10 @@ from math import inf
 
 import numpy as np
 import pytest
-from drives import Release, releases
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drives import Release, releases
 from pindrive import Contact, Drive, Motion
 
 Run = tuple[list[tuple[float, str, str]], np.ndarray, np.ndarray]
@@ -160,9 +160,7 @@ def test_a_stick_slip_cycle_repeats_for_ever() -> None:
 
 
 def test_the_undamped_steady_state_grazes_and_does_not_loop() -> None:
-    drive = Drive(
-        mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0)
-    )
+    drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
     motion = Release(drive, 0.1, 1.5e-3).run(1000.0)
     assert motion.ending.cycle == "grazing"
     assert len(motion.events) == 5

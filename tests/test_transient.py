@@ -6,9 +6,9 @@ from math import isfinite, isnan
 
 import numpy as np
 import pytest
-from drives import Release, releases
 from hypothesis import given, settings
 
+from drives import Release, releases
 from pindrive import Contact, Drive, Motion
 
 SAMPLES = 20_001
@@ -66,9 +66,9 @@ def test_numbers_against_samples(release: Release) -> None:
         if sliding.frictionless:
             assert use.distance_slid == use.dissipated == use.reversals == 0
             continue
-        distance = np.trapezoid(np.abs(v - surface), t)
+        slid = np.trapezoid(np.abs(v - surface), t)
         slack = step * np.abs(v).max() * (3 + use.reversals) + 1e-9 * size
-        assert use.distance_slid == pytest.approx(distance, abs=slack, rel=1e-4)
+        assert use.distance_slid == pytest.approx(slid, abs=slack, rel=1e-4)
         assert use.dissipated == pytest.approx(use.distance_slid * sliding.kinetic, rel=1e-12)
 
 
@@ -77,9 +77,9 @@ def example(**changes: float) -> Motion:
     drive = Drive(
         mass=0.01, stiffness=100.0, damping=0.2, plate=Contact(0.02), finger=Contact(0.005)
     )
-    return Release(drive, float(values["mouse_velocity"] or 0), float(values["displacement"] or 0)).run(
-        values["duration"]
-    )
+    return Release(
+        drive, float(values["mouse_velocity"] or 0), float(values["displacement"] or 0)
+    ).run(values["duration"])
 
 
 def test_not_settled_in_the_duration_is_nan_and_flagged() -> None:
@@ -103,9 +103,7 @@ def test_wider_band_settles_no_later() -> None:
 
 
 def test_steady_motion_settles_where_it_begins() -> None:
-    drive = Drive(
-        mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0)
-    )
+    drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
     motion = Release(drive, 0.1, 1.5e-3).run()
     assert motion.transient.settling_time == motion.ending.since > 0
 

@@ -167,8 +167,8 @@ class Certifier {
     add(event.plate, after.mode.plate, drive_.plate);
     add(event.finger, after.mode.finger, drive_.finger);
     const T held = drive_.damping * right.v + drive_.stiffness * right.x - others;
-    const T short_of = event.kind == Kind::cross ? std::max(holding - abs(held), T(0))
-                                                 : holding - abs(held);
+    const T short_of =
+        event.kind == Kind::cross ? std::max(holding - abs(held), T(0)) : holding - abs(held);
     worst(result_.transitions, short_of, force_scale_);
   }
 

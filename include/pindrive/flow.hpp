@@ -123,8 +123,8 @@ class Oscillator {
   /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
   static T cosine_series(T z) {
     return -z / 2 *
-           (1 - z / 12 *
-                    (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
+           (1 -
+            z / 12 * (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
   }
   static T sine_series(T z) {
     return 1 - z / 6 *

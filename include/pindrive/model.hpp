@@ -84,8 +84,8 @@ struct Outcome {
   End end{End::moving};
   T since{std::numeric_limits<T>::quiet_NaN()};   ///< when the ending began, s
   T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
-  T until{0};         ///< end of the last segment, s; then a stick-slip cycle begins again …
-  T cycle_begin{0};   ///< … from here, s
+  T until{0};        ///< end of the last segment, s; then a stick-slip cycle begins again …
+  T cycle_begin{0};  ///< … from here, s
 };
 
 }  // namespace pindrive

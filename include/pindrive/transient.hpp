@@ -24,12 +24,13 @@ template <class T>
 struct Transient {
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
-  T peak_displacement{none}, peak_time{none};        ///< x_m,a at t_a: m, s
-  T trough_displacement{none}, trough_time{none};    ///< x_m,c at t_c; t_c infinite if only approached
-  T swing{none};                                     ///< (17), m
+  T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
+  T trough_displacement{none},
+      trough_time{none};  ///< x_m,c at t_c; t_c infinite if only approached
+  T swing{none};          ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
-  T first_reversal_time{none};                       ///< t_1, s
-  T settling_time{none};                             ///< s
+  T first_reversal_time{none};                          ///< t_1, s
+  T settling_time{none};                                ///< s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
   ContactUse<T> plate, finger;
@@ -142,8 +143,8 @@ class Measurement {
       result.trough_time = never;
       result.trough_displacement = std::prev(motion_.end())->flow.position.centre();
     }
-    result.swing = (result.peak_displacement - result.trough_displacement) *
-                   (outward == 0 ? 1 : outward);
+    result.swing =
+        (result.peak_displacement - result.trough_displacement) * (outward == 0 ? 1 : outward);
     return_velocity(result, outward == 0 ? 1 : outward);
   }
 
@@ -160,7 +161,8 @@ class Measurement {
       const Flow<T>& flow = segment.flow;
       consider(segment.begin, flow.velocity.start);
       if (segment.mode.stuck()) continue;
-      const Zeros<T> level = flow.oscillator.zeros(flow.acceleration.start, flow.acceleration.slope);
+      const Zeros<T> level =
+          flow.oscillator.zeros(flow.acceleration.start, flow.acceleration.slope);
       const T stop = std::min(length(segment), until - segment.begin);
       for (T tau = level.first; tau <= stop; tau += level.spacing)
         consider(segment.begin + tau, flow.velocity.at(flow.oscillator, tau));
@@ -270,8 +272,8 @@ class Measurement {
       const Oscillator<T>& oscillator = segment.flow.oscillator;
       const T x_from = segment.flow.position.at(oscillator, from);
       const T x_to = segment.flow.position.at(oscillator, to);
-      const T moved =
-          segment.flow.position.change(oscillator, to) - segment.flow.position.change(oscillator, from);
+      const T moved = segment.flow.position.change(oscillator, to) -
+                      segment.flow.position.change(oscillator, from);
       const auto use = [&](ContactUse<T>& contact, Slide slide, const Contact<T>& law, T surface,
                            bool arrived, T force_from, T force_to) {
         using std::abs;

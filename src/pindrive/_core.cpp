@@ -55,8 +55,9 @@ CoreMotion simulate(double mass, double stiffness, double damping, double plate_
                     double plate_static, double finger_kinetic, double finger_static,
                     double mouse_velocity, double displacement, double velocity, double duration) {
   const nb::gil_scoped_release unlocked;
-  return {{mass, stiffness, damping, {plate_kinetic, plate_static}, {finger_kinetic, finger_static}},
-          {mouse_velocity, displacement, velocity, duration}};
+  return {
+      {mass, stiffness, damping, {plate_kinetic, plate_static}, {finger_kinetic, finger_static}},
+      {mouse_velocity, displacement, velocity, duration}};
 }
 
 /// f(segment, τ) at each time.
@@ -107,8 +108,10 @@ nb::dict segments(const CoreMotion& motion) {
   nb::dict table;
   table["begin"] = column<double>(motion, [](const Segment& s) { return s.begin; });
   table["end"] = column<double>(motion, [](const Segment& s) { return s.end; });
-  table["position"] = column<double>(motion, [](const Segment& s) { return s.flow.position.start; });
-  table["velocity"] = column<double>(motion, [](const Segment& s) { return s.flow.velocity.start; });
+  table["position"] =
+      column<double>(motion, [](const Segment& s) { return s.flow.position.start; });
+  table["velocity"] =
+      column<double>(motion, [](const Segment& s) { return s.flow.velocity.start; });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
   table["event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.kind; });
@@ -195,7 +198,8 @@ NB_MODULE(_core, m) {
       .def("certificate", &certificate, "duration"_a)
       .def_prop_ro("duration", [](const CoreMotion& c) { return pd::duration_of(c.view()); })
       .def_prop_ro("known_until", [](const CoreMotion& c) { return c.view().known_until(); })
-      .def_prop_ro("status", [](const CoreMotion& c) { return static_cast<int>(c.outcome().status); })
+      .def_prop_ro("status",
+                   [](const CoreMotion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const CoreMotion& c) { return static_cast<int>(c.outcome().end); })
       .def_prop_ro("since", [](const CoreMotion& c) { return c.outcome().since; })
       .def_prop_ro("period", [](const CoreMotion& c) { return c.outcome().period; })

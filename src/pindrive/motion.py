@@ -216,7 +216,7 @@ class Motion:
 
     @cached_property
     def status(self) -> str:
-        """ "ok", or what stopped the simulation and what to do about it."""
+        """Either "ok", or what stopped the simulation and what to do about it."""
         if self._core.status == 0:
             return "ok"
         return (
@@ -311,7 +311,7 @@ class Motion:
                 value,
                 {**attributes, "units": quantity.unit} if quantity.unit else attributes,
             )
-        attributes = {
+        origin: dict[str, Any] = {
             "title": "Motion of a tactile device's pin after release",
             "source": f"pindrive {__version__}",
             "status": self.status,
@@ -320,7 +320,7 @@ class Motion:
             **self.inputs(),
         }
         time = ("time", t, {"units": "s", "long_name": "time since the release"})
-        return xr.Dataset(data, coords={"time": time}, attrs=attributes)
+        return xr.Dataset(data, coords={"time": time}, attrs=origin)
 
     def inputs(self) -> dict[str, float]:
         """What was simulated, SI, by the names of the table of quantities."""

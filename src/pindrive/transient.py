@@ -5,7 +5,7 @@ All SI; NaN where a number does not exist within the duration. `quantities.py` s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from math import isnan
 from typing import TYPE_CHECKING, Literal
 
@@ -104,8 +104,10 @@ class Ending:
 
 @dataclass(frozen=True, slots=True)
 class Ledger:
-    """Where the energy came from and where it went, J. The damper's share is integrated, not
-    inferred, so that the terms add up only if the motion is right."""
+    """Where the energy came from and where it went, J.
+
+    The damper's share is integrated, not inferred: the terms add up only if the motion is right.
+    """
 
     kinetic_start: float
     kinetic_end: float
@@ -149,4 +151,4 @@ class Certificate:
     @property
     def worst(self) -> float:
         """The largest of all."""
-        return max(getattr(self, name) for name in self.__slots__)
+        return float(max(astuple(self)))

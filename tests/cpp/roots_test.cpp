@@ -1,23 +1,26 @@
 // Root isolation against dense scanning: no sign change is missed, invented or misplaced, for
 // oscillations with a constant and with a line, decaying, steady and growing, in every regime.
+#include "pindrive/roots.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <random>
 #include <vector>
-
-#include "pindrive/roots.hpp"
 
 namespace pd = pindrive;
 
 namespace {
 
 template <int Degree>
-std::vector<double> isolated(const pd::Oscillator<double>& oscillator,
-                             const pd::Path<double>& path, int side, double horizon) {
+std::vector<double> isolated(const pd::Oscillator<double>& oscillator, const pd::Path<double>& path,
+                             int side, double horizon) {
   std::vector<double> roots;
   pd::Roots<double, Degree> search(oscillator, path, side, horizon);
-  for (double root = search.next(); root <= horizon; root = search.next()) roots.push_back(root);
-  return roots;
+  for (;;) {
+    const double root = search.next();
+    if (!(root <= horizon)) return roots;
+    roots.push_back(root);
+  }
 }
 
 /// Sign changes on a fine grid, skipping values that are rounding.
@@ -50,8 +53,8 @@ int main() {
     pd::Path<double> path{uniform(random), uniform(random), omega0 * uniform(random), 0};
     const bool line = i % 2 == 1;
     if (line) path.drift = 0.2 * omega0 * uniform(random);
-    if (i % 5 == 0) path.start = 0;                       // leaves its zero
-    if (i % 15 == 0) path.slope = -path.drift;            // tangentially
+    if (i % 5 == 0) path.start = 0;             // leaves its zero
+    if (i % 15 == 0) path.slope = -path.drift;  // tangentially
     int side = path.start > 0 ? 1 : -1;
     if (path.start == 0) side = path.slope + path.drift > 0 ? 1 : -1;
     if (path.start == 0 && path.slope + path.drift == 0)

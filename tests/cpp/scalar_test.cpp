@@ -50,8 +50,7 @@ int main() {
     for (std::size_t k = 0; k < one.size(); ++k) {
       const long double x = other[k].flow.position.start;
       worst_time = std::max(worst_time, double(std::abs(one[k].begin - other[k].begin)));
-      worst_position =
-          std::max(worst_position, double(std::abs(one[k].flow.position.start - x)));
+      worst_position = std::max(worst_position, double(std::abs(one[k].flow.position.start - x)));
     }
   }
   std::printf("20000 motions: times within %.1e s, positions within %.1e m\n", worst_time,

@@ -1,0 +1,59 @@
+"""The exact core. All quantities in SI units; nothing is checked here."""
+
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+class Motion:
+    """A simulated motion and its segments."""
+
+    def position(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def velocity(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def acceleration(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def plate_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def finger_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def segments(self) -> dict:
+        """Columns, one row a segment."""
+
+    def transient(self, duration: float, band: float) -> dict: ...
+
+    def ledger(self, duration: float) -> dict: ...
+
+    def certificate(self, duration: float) -> dict: ...
+
+    @property
+    def duration(self) -> float: ...
+
+    @property
+    def known_until(self) -> float: ...
+
+    @property
+    def status(self) -> int: ...
+
+    @property
+    def end(self) -> int: ...
+
+    @property
+    def since(self) -> float: ...
+
+    @property
+    def period(self) -> float: ...
+
+    @property
+    def until(self) -> float: ...
+
+def simulate(mass: float, stiffness: float, damping: float, plate_kinetic: float, plate_static: float, finger_kinetic: float, finger_static: float, mouse_velocity: float, displacement: float, velocity: float, duration: float) -> Motion:
+    """
+    Simulates one pin from its release until its ending is known or the duration is over.
+    """
+
+settling_band: float = 0.05
+
+event_limit: int = 1000000

@@ -1,0 +1,68 @@
+"""An outside CMake project uses the core, installed or as a subfolder; and the C++ tests pass."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+CONSUMER = ROOT / "tests" / "consumer"
+PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+
+
+def run(*command: str | Path) -> str:
+    """The program's output; its complaints, if it fails."""
+    program = shutil.which(str(command[0]), path=PATH)
+    assert program, f"{command[0]} is missing: it comes with the extra `test`"
+    result = subprocess.run(
+        [program, *map(str, command[1:])],
+        env={**os.environ, "PATH": PATH},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result.stdout
+
+
+def build(source: Path, folder: Path, *settings: str) -> None:
+    run("cmake", "-S", source, "-B", folder, "-G", "Ninja", *settings)
+    run("cmake", "--build", folder)
+
+
+def check(consumer: Path) -> None:
+    """The program ran the core and got the answer that Python gets."""
+    pindrive = pytest.importorskip("pindrive")
+    drive = pindrive.Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=0.40,
+        plate=pindrive.Contact(kinetic=0.020),
+        finger=pindrive.Contact(kinetic=0.005),
+    )
+    motion = pindrive.simulate(drive, mouse_velocity=0.10, displacement=1.5e-3)
+    expected = [f"{segment.begin:.9f} s" for segment in motion.segments]
+    assert run(consumer).split("\n") == [*expected, motion.ending.kind, ""]
+
+
+def test_find_package(tmp_path: Path) -> None:
+    run("cmake", "-S", ROOT, "-B", tmp_path / "core", "-G", "Ninja")
+    run("cmake", "--install", tmp_path / "core", "--prefix", tmp_path / "prefix")
+    build(CONSUMER, tmp_path / "build", f"-DCMAKE_PREFIX_PATH={tmp_path / 'prefix'}")
+    check(tmp_path / "build" / "consumer")
+
+
+def test_add_subdirectory(tmp_path: Path) -> None:
+    build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
+    check(tmp_path / "build" / "consumer")
+
+
+@pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+def test_ctest(tmp_path: Path) -> None:
+    build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release")
+    run("ctest", "--test-dir", tmp_path, "--output-on-failure")

@@ -1,0 +1,199 @@
+"""run.py on machines that lack something, in other folders, interrupted, and in a hurry."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+import run
+
+SCRIPT = run.ROOT / "run.py"
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
+    """A `.venv` that records what would be installed in it; the list of steps taken."""
+    steps: list[str] = []
+
+    def quietly(what: str, command: list[str]) -> None:
+        steps.append(what)
+        run.VENV.mkdir(exist_ok=True)
+
+    monkeypatch.setattr(run, "VENV", tmp_path / ".venv")
+    monkeypatch.setattr(run, "STAMP", tmp_path / ".venv" / "pindrive.json")
+    monkeypatch.setattr(run, "quietly", quietly)
+    monkeypatch.setattr(run, "fingerprint", lambda: "as it was")
+    return steps
+
+
+def refusal(capsys: pytest.CaptureFixture[str]) -> str:
+    """The one line with which the machine is refused."""
+    with pytest.raises(SystemExit) as stopped:
+        run.check_machine()
+    assert stopped.value.code == 2
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1
+    return line
+
+
+def only(*programs: str) -> object:
+    """A `shutil.which` for a machine with these programs alone."""
+    return lambda name, **_: f"/usr/bin/{name}" if name in programs else None
+
+
+def test_this_machine_has_what_it_takes() -> None:
+    run.check_machine()
+
+
+@pytest.mark.parametrize(
+    ("manager", "command"),
+    [
+        ("apt-get", "sudo apt-get install g++"),
+        ("dnf", "sudo dnf install gcc-c++"),
+        ("brew", "xcode-select --install"),
+        ("winget", "winget install Microsoft.VisualStudio.2022.BuildTools"),
+        ("none", "your system's package manager"),
+    ],
+)
+def test_no_compiler(
+    manager: str,
+    command: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(shutil, "which", only(manager))
+    assert "no C++ compiler found" in (line := refusal(capsys))
+    assert command in line
+
+
+def test_the_compiler_named_by_cxx_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", only("clang++-19"))
+    monkeypatch.setenv("CXX", "clang++-19 -stdlib=libc++")
+    assert run.compiler() == "clang++-19"
+
+
+@pytest.mark.parametrize("module", ["venv", "ensurepip"])
+def test_no_venv_module(
+    module: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run, "has", lambda name: name != module)
+    monkeypatch.setattr(shutil, "which", only("apt-get"))
+    package = "python{}.{}-venv".format(*sys.version_info)
+    assert f"sudo apt-get install {package}" in refusal(capsys)
+
+
+def test_an_empty_folder_is_no_module(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "hollow").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    assert run.has("venv")
+    assert not run.has("hollow")
+    assert not run.has("nowhere")
+
+
+def test_no_headers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))
+    monkeypatch.setattr(shutil, "which", only("dnf"))
+    assert "sudo dnf install python3-devel" in refusal(capsys)
+
+
+def test_an_old_python(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys, "version_info", (3, 9, 2))
+    assert "Python 3.11 or newer is needed, this is 3.9" in refusal(capsys)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="PATH says little about compilers on Windows")
+def test_the_script_itself_without_a_compiler(tmp_path: Path) -> None:
+    """From another folder, too."""
+    env = {k: v for k, v in os.environ.items() if k != "CXX"} | {"PATH": str(tmp_path)}
+    result = subprocess.run(
+        [sys.executable, str(SCRIPT)],
+        cwd=tmp_path,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "no C++ compiler found" in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["tset"], ["format", "src"], ["lint", "rough"]])
+def test_a_command_it_does_not_know(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        run.main(arguments)
+    assert stopped.value.code == 2
+
+
+MADE, NEEDS, BUILT = "making .venv", "installing what pindrive needs", "building pindrive"
+
+
+def test_what_is_installed_is_not_installed_again(
+    installed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run.install(set())
+    assert installed == [MADE, NEEDS, BUILT]
+    run.install(set())
+    assert installed[3:] == []
+    monkeypatch.setattr(run, "fingerprint", lambda: "edited")
+    run.install(set())
+    assert installed[3:] == [BUILT]
+    run.install({"test"})
+    assert installed[4:] == [NEEDS]
+    run.install(set())
+    assert installed[5:] == [], "the extra stays"
+
+
+@pytest.mark.parametrize("interrupted", [MADE, NEEDS, BUILT])
+def test_an_interrupted_setup_is_taken_up_again(
+    interrupted: str, installed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    finish = run.quietly
+
+    def quietly(what: str, command: list[str]) -> None:
+        finish(what, command)
+        if what == interrupted:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "quietly", quietly)
+    with pytest.raises(KeyboardInterrupt):
+        run.install(set())
+    monkeypatch.setattr(run, "quietly", finish)
+    installed.clear()
+    run.install(set())
+    assert installed == ([BUILT] if interrupted == BUILT else [MADE, NEEDS, BUILT])
+
+
+@pytest.mark.parametrize("key", ["python", "place"])
+def test_an_environment_of_another_python_or_place_is_made_anew(
+    key: str, installed: list[str]
+) -> None:
+    run.install(set())
+    stamp = json.loads(run.STAMP.read_text("utf-8"))
+    run.STAMP.write_text(json.dumps({**stamp, key: "another"}), "utf-8")
+    installed.clear()
+    run.install(set())
+    assert installed == [MADE, NEEDS, BUILT]
+
+
+def test_a_step_that_fails_says_what_it_said(capsys: pytest.CaptureFixture[str]) -> None:
+    speak = [sys.executable, "-c", "print('no such header'); raise SystemExit(3)"]
+    with pytest.raises(SystemExit, match="building failed"):
+        run.quietly("building", speak)
+    assert "no such header" in capsys.readouterr().err
+
+
+def test_the_extras_hold_the_extras_they_name() -> None:
+    build, test, dev = (set(run.requirements({extra})) for extra in ("build", "test", "dev"))
+    assert build < test < dev
+    assert all("pindrive" not in line for line in dev)

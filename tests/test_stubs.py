@@ -1,0 +1,22 @@
+"""The committed stub of the extension, which type checkers read, says what the extension holds."""
+
+import ast
+from importlib.resources import files
+from pathlib import Path
+
+import run
+
+
+def declarations(text: str) -> str:
+    return ast.dump(ast.parse(text), indent=1)
+
+
+def test_the_committed_stub_is_up_to_date() -> None:
+    built = files("pindrive").joinpath("_core.pyi").read_text("utf-8")
+    assert declarations(run.STUB.read_text("utf-8")) == declarations(built), (
+        "src/pindrive/_core.pyi is out of date: refresh it with `python3 run.py stubs`"
+    )
+
+
+def test_the_package_says_that_it_is_typed() -> None:
+    assert Path(str(files("pindrive")), "py.typed").exists()
