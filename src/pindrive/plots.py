@@ -1,0 +1,406 @@
+"""The picture of a motion: displacement, velocity and acceleration over time, phase portrait.
+
+Drawn from the closed forms, phase by phase with the limits at both its ends, so that a corner is a
+corner and a jump is a jump. No global state of matplotlib is used or left behind.
+"""
+
+from __future__ import annotations
+
+import re
+from math import inf, isfinite, isnan
+from typing import IO, TYPE_CHECKING, Any, Final
+
+import matplotlib.style
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from pindrive._core import settling_band
+from pindrive.quantities import QUANTITIES
+from pindrive.trace import MM, Trace
+
+if TYPE_CHECKING:
+    import os
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from pindrive.motion import Motion
+
+__all__ = ["PALETTE", "plot_motion", "save"]
+
+PALETTE: Final = {
+    "curve": "#0072B2",  # blue
+    "stick": "#D55E00",  # vermillion
+    "slip": "#009E73",  # bluish green
+    "cross": "#000000",
+    "plate": "#000000",
+    "carried": "#56B4E9",  # sky blue
+    "resting": "#E69F00",  # orange
+}
+"""Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
+
+_TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
+_MARKER: Final = {"stick": "s", "slip": "^", "cross": "x"}
+_NAME: Final = {
+    "stick": "sticks",
+    "slip": "breaks loose",
+    "cross": "reverses without sticking",
+    "carried": "carried by the plate",
+    "resting": "resting on the finger",
+}
+_GREY: Final = "0.45"
+_LINE: Final = 118
+"""Characters that fit side by side above the panels."""
+_SMALL: Final = 7.0
+
+_MOST_MARKERS = 100
+"""With more events their markers would hide the curve."""
+
+_STYLE: Final[dict[str, Any]] = {
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.use_mathtext": True,
+    "axes.formatter.limits": (-2, 5),
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4.0,
+    "legend.fontsize": _SMALL,
+    "agg.path.chunksize": 5000,  # a third faster with a hundred thousand points
+    "svg.fonttype": "none",  # text as text
+    "svg.hashsalt": "pindrive",  # the same motion is the same file
+    "pdf.fonttype": 42,  # TrueType: journals refuse Type 3
+}
+_SAVING: Final[dict[str, dict[str, Any]]] = {
+    "png": {"pil_kwargs": {"optimize": True}},
+    "svg": {"metadata": {"Date": None}},
+    "pdf": {"metadata": {"CreationDate": None}},
+}
+
+
+def plot_motion(motion: Motion) -> Figure:
+    """Draw a motion: x, v and a over time, and v over x, for a page 180 mm wide.
+
+    Args:
+        motion: any motion; of a very long one the first phases are drawn, and it says so.
+
+    Returns:
+        A figure that belongs to nobody else: `save` it, or show it in a notebook.
+    """
+    with matplotlib.style.context(_STYLE, after_reset=True):
+        trace = Trace.of(motion)
+        figure = Figure(figsize=(180 / 25.4, 125 / 25.4), dpi=250, layout="constrained")
+        columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
+        rows = columns[0].subgridspec(3, 1)
+        x = figure.add_subplot(rows[0], label="x")
+        v = figure.add_subplot(rows[1], label="v", sharex=x)
+        a = figure.add_subplot(rows[2], label="a", sharex=x)
+        rows = columns[1].subgridspec(2, 1, height_ratios=(2.6, 1.0))
+        portrait = figure.add_subplot(rows[0], label="portrait")
+        key = figure.add_subplot(rows[1], label="key")
+        _draw_over_time(motion, trace, x, v, a)
+        _draw_portrait(motion, trace, portrait)
+        _draw_key(motion, trace, key)
+        figure.align_ylabels((x, v, a))
+        figure.suptitle(
+            f"{_outcome(motion)}\n{_parameters(motion)}", x=0.008, ha="left", fontsize=8.0
+        )
+    return figure
+
+
+def save(
+    figure: Figure, target: str | os.PathLike[str] | IO[bytes], format: str | None = None
+) -> None:
+    """Write a figure, with its text as text where the format has text.
+
+    Args:
+        figure: what `plot_motion` drew.
+        target: a path or a file open for writing bytes.
+        format: "png" (250 dpi), "svg" or "pdf"; the ending of the path unless given.
+    """
+    kind = format or str(target).rpartition(".")[2].lower()
+    with matplotlib.style.context(_STYLE, after_reset=True):
+        figure.savefig(target, format=kind, **_SAVING.get(kind, {}))
+
+
+# ---- the panels ----------------------------------------------------------------------------------
+
+
+def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> None:
+    panels = {x: "displacement $x$ (mm)", v: "velocity $v$ (mm/s)", a: "acceleration $a$ (m/s²)"}
+    for axes, label in panels.items():
+        axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+        for mode in ("carried", "resting"):
+            axes.broken_barh(
+                trace.stuck(mode),
+                (0.0, 1.0),
+                transform=axes.get_xaxis_transform(),
+                color=PALETTE[mode],
+                alpha=_TINT[mode],
+                lw=0.0,
+                zorder=0.5,
+                gid=mode,
+            )
+        axes.set_ylabel(label)
+        axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5, labelbottom=axes is a)
+    x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
+    v.plot(trace.t, trace.v, color=PALETTE["curve"], gid="curve")
+    a.plot(trace.broken(trace.t), trace.broken(trace.a), color=PALETTE["curve"], gid="curve")
+    left, right = trace.a[trace.starts[1:] - 1], trace.a[trace.starts[1:]]
+    a.vlines(trace.t[trace.starts[1:]], left, right, color=PALETTE["curve"], lw=0.5, gid="jumps")
+    _mark_events(trace, x, [(e.time + d) * trace.scale for e, d in trace.events], "position")
+    _mark_events(trace, v, [(e.time + d) * trace.scale for e, d in trace.events], "velocity")
+    _draw_plate(motion, v)
+    _mark_settling(motion, trace, x)
+    _mark_extremes(motion, trace, x)
+    x.set_ylim(_room(trace.x, 0.0))
+    v.set_ylim(_room(trace.v, 0.0, motion.mouse_velocity * MM))
+    a.set_ylim(_room(trace.a, 0.0))
+    a.set_xlabel(f"time after release ({trace.unit})")
+    a.set_xlim(0.0, trace.end * trace.scale)
+
+
+def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+    for mode in ("carried", "resting"):
+        axes.plot(
+            trace.only(mode, trace.x),
+            trace.only(mode, trace.v),
+            color=PALETTE[mode],
+            alpha=_TINT[mode],
+            lw=8.0,
+            solid_capstyle="round",
+            zorder=0.5,
+            gid=mode,
+        )
+    axes.plot(trace.x, trace.v, color=PALETTE["curve"], gid="curve")
+    _mark_events(trace, axes, [e.position * MM for e, _ in trace.events], "velocity")
+    _draw_plate(motion, axes)
+    _mark_ends(motion, trace, axes)
+    axes.set_xlabel("displacement $x$ (mm)")
+    axes.set_ylabel("velocity $v$ (mm/s)")
+    axes.set_xlim(_room(trace.x, margin=0.1))
+    axes.set_ylim(_room(trace.v, 0.0, motion.mouse_velocity * MM))
+    axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5)
+
+
+def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
+    """What the signs mean: those that occur."""
+    axes.set_axis_off()
+    handles: list[Artist] = []
+    notes: list[str] = []
+    kinds = {event.kind for event, _ in trace.events}
+    if len(trace.events) <= _MOST_MARKERS:
+        handles += [
+            Line2D([], [], **_marker(kind), label=_NAME[kind]) for kind in _MARKER if kind in kinds
+        ]
+    else:
+        notes.append(f"{len(trace.events)} events: too many to mark")
+    if trace.end < motion.duration:
+        notes.append(f"drawn: the first {_time(trace.end)} of {_time(motion.duration)}")
+    handles += [
+        Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=_stuck_name(motion, mode))
+        for mode in _TINT
+        if trace.stuck(mode)
+    ]
+    if _band(motion) > 0.0:
+        label = rf"$x_\mathrm{{end}}$ ± {100 * settling_band:g} % of $|x_0 - x_\mathrm{{end}}|$"
+        handles.append(Line2D([], [], color=_GREY, lw=0.7, ls=":", label=label))
+    handles += [Line2D([], [], ls="none", label=note) for note in notes]
+    axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
+
+
+# ---- the signs -----------------------------------------------------------------------------------
+
+
+def _room(values: NDArray[np.float64], *others: float, margin: float = 0.15) -> tuple[float, float]:
+    """Limits of an axis that shows all these with a margin; rounding is not blown up."""
+    low, high = min(float(values.min()), *others, inf), max(float(values.max()), *others, -inf)
+    span = high - low
+    if span <= 1e-9 * max(abs(low), abs(high)):
+        span = max(abs(low), abs(high)) or 1.0
+    return low - margin * span, high + margin * span
+
+
+def _marker(kind: str) -> dict[str, Any]:
+    fill = "white" if kind == "slip" else PALETTE[kind]
+    return {"ls": "none", "marker": _MARKER[kind], "color": PALETTE[kind], "mfc": fill, "mew": 0.9}
+
+
+def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -> None:
+    if len(trace.events) > _MOST_MARKERS:
+        return
+    for kind in _MARKER:
+        chosen = [i for i, (event, _) in enumerate(trace.events) if event.kind == kind]
+        if chosen:
+            up = [getattr(trace.events[i][0], ordinate) * MM for i in chosen]
+            axes.plot([across[i] for i in chosen], up, **_marker(kind), zorder=3, gid=kind)
+
+
+def _draw_plate(motion: Motion, axes: Axes) -> None:
+    level = motion.mouse_velocity * MM
+    axes.axhline(level, color=PALETTE["plate"], lw=0.8, ls=(0, (5, 3)), zorder=1, gid="plate")
+    _note_level(axes, level, r"plate $v_\mathrm{p}$")
+
+
+def _note_level(axes: Axes, level: float, text: str) -> None:
+    """Name a horizontal line where it meets the right edge."""
+    axes.annotate(
+        text,
+        (1.0, level),
+        (2, 0),
+        xycoords=axes.get_yaxis_transform(),
+        textcoords="offset points",
+        va="center",
+        fontsize=_SMALL,
+    )
+
+
+def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
+    """Start and end of the portrait; a steady oscillation has no end."""
+    ends = {0: "start"}
+    if motion.ending.kind in ("resting", "decaying"):
+        ends[-1] = "end"
+    elif motion.ending.kind == "moving":
+        ends[-1] = _time(trace.end)
+    moving = trace.v[trace.v != 0.0]
+    comes_from_below = len(moving) > 0 and moving[-1] < 0.0
+    for i, text in ends.items():
+        place = (float(trace.x[i]), float(trace.v[i]))
+        fill = "white" if i == 0 else "black"
+        axes.plot(*place, "o", color="black", mfc=fill, mew=0.8, ms=3.5, zorder=4, gid="ends")
+        above = i == 0 or comes_from_below
+        axes.annotate(
+            text, place, (4, 4 if above else -9), textcoords="offset points", fontsize=_SMALL
+        )
+
+
+def _band(motion: Motion) -> float:
+    """Half the band that counts as settled, mm; 0 where there is none to show."""
+    if motion.ending.kind not in ("resting", "decaying"):
+        return 0.0
+    return settling_band * abs(motion.displacement - motion.ending.position) * MM
+
+
+def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
+    middle, time = motion.ending.position * MM, motion.transient.settling_time
+    if isnan(middle):
+        return
+    if motion.ending.kind == "steady":
+        axes.axhline(middle, color=_GREY, lw=0.7, ls=":", zorder=1, gid="middle")
+    for level in {middle - _band(motion), middle + _band(motion)} - {middle}:
+        axes.axhline(level, color=_GREY, lw=0.7, ls=":", zorder=1, gid="band")
+    _note_level(axes, middle, r"$x_\mathrm{end}$")
+    if 0.0 < time <= trace.end:
+        word = "steady from" if motion.ending.kind == "steady" else "settled at"
+        axes.axvline(time * trace.scale, color=_GREY, lw=0.7, zorder=1, gid="settling")
+        side = ("left", "center", "right")[(time > 0.2 * trace.end) + (time > 0.8 * trace.end)]
+        axes.annotate(
+            f"{word} {_time(time)}",
+            (time * trace.scale, 1.0),
+            (0, 1),
+            xycoords=axes.get_xaxis_transform(),
+            textcoords="offset points",
+            ha=side,
+            va="bottom",
+            fontsize=_SMALL,
+        )
+
+
+def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
+    numbers = motion.transient
+    for name, up in (("peak", _outward(motion)), ("trough", not _outward(motion))):
+        time, place = getattr(numbers, f"{name}_time"), getattr(numbers, f"{name}_displacement")
+        if not time <= trace.end or isnan(numbers.swing):
+            continue
+        late = time > 0.65 * trace.end
+        axes.annotate(
+            f"{name} {_short('displacement', place)}",
+            (time * trace.scale, place * MM),
+            (-4 if late else 4, 1 if up else -2),
+            textcoords="offset points",
+            ha="right" if late else "left",
+            va="bottom" if up else "top",
+            fontsize=_SMALL,
+        )
+
+
+def _outward(motion: Motion) -> bool:
+    """Whether the peak is above the trough."""
+    return not motion.transient.peak_displacement < motion.transient.trough_displacement
+
+
+# ---- the words -----------------------------------------------------------------------------------
+
+
+def _short(name: str, value: float) -> str:
+    """A value as a caption gives it: "26.5 mN"."""
+    quantity = QUANTITIES[name]
+    return f"{_digits(value * quantity.display_scale)} {quantity.display_unit}"
+
+
+def _time(value: float) -> str:
+    return _short("duration", value) if value < 2.0 else f"{_digits(value)} s"
+
+
+def _digits(value: float) -> str:
+    """Four digits, or all before the point where they are few more."""
+    text = f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def _stuck_name(motion: Motion, mode: str) -> str:
+    if motion.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
+        return _NAME[mode]
+    on_finger = "" if motion.drive.finger.frictionless else "finger and "
+    return f"at rest on {on_finger}plate"
+
+
+def _outcome(motion: Motion) -> str:
+    """How it ends, how long the transient lasts and how far it swings."""
+    end, numbers = motion.ending, motion.transient
+    place = _short("displacement", end.position)
+    words = {
+        "resting": f"At rest at {place} since {_time(end.since)}",
+        "decaying": f"Decays towards {place}",
+        "steady": f"Steady {end.cycle} oscillation of ±{_short('displacement', end.amplitude)}",
+        "moving": f"Still moving after {_time(motion.duration)}",
+    }[end.kind]
+    if end.kind == "steady" and isfinite(end.period):
+        words += f", period {_time(end.period)}"
+    if numbers.settled:
+        words += f"; settling time {_time(numbers.settling_time)}"
+    if not isnan(numbers.swing):
+        words += f"; swing {_short('displacement', numbers.swing)}"
+    return words
+
+
+def _parameters(motion: Motion) -> str:
+    """The drive and its release."""
+    values = motion.inputs()
+    words = [
+        f"$m$ = {_short('mass', values['mass'])}",
+        f"$k$ = {_short('stiffness', values['stiffness'])}",
+        f"$ζ$ = {motion.drive.damping_ratio:.4g}",
+    ]
+    for contact, index in (("plate", "p"), ("finger", "f")):
+        kinetic, static = values[f"{contact}.kinetic"], values[f"{contact}.static"]
+        more = "" if static == kinetic else f" (static {_short('plate.static', static)})"
+        words.append(rf"$F_\mathrm{{{index}}}$ = {_short('plate.kinetic', kinetic)}{more}")
+    words.append(rf"$v_\mathrm{{p}}$ = {_short('mouse_velocity', motion.mouse_velocity)}")
+    words.append(f"$x_0$ = {_short('displacement', motion.displacement)}")
+    if motion.initial_velocity != motion.mouse_velocity:
+        words.append(f"$v_0$ = {_short('velocity', motion.initial_velocity)}")
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]}, {word}"
+        if len(re.sub(r"[$\\{}_]|mathrm", "", longer)) <= _LINE:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return ",\n".join(lines)
