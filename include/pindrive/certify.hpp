@@ -7,6 +7,7 @@
 
 #include "pindrive/energy.hpp"
 #include "pindrive/motion.hpp"
+#include "pindrive/quadrature.hpp"
 
 namespace pindrive {
 
@@ -14,19 +15,20 @@ namespace pindrive {
 /// energy in the motion.
 template <class T>
 struct Certificate {
-  T motion_law{0};    ///< m x'' + b x' + k x = R_plate + R_finger
-  T kinematics{0};    ///< x' and x'' are the derivatives of x
+  T motion_law{0};    ///< m x'' + b x' + k x = R_plate + R_finger + m v_p'
+  T kinematics{0};    ///< x' and x'' are the derivatives of x; gripping skin stretches with the pin
+  T friction_law{0};  ///< a sliding contact carries its kinetic friction
   T force_bound{0};   ///< a stuck contact carries no more than its static friction
   T sliding_sign{0};  ///< friction opposes the sliding; no level was passed unseen
   T sticking{0};      ///< a stuck contact does not slide
-  T continuity{0};    ///< x and x' do not jump
+  T continuity{0};    ///< x and x' do not jump, nor the skin but where its grip breaks
   T transitions{0};   ///< a contact breaks loose or crosses only where it cannot hold
   T energy{0};        ///< the ledger adds up
   T dissipation{0};   ///< friction and damper take energy, never give
 
   T worst() const {
-    return std::max({motion_law, kinematics, force_bound, sliding_sign, sticking, continuity,
-                     transitions, energy, dissipation});
+    return std::max({motion_law, kinematics, friction_law, force_bound, sliding_sign, sticking,
+                     continuity, transitions, energy, dissipation});
   }
 };
 
@@ -54,13 +56,31 @@ class Certifier {
   }
 
  private:
+  /// The motion at an instant, and the inputs as they were given.
   struct State {
-    T x, v, a;
+    T x, v, a, plate_force, finger_force;
+    Line<T> plate_velocity;
+    T load;
   };
-  static State state(const Segment<T>& segment, T tau) {
+  State state(const Segment<T>& segment, T tau) const {
     const Transition<T> moved = segment.flow.oscillator.after(tau);
-    return {segment.flow.position.at(moved, tau), segment.flow.velocity.at(moved, tau),
-            segment.flow.acceleration.at(moved, tau)};
+    const Line<T> v_plate = motion_.inputs().mouse_velocity.from(segment.begin);
+    return {segment.flow.position.at(moved, tau),
+            segment.flow.velocity.at(moved, tau),
+            segment.flow.acceleration.at(moved, tau),
+            segment.plate_force.at(moved, tau),
+            segment.finger_force.at(moved, tau),
+            {v_plate.at(tau), v_plate.rate},
+            motion_.inputs().plate_load.from(segment.begin).at(tau)};
+  }
+
+  /// Kinetic friction at a sliding speed, from the rows of the contact's curve.
+  static T kinetic(const Contact<T>& contact, T speed) {
+    T force = contact.kinetic;
+    for (int i = 0; i < contact.regions; ++i)
+      if (speed >= contact.curve[i].from)
+        force = contact.curve[i].force + contact.curve[i].slope * (speed - contact.curve[i].from);
+    return force;
   }
 
   T length(const Segment<T>& segment) const {
@@ -84,57 +104,50 @@ class Certifier {
 
   void scales(const Segment<T>& segment) {
     using std::abs;
+    using std::sqrt;
     samples(segment, [&](T tau) {
       const State s = state(segment, tau);
       x_scale_ = std::max(x_scale_, abs(s.x));
-      v_scale_ = std::max({v_scale_, abs(s.v), abs(motion_.inputs().mouse_velocity)});
+      v_scale_ = std::max({v_scale_, abs(s.v), abs(s.plate_velocity.value)});
       force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                               abs(drive_.stiffness * s.x), drive_.plate.static_limit,
-                               drive_.finger.static_limit});
+                               abs(drive_.stiffness * s.x), abs(s.plate_force),
+                               abs(s.finger_force)});
     });
-    x_scale_ = std::max(x_scale_, v_scale_ / std::sqrt(drive_.stiffness / drive_.mass));
-    v_scale_ = std::max(v_scale_, x_scale_ * std::sqrt(drive_.stiffness / drive_.mass));
-  }
-
-  /// What the contacts must carry together, N.
-  T friction_needed(const State& s) const {
-    return drive_.mass * s.a + drive_.damping * s.v + drive_.stiffness * s.x;
+    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
+    x_scale_ = std::max(x_scale_, v_scale_ / omega0);
+    v_scale_ = std::max(v_scale_, x_scale_ * omega0);
   }
 
   void laws(const Segment<T>& segment) {
     using std::abs;
-    const Mode mode = segment.mode;
-    T sliding{0}, holding{0};
-    const auto add = [&](Slide slide, const Contact<T>& contact) {
-      if (slide == Slide::stuck) holding += contact.static_limit;
-      if (slide == Slide::forward) sliding -= contact.kinetic;
-      if (slide == Slide::backward) sliding += contact.kinetic;
-    };
-    add(mode.plate, drive_.plate);
-    add(mode.finger, drive_.finger);
-
-    const auto contact = [&](Slide slide, T u) {
-      if (slide == Slide::stuck) worst(result_.sticking, u, v_scale_);
-      if (slide == Slide::forward) worst(result_.sliding_sign, std::min(u, T(0)), v_scale_);
-      if (slide == Slide::backward) worst(result_.sliding_sign, std::max(u, T(0)), v_scale_);
+    const auto contact = [&](const Contact<T>& law, Slide slide, T u, T force, T load) {
+      const int side = sign(slide);
+      if (slides(slide)) {
+        worst(result_.sliding_sign, std::min(side * u, T(0)), v_scale_);
+        worst(result_.friction_law, force + side * load * kinetic(law, abs(u)), force_scale_);
+      } else if (slide != Slide::absent) {
+        worst(result_.force_bound, std::max(abs(force) - law.static_limit * load, T(0)),
+              force_scale_);
+        if (slide == Slide::stuck) worst(result_.sticking, u, v_scale_);
+      }
     };
     samples(segment, [&](T tau) {
       const State s = state(segment, tau);
-      const T held = friction_needed(s) - sliding;
-      if (mode.stuck())
-        worst(result_.force_bound, std::max(abs(held) - holding, T(0)), force_scale_);
-      else
-        worst(result_.motion_law, held, force_scale_);
-      contact(mode.plate, s.v - motion_.inputs().mouse_velocity);
-      contact(mode.finger, s.v);
+      worst(result_.motion_law,
+            drive_.mass * (s.a - s.plate_velocity.rate) + drive_.damping * s.v +
+                drive_.stiffness * s.x - s.plate_force - s.finger_force,
+            force_scale_);
+      contact(drive_.plate, segment.mode.plate, s.v - s.plate_velocity.value, s.plate_force, s.load);
+      contact(drive_.finger, segment.mode.finger, s.v, s.finger_force, T(1));
     });
   }
 
-  /// x and v against the integrals of v and a, panel by panel.
+  /// x and v against the integrals of v and a, panel by panel; gripping skin against x.
   void derivatives(const Segment<T>& segment) {
     using std::sqrt;
     const T span = length(segment);
-    const T fastest = sqrt(drive_.stiffness / drive_.mass) + drive_.damping / drive_.mass;
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const T fastest = sqrt(oscillator.omega0_squared()) + std::abs(oscillator.alpha());
     T low{0};
     for (int panel = 0; panel < 48 && low < span; ++panel) {
       const T high = std::min(low + 1 / fastest, span);
@@ -143,33 +156,51 @@ class Certifier {
       const T dv = gauss<T>([&](T tau) { return state(segment, tau).a; }, low, high);
       worst(result_.kinematics, to.x - from.x - dx, x_scale_);
       worst(result_.kinematics, to.v - from.v - dv, v_scale_);
+      if (segment.mode.finger == Slide::gripping)
+        worst(result_.kinematics,
+              (to.finger_force - from.finger_force) / drive_.finger.stiffness + dx, x_scale_);
       low = panel < 24 ? high : high + span / 24;
     }
   }
 
   void junction(const Segment<T>& before, const Segment<T>& after) {
-    using std::abs;
     if (before.end > duration_) return;
     const State left = state(before, before.end - before.begin), right = state(after, T(0));
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
     worst(result_.continuity, before.end - after.begin, before.end);
-    if (before.event.kind == Kind::stick) return;
-
-    // Held at the level, a = 0: what the contacts of the event would have had to carry.
     const Event event = before.event;
-    T others{0}, holding{0};
-    const auto add = [&](bool of_event, Slide slide, const Contact<T>& contact) {
-      if (of_event) holding += contact.static_limit;
-      if (!of_event && slide == Slide::forward) others -= contact.kinetic;
-      if (!of_event && slide == Slide::backward) others += contact.kinetic;
-    };
-    add(event.plate, after.mode.plate, drive_.plate);
-    add(event.finger, after.mode.finger, drive_.finger);
-    const T held = drive_.damping * right.v + drive_.stiffness * right.x - others;
-    const T short_of =
-        event.kind == Kind::cross ? std::max(holding - abs(held), T(0)) : holding - abs(held);
-    worst(result_.transitions, short_of, force_scale_);
+    const bool soft = drive_.finger.present() && !drive_.finger.rigid();
+    const bool skin_slips = soft && event.finger && event.kind == Kind::slip;
+    if (soft && !skin_slips)
+      worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
+    if (skin_slips)
+      worst(result_.transitions, drive_.finger.static_limit - std::abs(left.finger_force),
+            force_scale_);
+    if (event.kind == Kind::cross || (event.kind == Kind::slip && !skin_slips))
+      cannot_hold(event, right, after.mode);
+  }
+
+  /// What the contacts of an event would have had to carry to stay, against what they could.
+  void cannot_hold(Event event, const State& now, Mode after) {
+    using std::abs;
+    const bool meets_both = now.v == 0 && now.plate_velocity.value == 0 && drive_.finger.rigid();
+    if (meets_both && !(event.plate && event.finger)) return;  // the surfaces part
+    const bool finger = event.finger && drive_.finger.rigid();
+    if (!event.plate && !finger) return;
+    const T follows = event.plate ? now.plate_velocity.rate : T(0);
+    T others{0}, limit{0};
+    if (event.plate)
+      limit += drive_.plate.static_limit * now.load;
+    else if (after.plate != Slide::absent)
+      others += now.plate_force;
+    if (finger)
+      limit += drive_.finger.static_limit;
+    else if (after.finger != Slide::absent)
+      others += now.finger_force;
+    const T held = drive_.mass * (follows - now.plate_velocity.rate) + drive_.damping * now.v +
+                   drive_.stiffness * now.x - others;
+    worst(result_.transitions, std::max(limit - abs(held), T(0)), force_scale_);
   }
 
   const Motion<T>& motion_;

@@ -158,29 +158,51 @@ class Oscillator {
   T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, slowest_{}, hurry_{};
 };
 
-/// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ.
+/// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
 template <class T>
 struct Path {
-  T start;  ///< its value at τ = 0
-  T value;  ///< the oscillating part's value at τ = 0
-  T slope;  ///< the oscillating part's derivative at τ = 0
-  T drift;  ///< slope of the line
+  T start;         ///< its value at τ = 0
+  T value;         ///< the oscillating part's value at τ = 0
+  T slope;         ///< the oscillating part's derivative at τ = 0
+  T drift{0};      ///< slope of the line
+  T curvature{0};  ///< of a pin that is carried by an accelerating plate
 
   /// What it has changed by since τ = 0.
   T change(const Transition<T>& moved, T tau) const {
-    return value * moved.decline + slope * moved.gain + drift * tau;
+    return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
   }
   T change(const Oscillator<T>& oscillator, T tau) const {
-    return change(oscillator.after(tau), tau);
+    return oscillates() ? change(oscillator.after(tau), tau) : change(Transition<T>{}, tau);
   }
   T at(const Transition<T>& moved, T tau) const { return start + change(moved, tau); }
-  T at(const Oscillator<T>& oscillator, T tau) const { return at(oscillator.after(tau), tau); }
+  T at(const Oscillator<T>& oscillator, T tau) const { return start + change(oscillator, tau); }
 
   Path derivative(const Oscillator<T>& oscillator) const {
-    return {slope + drift, slope, oscillator.bend(value, slope), T(0)};
+    return {slope + drift, slope, oscillator.bend(value, slope), curvature, T(0)};
   }
-  /// Where the path oscillates about; for drift 0 and a decaying mode, where it ends.
+  bool oscillates() const { return value != 0 || slope != 0; }
+  bool straight() const { return drift == 0 && curvature == 0; }
+
+  /// Where a straight path oscillates about and, if it decays, ends.
   T centre() const { return start - value; }
+
+  friend Path operator+(const Path& p, const Path& q) {
+    return {p.start + q.start, p.value + q.value, p.slope + q.slope, p.drift + q.drift,
+            p.curvature + q.curvature};
+  }
+  friend Path operator*(T factor, const Path& p) {
+    return {factor * p.start, factor * p.value, factor * p.slope, factor * p.drift,
+            factor * p.curvature};
+  }
+};
+
+/// A quantity that changes at a constant rate.
+template <class T>
+struct Line {
+  T value{0}, rate{0};
+
+  T at(T tau) const { return value + rate * tau; }
+  operator Path<T>() const { return {value, T(0), T(0), rate, T(0)}; }
 };
 
 /// Position, velocity and acceleration in one mode as functions of the time τ since it began.
@@ -189,19 +211,22 @@ struct Flow {
   Oscillator<T> oscillator;
   Path<T> position, velocity, acceleration;
 
-  /// Free to slide from x, v under m x'' + c x' + κ x = f; the acceleration at τ = 0 is given, so
+  /// Free to move from x, v, at y from a rest that drifts; the acceleration at τ = 0 is given, so
   /// that a start which is exactly tangential can say so.
-  static Flow sliding(const Oscillator<T>& oscillator, T x, T v, T acceleration, T rest) {
-    const T y = x - rest;
-    const T jerk = oscillator.bend(v, acceleration);
+  static Flow free(const Oscillator<T>& oscillator, T x, T v, T acceleration, T y, T drift) {
+    const T y_rate = v - drift;
+    const T jerk = oscillator.bend(y_rate, acceleration);
     return {oscillator,
-            {x, y, v, T(0)},
-            {v, v, acceleration, T(0)},
-            {acceleration, acceleration, jerk, T(0)}};
+            {x, y, y_rate, drift},
+            {v, y_rate, acceleration},
+            {acceleration, acceleration, jerk}};
   }
-  /// Stuck to a surface that moves at v.
-  static Flow stuck(const Oscillator<T>& oscillator, T x, T v) {
-    return {oscillator, {x, T(0), T(0), v}, {v, T(0), T(0), T(0)}, {T(0), T(0), T(0), T(0)}};
+  /// Stuck to a surface that moves with the given velocity.
+  static Flow stuck(const Oscillator<T>& oscillator, T x, Line<T> velocity) {
+    return {oscillator,
+            {x, T(0), T(0), velocity.value, velocity.rate},
+            velocity,
+            {velocity.rate, T(0), T(0)}};
   }
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.

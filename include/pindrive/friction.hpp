@@ -1,95 +1,210 @@
-/// Which mode follows: stick, slip or cross, at one contact or at two that share a level.
+/// Which mode follows: stick, slip or cross, at one contact or at two that share a level; and the
+/// forces of a mode.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "pindrive/model.hpp"
 
 namespace pindrive {
 
-/// Set-valued Coulomb friction of a pin x between the plate (surface velocity v_p) and the
-/// finger (surface velocity 0), as MODEL.md §2–§4 states it.
+/// The inputs from an instant on: the plate's velocity and the factor on its friction.
+template <class T>
+struct Instant {
+  Line<T> plate_velocity, load;
+};
+
+/// m x'' + c x' + κ (x − x₀) = pull: what acts on a pin that sets out from x₀.
+template <class T>
+struct Equation {
+  T damping, stiffness;
+  Line<T> pull;
+};
+
+template <class T>
+struct Forces {
+  Path<T> plate, finger;
+};
+
+/// Set-valued friction of a pin between the plate (surface velocity v_p) and the finger (surface
+/// velocity 0), as MODEL.md §2–§4 states it. A force in the skin counts like its stretch.
 template <class T>
 class Friction {
  public:
-  Friction(const Drive<T>& drive, T mouse_velocity)
-      : drive_(drive), plate_velocity_(mouse_velocity) {}
+  explicit Friction(const Drive<T>& drive) : drive_(drive) {}
 
-  T plate_velocity() const { return plate_velocity_; }
-
-  /// Friction force on the pin from the contacts that slide, N.
-  T sliding_force(Mode mode) const {
-    return -(sign(mode.plate) * drive_.plate.kinetic + sign(mode.finger) * drive_.finger.kinetic);
+  /// The motion of a pin at x whose sliding and gripping contacts act on it.
+  Equation<T> equation(Mode mode, const Instant<T>& now, T x, T skin_force) const {
+    Equation<T> sum{drive_.damping,
+                    drive_.stiffness,
+                    {drive_.mass * now.plate_velocity.rate - drive_.stiffness * x, T(0)}};
+    add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, now.plate_velocity, now.load);
+    if (mode.finger == Slide::gripping) {
+      sum.stiffness += drive_.finger.stiffness;
+      sum.pull.value -= skin_force;
+    } else {
+      add_sliding(sum, drive_.finger, mode.finger, mode.finger_region, {}, {T(1), T(0)});
+    }
+    return sum;
   }
 
   /// The velocity of the surface that a stuck pin moves with, m/s.
-  T level(Mode stuck) const { return stuck.plate == Slide::stuck ? plate_velocity_ : T(0); }
-
-  /// The force that the stuck contacts must carry to hold the pin at x, N.
-  T needed(Mode stuck, T x) const {
-    return drive_.stiffness * x + drive_.damping * level(stuck) - sliding_force(stuck);
+  Line<T> level(Mode stuck, const Instant<T>& now) const {
+    return stuck.plate == Slide::stuck ? now.plate_velocity : Line<T>{};
   }
 
   /// The largest force that the stuck contacts can carry together, N.
-  T capacity(Mode stuck) const {
-    return (stuck.plate == Slide::stuck ? drive_.plate.static_limit : T(0)) +
-           (stuck.finger == Slide::stuck ? drive_.finger.static_limit : T(0));
+  Line<T> capacity(Mode stuck, const Instant<T>& now) const {
+    Line<T> sum{};
+    if (stuck.plate == Slide::stuck)
+      sum = {drive_.plate.static_limit * now.load.value, drive_.plate.static_limit * now.load.rate};
+    if (stuck.finger == Slide::stuck) sum.value += drive_.finger.static_limit;
+    return sum;
   }
 
-  /// Where a stuck pin needs exactly this force, m.
-  T position_needing(Mode stuck, T force) const {
-    return (force - drive_.damping * level(stuck) + sliding_force(stuck)) / drive_.stiffness;
+  /// The force that the stuck contacts must carry along a flow, N.
+  Path<T> needed(const Equation<T>& equation, const Flow<T>& flow) const {
+    Path<T> moved = flow.position;
+    moved.start = T(0);
+    const Path<T> pull = equation.pull;
+    return drive_.mass * flow.acceleration + equation.damping * flow.velocity +
+           equation.stiffness * moved + T(-1) * pull;
+  }
+  /// The same at the start of a mode, with the velocity and acceleration of a level, N.
+  T needed(const Equation<T>& equation, Line<T> level) const {
+    return drive_.mass * level.rate + equation.damping * level.value - equation.pull.value;
   }
 
-  /// Mode of a pin that starts at x, v.
-  Mode starting(T x, T v) const {
-    const Mode mode{slide(drive_.plate, v - plate_velocity_), slide(drive_.finger, v)};
-    if (!mode.stuck()) return mode;
-    const T force = needed(mode, x);
-    const T limit = capacity(mode);
-    return force > limit ? released(mode, -1) : force < -limit ? released(mode, 1) : mode;
+  /// Friction on the pin along the flow of a mode, N; two stuck contacts share what is needed in
+  /// proportion to their static friction.
+  Forces<T> forces(Mode mode, const Instant<T>& now, const Equation<T>& equation,
+                   const Flow<T>& flow, T skin_force) const {
+    Forces<T> on_pin{sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
+                                   now.plate_velocity, now.load),
+                     sliding_force(drive_.finger, mode.finger, mode.finger_region, flow.velocity,
+                                   {}, {T(1), T(0)})};
+    if (mode.finger == Slide::gripping) {
+      on_pin.finger = T(-1) * (drive_.finger.stiffness * flow.position);
+      on_pin.finger.start = -skin_force;
+    }
+    if (!mode.stuck()) return on_pin;
+    const Path<T> load = needed(equation, flow);
+    const T whole = capacity(mode, now).value;
+    const T part = whole > 0 ? drive_.plate.static_limit * now.load.value / whole : T(0);
+    if (mode.finger != Slide::stuck) {
+      on_pin.plate = load;
+    } else if (mode.plate != Slide::stuck) {
+      on_pin.finger = load;
+    } else {
+      on_pin.plate = part * load;
+      on_pin.finger = (1 - part) * load;
+    }
+    return on_pin;
   }
 
-  /// Mode of a pin that, sliding, has brought the contacts of `arrived` to their level at x.
-  /// It came with a force that pushed it there, so it sticks or crosses; it cannot turn back.
-  Mode arriving(Mode sliding, Event arrived, T x) const {
-    Mode stuck = sliding;
-    if (arrived.plate) stuck.plate = Slide::stuck;
-    if (arrived.finger) stuck.finger = Slide::stuck;
-    const int side = sign(arrived.plate ? sliding.plate : sliding.finger);
-    return side * needed(stuck, x) > capacity(stuck) ? released(stuck, -side) : stuck;
+  /// Mode of a pin that starts at x, v, with or without a stretched skin.
+  Mode starting(const Instant<T>& now, T x, T v, T skin_force, bool grips) const {
+    Mode mode{touch(drive_.plate, v - now.plate_velocity.value), touch(drive_.finger, v)};
+    if (drive_.finger.present() && !drive_.finger.rigid() && (grips || v == 0))
+      mode.finger = Slide::gripping;
+    sort_regions(mode, v, now);
+    return mode.stuck() ? holding(mode, mode, now, x, skin_force) : mode;
+  }
+
+  /// Mode of a pin that, sliding, has brought one rigid contact to its level at x. It came with a
+  /// force that pushed it there, so it sticks or crosses; it cannot turn back.
+  Mode arriving(Mode stuck, int side, const Instant<T>& now, T x, T skin_force) const {
+    const T force = needed(equation(stuck, now, x, skin_force), level(stuck, now));
+    return side * force > capacity(stuck, now).value ? released(stuck, -side, now) : stuck;
+  }
+
+  /// Mode of a pin at rest against the surface of every contact marked stuck, of which those of
+  /// `before` held it until now: it stays where it can, or goes where the force takes it.
+  Mode holding(Mode stuck, Mode before, const Instant<T>& now, T x, T skin_force) const {
+    const T w = now.plate_velocity.rate;
+    if (stuck.plate != Slide::stuck || stuck.finger != Slide::stuck || w == 0) {
+      const T force = needed(equation(stuck, now, x, skin_force), level(stuck, now));
+      const T limit = capacity(stuck, now).value;
+      return force > limit ? released(stuck, -1, now) : force < -limit ? released(stuck, 1, now)
+                                                                       : stuck;
+    }
+    // The surfaces part: with the plate, with the finger, or with neither.
+    const int parting = w > 0 ? 1 : -1;
+    Mode with_plate = stuck, with_finger = stuck;
+    with_plate.finger = static_cast<Slide>(parting);
+    with_finger.plate = static_cast<Slide>(-parting);
+    const auto holds = [&](Mode mode) {
+      using std::abs;
+      const T force = needed(equation(mode, now, x, skin_force), level(mode, now));
+      return abs(force) <= capacity(mode, now).value;
+    };
+    const bool plate_first = before.plate == Slide::stuck || before.finger != Slide::stuck;
+    for (const Mode& mode : {plate_first ? with_plate : with_finger,
+                             plate_first ? with_finger : with_plate})
+      if (holds(mode)) return mode;
+    // Neither holds: the pin is thrown ahead of both or behind both, or slides between them.
+    const auto acceleration = [&](Mode mode) {
+      return -needed(equation(mode, now, x, skin_force), Line<T>{}) / drive_.mass;
+    };
+    const Mode ahead = released(stuck, 1, now), behind = released(stuck, -1, now);
+    if (acceleration(ahead) > std::max(w, T(0))) return ahead;
+    if (acceleration(behind) < std::min(w, T(0))) return behind;
+    with_plate.plate = static_cast<Slide>(-parting);
+    return with_plate;
   }
 
   /// The mode in which the stuck contacts slide to the given side.
-  static Mode released(Mode stuck, int side) {
+  Mode released(Mode stuck, int side, const Instant<T>& now) const {
     const auto slide = static_cast<Slide>(side);
-    return {stuck.plate == Slide::stuck ? slide : stuck.plate,
-            stuck.finger == Slide::stuck ? slide : stuck.finger};
+    const T v = level(stuck, now).value;
+    if (stuck.plate == Slide::stuck) stuck.plate = slide;
+    if (stuck.finger == Slide::stuck) stuck.finger = slide;
+    sort_regions(stuck, v, now);
+    return stuck;
   }
 
-  struct Forces {
-    T plate, finger;
-  };
-  /// Friction force of each contact on the pin at x, N; two stuck contacts share what is needed in
-  /// proportion to their static friction.
-  Forces forces(Mode mode, T x) const {
-    Forces forces{-sign(mode.plate) * drive_.plate.kinetic,
-                  -sign(mode.finger) * drive_.finger.kinetic};
-    if (!mode.stuck()) return forces;
-    const T load = needed(mode, x) / capacity(mode);
-    if (mode.plate == Slide::stuck) forces.plate = load * drive_.plate.static_limit;
-    if (mode.finger == Slide::stuck) forces.finger = load * drive_.finger.static_limit;
-    return forces;
+  /// Puts each sliding contact in the region of its curve that its speed lies in.
+  void sort_regions(Mode& mode, T v, const Instant<T>& now) const {
+    mode.plate_region =
+        slides(mode.plate) ? drive_.plate.region_of(sign(mode.plate) * (v - now.plate_velocity.value))
+                           : 0;
+    mode.finger_region =
+        slides(mode.finger) ? drive_.finger.region_of(sign(mode.finger) * v) : 0;
   }
 
  private:
-  static Slide slide(const Contact<T>& contact, T u) {
+  static Slide touch(const Contact<T>& contact, T u) {
     if (!contact.present()) return Slide::absent;
     return u > 0 ? Slide::forward : u < 0 ? Slide::backward : Slide::stuck;
   }
 
+  /// R = −s (F + c (s u − from)) λ with u = x' − surface, brought to the other side where it acts
+  /// on x'. A slope and a changing load do not come together.
+  static void add_sliding(Equation<T>& sum, const Contact<T>& contact, Slide slide, int index,
+                          Line<T> surface, Line<T> load) {
+    if (!slides(slide)) return;
+    const Region<T> region = contact.region(index);
+    const T drag = region.slope * load.value;
+    const T force = sign(slide) * (region.force - region.slope * region.from);
+    sum.damping += drag;
+    sum.pull.value += drag * surface.value - force * load.value;
+    sum.pull.rate += drag * surface.rate - force * load.rate;
+  }
+
+  static Path<T> sliding_force(const Contact<T>& contact, Slide slide, int index,
+                               const Path<T>& velocity, Line<T> surface, Line<T> load) {
+    Path<T> force{};
+    if (!slides(slide)) return force;
+    const Region<T> region = contact.region(index);
+    const T drag = region.slope * load.value;
+    const T constant = -sign(slide) * (region.force - region.slope * region.from);
+    force = Line<T>{constant * load.value + drag * surface.value,
+                    constant * load.rate + drag * surface.rate};
+    return drag == 0 ? force : force + (-drag) * velocity;
+  }
+
   Drive<T> drive_;
-  T plate_velocity_;
 };
 
 }  // namespace pindrive

@@ -1,6 +1,7 @@
 /// What goes into the core and what comes out of it. SI units throughout.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "pindrive/flow.hpp"
@@ -9,15 +10,42 @@ namespace pindrive {
 
 /// Every limit that is not physics, named once.
 inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
-inline constexpr double settling_band = 0.05;        ///< default band, as a part of |x(0) − x_end|
+inline constexpr int standstill_limit = 100;  ///< events at one instant after which it is given up
+inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
+inline constexpr double recurrence = 1e-14;    ///< how closely a state returns in a cycle, relative
 
-/// Dry friction at one surface. Without friction (both 0) the contact is absent.
+/// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
+template <class T>
+struct Region {
+  T from, to;   ///< m/s
+  T force;      ///< at `from`, N
+  T slope;      ///< N s/m; negative where friction falls with speed
+
+  T at(T speed) const { return force + slope * (speed - from); }
+};
+
+/// Dry friction at one surface. Without friction the contact is absent.
 template <class T>
 struct Contact {
-  T kinetic{0};       ///< friction force while it slides, N; >= 0
+  T kinetic{0};       ///< friction force when it starts to slide, N; >= 0
   T static_limit{0};  ///< largest friction force while it sticks, N; >= kinetic
+  T stiffness{std::numeric_limits<T>::infinity()};  ///< tangential, N/m; > 0, infinite if rigid
 
-  bool present() const { return static_limit > 0; }
+  /// Kinetic friction over sliding speed; none: `kinetic` at every speed (Coulomb).
+  const Region<T>* curve{nullptr};
+  int regions{0};
+
+  bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+  Region<T> region(int index) const {
+    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
+    return curve[index];
+  }
+  int region_of(T speed) const {
+    int index = 0;
+    while (index + 1 < regions && speed >= curve[index].to) ++index;
+    return index;
+  }
+  bool present() const { return static_limit > 0 || regions > 1; }
 };
 
 template <class T>
@@ -25,58 +53,102 @@ struct Drive {
   T mass;       ///< electromagnet and pin, kg; > 0
   T stiffness;  ///< spring, N/m; > 0
   T damping;    ///< damper, N s/m; >= 0
-  Contact<T> plate, finger;
+  Contact<T> plate, finger;  ///< the plate is rigid
+};
+
+/// An input over time: linear between its rows, constant outside. It owns nothing.
+template <class T>
+class Profile {
+ public:
+  Profile(T constant) : constant_(constant) {}  // NOLINT: a number is a profile
+  /// count >= 1 rows, times strictly increasing.
+  Profile(const T* times, const T* values, std::size_t count)
+      : constant_(values[0]), times_(times), values_(values), count_(count) {}
+
+  /// Value and rate from time t on, until the next row.
+  Line<T> from(T t) const {
+    const std::size_t i = rows_until(t);
+    if (i == 0) return {constant_, T(0)};
+    if (i == count_) return {values_[count_ - 1], T(0)};
+    const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
+    return {values_[i - 1] + rate * (t - times_[i - 1]), rate};
+  }
+  /// The first row after time t; infinite when there is none.
+  T next_row(T t) const {
+    const std::size_t i = rows_until(t);
+    return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
+  }
+  bool constant() const { return count_ == 0; }
+
+ private:
+  std::size_t rows_until(T t) const {
+    std::size_t i = 0;
+    while (i < count_ && times_[i] <= t) ++i;
+    return i;
+  }
+
+  T constant_;
+  const T* times_{nullptr};
+  const T* values_{nullptr};
+  std::size_t count_{0};
 };
 
 /// The release at t = 0 and what happens after it.
 template <class T>
 struct Inputs {
-  T mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
-  T displacement;    ///< x(0), m
-  T velocity;        ///< x'(0), m/s
+  Profile<T> mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
+  T displacement;             ///< x(0), m
+  T velocity;                 ///< x'(0), m/s
   T duration{std::numeric_limits<T>::infinity()};  ///< s; infinite: until the ending is known
+  Profile<T> plate_load{T(1)};                     ///< factor on the plate's friction; >= 0
+  /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
+  T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
 };
 
-/// What a contact does: the sign of its sliding velocity, stuck, or no contact.
-enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent = 2 };
+/// What a contact does: the sign of its sliding velocity, stuck, no contact, or skin that grips.
+enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent = 2, gripping = 3 };
 
-inline int sign(Slide slide) { return slide == Slide::absent ? 0 : static_cast<int>(slide); }
-inline Slide opposite(Slide slide) { return static_cast<Slide>(-sign(slide)); }
+inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
+inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
 
 struct Mode {
   Slide plate, finger;
+  int plate_region{0}, finger_region{0};  ///< of the friction curve, while sliding
 
   bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
 };
 
-/// What ended a segment, and at which contacts.
-enum class Kind : signed char { none, stick, slip, cross };
+/// What ended a segment, and at which contacts. A bend is a row of an input or of a friction curve.
+enum class Kind : signed char { none, stick, slip, cross, bend };
 
 struct Event {
   Kind kind{Kind::none};
   bool plate{false}, finger{false};
 };
 
-/// One mode from begin to end (infinite for one that lasts for ever).
+/// One mode from begin to end (infinite for one that lasts for ever), with its friction.
 template <class T>
 struct Segment {
   T begin, end;  ///< s
   Mode mode;
   Flow<T> flow;
-  Event event;  ///< at the end
+  Line<T> plate_velocity;             ///< m/s
+  Path<T> plate_force, finger_force;  ///< friction on the pin, N
+  Event event;                        ///< at the end
 };
 
 /// How a motion ends.
 enum class End : signed char {
-  moving,     ///< not known within the duration
-  resting,    ///< at rest for ever
-  decaying,   ///< free decay, no further event
-  free,       ///< undamped oscillation, no further event
-  grazing,    ///< the same, touching the plate's velocity once a period
-  stick_slip  ///< a cycle of carried and sliding phases, repeated exactly
+  moving,      ///< not known within the duration
+  resting,     ///< at rest for ever
+  decaying,    ///< free decay, no further event
+  free,        ///< undamped oscillation, no further event
+  grazing,     ///< the same, touching the plate's velocity once a period
+  stick_slip,  ///< a cycle of carried and sliding phases, repeated
+  limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
 };
 
-enum class Status : signed char { ok, too_many_events };
+enum class Status : signed char { ok, too_many_events, standstill };
 
 template <class T>
 struct Outcome {
@@ -84,8 +156,10 @@ struct Outcome {
   End end{End::moving};
   T since{std::numeric_limits<T>::quiet_NaN()};   ///< when the ending began, s
   T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
-  T until{0};        ///< end of the last segment, s; then a stick-slip cycle begins again …
+  T until{0};        ///< end of the last segment, s; then a cycle begins again …
   T cycle_begin{0};  ///< … from here, s
+
+  bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
 };
 
 }  // namespace pindrive

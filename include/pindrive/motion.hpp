@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "pindrive/friction.hpp"
 #include "pindrive/model.hpp"
 
 namespace pindrive {
@@ -25,7 +24,6 @@ class Motion {
   const Drive<T>& drive() const { return drive_; }
   const Inputs<T>& inputs() const { return inputs_; }
   const Outcome<T>& outcome() const { return outcome_; }
-  Friction<T> friction() const { return {drive_, inputs_.mouse_velocity}; }
 
   const Segment<T>* begin() const { return first_; }
   const Segment<T>* end() const { return first_ + count_; }
@@ -64,7 +62,7 @@ class Motion {
   template <class Visitor>
   void stretches(T until, Visitor&& visit) const {
     stretch(T(0), std::min(until, outcome_.until), T(1), visit);
-    if (outcome_.end != End::stick_slip || until <= outcome_.until) return;
+    if (!outcome_.cycles() || until <= outcome_.until) return;
     const T repeats = std::floor((until - outcome_.until) / outcome_.period);
     const T rest = until - outcome_.until - repeats * outcome_.period;
     if (repeats > 0) stretch(outcome_.cycle_begin, outcome_.until, repeats, visit);
@@ -72,9 +70,9 @@ class Motion {
   }
 
  private:
-  /// Time in a stick-slip cycle is brought back to the cycle that was simulated.
+  /// Time in a cycle is brought back to the cycle that was simulated.
   T folded(T t, Side side) const {
-    if (outcome_.end != End::stick_slip || t < outcome_.until) return t;
+    if (!outcome_.cycles() || t < outcome_.until) return t;
     const T cycles = std::floor((t - outcome_.until) / outcome_.period);
     const T rest = t - outcome_.until - cycles * outcome_.period;
     return rest > 0 || side == Side::right ? outcome_.cycle_begin + rest : outcome_.until;

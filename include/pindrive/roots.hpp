@@ -35,8 +35,27 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
 template <class T>
 Path<T> exact_at_start(Path<T> path, int side) {
   if (!(side * path.start > 0)) path.start = T(0);
-  if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) path.slope = -path.drift;
+  if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) {
+    if (path.oscillates())
+      path.slope = -path.drift;
+    else
+      path.drift = T(0);
+  }
   return path;
+}
+
+/// The earliest τ > 0 at which start + drift·τ + curvature·τ²/2, on its side before, leaves it.
+template <class T>
+T parabola_root(Path<T> path, int side) {
+  using std::sqrt;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  path = exact_at_start(side * path, 1);
+  const T a = path.curvature, b = path.drift, c = path.start;
+  const T square = b * b - 2 * a * c;
+  if (a == 0) return b < 0 ? -c / b : never;
+  if (!(square > 0)) return never;  // stays, or touches
+  const T root = b > 0 ? -(b + sqrt(square)) / a : 2 * c / (sqrt(square) - b);
+  return root > 0 ? root : never;
 }
 
 /// The sign changes of a path in (0, horizon], one by one; infinity when there are no more.
@@ -129,13 +148,50 @@ class Roots<T, 0> {
   long long count_{0};
 };
 
+/// Calls visit(τ) at each sign change of a path in (0, horizon], until it returns false.
+template <class T, class Visitor>
+void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon,
+               Visitor&& visit) {
+  const auto all = [&](auto roots) {
+    for (;;) {
+      const T root = roots.next();
+      if (!(root < std::numeric_limits<T>::infinity()) || !visit(root)) return;
+    }
+  };
+  if (!path.oscillates()) {
+    const T root = parabola_root(path, side);
+    if (!(root <= horizon) || !visit(root) || path.curvature == 0) return;
+    const T other = -2 * path.drift / path.curvature - root;
+    if (other > root && other <= horizon) visit(other);
+  } else if (path.drift != 0) {
+    all(Roots<T, 2>(oscillator, path, side, horizon));
+  } else if (path.centre() != 0) {
+    all(Roots<T, 1>(oscillator, path, side, horizon));
+  } else {
+    all(Roots<T, 0>(oscillator, path, side, horizon));
+  }
+}
+
 /// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
 template <class T>
 T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
-  if (path.drift == 0 && path.centre() == 0)
-    return Roots<T, 0>(oscillator, path, side, horizon).next();
-  if (path.drift == 0) return Roots<T, 1>(oscillator, path, side, horizon).next();
-  return Roots<T, 2>(oscillator, path, side, horizon).next();
+  T first = std::numeric_limits<T>::infinity();
+  each_root(oscillator, path, side, horizon, [&](T root) {
+    first = root;
+    return false;
+  });
+  return first;
+}
+
+/// The sign of a path just after τ = 0; 0 if it stays zero.
+template <class T>
+int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
+  const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
+  if (path.start != 0) return sign(path.start);
+  if (path.slope + path.drift != 0) return sign(path.slope + path.drift);
+  const T bend = oscillator.bend(path.value, path.slope) + path.curvature;
+  if (bend != 0) return sign(bend);
+  return sign(oscillator.bend(path.slope, oscillator.bend(path.value, path.slope)));
 }
 
 }  // namespace pindrive

@@ -17,22 +17,26 @@ template <class T>
 class Simulation {
  public:
   Simulation(const Drive<T>& drive, const Inputs<T>& inputs)
-      : drive_(drive),
-        friction_(drive, inputs.mouse_velocity),
-        oscillator_(drive.mass, drive.damping, drive.stiffness),
-        duration_(inputs.duration),
-        x_(inputs.displacement),
-        v_(inputs.velocity),
-        mode_(friction_.starting(x_, v_)) {}
+      : drive_(drive), inputs_(inputs), friction_(drive), x_(inputs.displacement), v_(inputs.velocity) {
+    look_ahead();
+    const bool given = !std::isnan(inputs.skin_stretch);
+    if (given) skin_ = drive.finger.stiffness * inputs.skin_stretch;
+    mode_ = friction_.starting(now_, x_, v_, skin_, given);
+  }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
+    int standing = 0;
     for (long long events = 0; events < event_limit; ++events) {
-      const Segment<T> segment = mode_.stuck() ? hold() : slide();
+      const Segment<T> segment = next();
       sink(segment);
       outcome_.until = segment.end;
-      if (segment.event.kind == Kind::none || outcome_.end == End::stick_slip) return outcome_;
-      time_ = segment.end;
+      if (segment.event.kind == Kind::none || outcome_.cycles()) return outcome_;
+      standing = segment.end > segment.begin ? 0 : standing + 1;
+      if (standing > standstill_limit) {
+        outcome_.status = Status::standstill;
+        return outcome_;
+      }
     }
     outcome_.status = Status::too_many_events;
     return outcome_;
@@ -41,102 +45,302 @@ class Simulation {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  /// Stuck at a level until the force needed outgrows the static friction.
-  Segment<T> hold() {
-    const T level = friction_.level(mode_);
-    const Flow<T> flow = Flow<T>::stuck(oscillator_, x_, level);
-    if (level == 0) return last(flow, End::resting);
+  /// Why a mode ends: a sliding velocity comes to zero, or to the lower or upper end of a region
+  /// of a friction curve; a contact cannot hold any longer; or an input has its next row.
+  enum class Cause { nothing, arrives, slower, faster, gives_way, input };
 
-    const int pull = level > 0 ? 1 : -1;
-    const T limit = pull * friction_.capacity(mode_);
-    const T x_break = friction_.position_needing(mode_, limit);
-    const T tau = std::max(T(0), (x_break - x_) / level);
-    const Event event{Kind::slip, mode_.plate == Slide::stuck, mode_.finger == Slide::stuck};
-    if (time_ + tau >= duration_) return cut(flow);
-    const Segment<T> segment{time_, time_ + tau, mode_, flow, event};
-    note_release(segment);
+  struct Exit {
+    T tau{never};
+    Cause cause{Cause::nothing};
+    bool plate{false}, finger{false};
+    int side{0};  ///< of the force that the contact cannot hold
+  };
 
-    x_ = x_break;
-    v_ = level;
-    mode_ = Friction<T>::released(mode_, -pull);
-    tangential_ = drive_.plate.kinetic == drive_.plate.static_limit;
+  // ---- one mode ----------------------------------------------------------------------------------
+
+  Segment<T> next() {
+    const Equation<T> equation = friction_.equation(mode_, now_, x_, skin_);
+    const Oscillator<T> oscillator(drive_.mass, equation.damping, equation.stiffness);
+    const Flow<T> flow = mode_.stuck()
+                             ? Flow<T>::stuck(oscillator, x_, friction_.level(mode_, now_))
+                             : free_flow(equation, oscillator);
+    const auto forces = friction_.forces(mode_, now_, equation, flow, skin_);
+    Segment<T> segment{time_, never, mode_, flow, now_.plate_velocity, forces.plate, forces.finger, {}};
+
+    const Exit exit = first_exit(segment, equation);
+    if (exit.tau == never) {
+      outcome_.end = ending(flow);
+      if (outcome_.end == End::moving) segment.end = inputs_.duration;
+      return segment;
+    }
+    if (time_ + exit.tau >= inputs_.duration) {
+      segment.end = inputs_.duration;
+      return segment;
+    }
+    leave(segment, exit);
     return segment;
   }
 
-  /// Sliding everywhere until a sliding velocity reaches zero.
-  Segment<T> slide() {
-    const T rest = friction_.sliding_force(mode_) / drive_.stiffness;
-    const T pull = friction_.sliding_force(mode_) - drive_.stiffness * x_ - drive_.damping * v_;
-    const T acceleration = tangential_ ? T(0) : pull / drive_.mass;
-    const Flow<T> flow = Flow<T>::sliding(oscillator_, x_, v_, acceleration, rest);
+  Flow<T> free_flow(const Equation<T>& equation, const Oscillator<T>& oscillator) const {
+    const T drift = equation.pull.rate / equation.stiffness;
+    const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
+    const T acceleration = tangential_
+                               ? tangent_
+                               : (equation.pull.value - equation.damping * v_) / drive_.mass;
+    return Flow<T>::free(oscillator, x_, v_, acceleration, y, drift);
+  }
 
-    const T plate = arrival(flow, mode_.plate, friction_.plate_velocity());
-    const T finger = arrival(flow, mode_.finger, T(0));
-    const T tau = std::min(plate, finger);
-    if (tau == never) return last(flow, ending(flow));
-    if (time_ + tau >= duration_) return cut(flow);
+  // ---- how it ends -------------------------------------------------------------------------------
 
-    Event event{Kind::cross, plate == tau, finger == tau};
-    x_ = flow.position.at(oscillator_, tau);
-    v_ = event.plate ? friction_.plate_velocity() : T(0);
-    const Mode next = friction_.arriving(mode_, event, x_);
-    if (next.stuck()) event.kind = Kind::stick;
-    const Segment<T> segment{time_, time_ + tau, mode_, flow, event};
-    mode_ = next;
+  Exit first_exit(const Segment<T>& segment, const Equation<T>& equation) const {
+    const Flow<T>& flow = segment.flow;
+    const Mode mode = segment.mode;
+    Exit first;
+    if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
+
+    const auto consider = [&](const Path<T>& guard, bool just_left, Exit exit) {
+      exit.tau = exit_time(flow.oscillator, guard, just_left, exit.cause, row_ - time_);
+      if (exit.tau == never || exit.tau > first.tau) return;
+      if (exit.tau == first.tau && exit.cause == first.cause) {
+        first.plate = first.plate || exit.plate;
+        first.finger = first.finger || exit.finger;
+      } else if (exit.tau < first.tau || first.cause == Cause::input) {
+        first = exit;
+      }
+    };
+    const auto sliding = [&](const Contact<T>& contact, Slide slide, int index, Line<T> surface,
+                             bool just_changed, Exit exit) {
+      if (!slides(slide)) return;
+      const Path<T> level = surface;
+      const Path<T> speed = T(sign(slide)) * (flow.velocity + T(-1) * level);
+      const Region<T> region = contact.region(index);
+      Path<T> above = speed, below = T(-1) * speed;
+      above.start -= region.from;
+      below.start += region.to;
+      exit.cause = index == 0 ? Cause::arrives : Cause::slower;
+      consider(above, just_changed, exit);
+      exit.cause = Cause::faster;
+      if (region.to < never) consider(below, just_changed, exit);
+    };
+    const auto holding = [&](const Path<T>& force, Line<T> limit, Exit exit) {
+      exit.cause = Cause::gives_way;
+      for (const int side : {1, -1}) {
+        exit.side = side;
+        const Path<T> most = limit;
+        consider(most + T(-side) * force, false, exit);
+      }
+    };
+
+    const Exit plate{never, Cause::nothing, true, false, 0};
+    const Exit finger{never, Cause::nothing, false, true, 0};
+    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, changed_plate_, plate);
+    sliding(drive_.finger, mode.finger, mode.finger_region, {}, changed_finger_, finger);
+    if (mode.finger == Slide::gripping)
+      holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
+    if (mode.stuck())
+      holding(friction_.needed(equation, flow), friction_.capacity(mode, now_),
+              {never, Cause::nothing, mode.plate == Slide::stuck, mode.finger == Slide::stuck, 0});
+    return first;
+  }
+
+  /// When a guard that is positive in this mode comes to zero. At its zero already, it has just been
+  /// left if the mode says so; else where it goes decides. A pin that stays at a level has arrived.
+  static T exit_time(const Oscillator<T>& oscillator, Path<T> guard, bool just_left, Cause cause,
+                     T horizon) {
+    if (!(guard.start > 0) && !just_left) {
+      guard.start = T(0);
+      const int goes = side_after_start(oscillator, guard);
+      if (goes < 0 || (goes == 0 && cause == Cause::arrives)) return T(0);
+    }
+    return first_root(oscillator, guard, 1, horizon);
+  }
+
+  // ---- what follows ------------------------------------------------------------------------------
+
+  /// Ends a segment and brings the state, set exactly at the event, to the next mode.
+  void leave(Segment<T>& segment, const Exit& exit) {
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const Mode before = mode_;
+    x_ = segment.flow.position.at(oscillator, exit.tau);
+    v_ = segment.flow.velocity.at(oscillator, exit.tau);
+    if (before.finger == Slide::gripping) skin_ = -segment.finger_force.at(oscillator, exit.tau);
+    segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
+    advance(exit);
+    if (before.stuck()) v_ = friction_.level(before, now_).value;
     tangential_ = false;
-    return segment;
+    changed_plate_ = exit.plate;
+    changed_finger_ = exit.finger;
+
+    switch (exit.cause) {
+      case Cause::arrives:
+        segment.event = arrive(exit);
+        break;
+      case Cause::slower:
+      case Cause::faster:
+        segment.event = change_region(exit);
+        break;
+      case Cause::gives_way:
+        segment.event = give_way(segment, exit);
+        break;
+      case Cause::input:
+      case Cause::nothing:
+        segment.event = meet_input(before);
+        break;
+    }
   }
 
-  /// When the sliding velocity at a contact next reaches zero.
-  T arrival(const Flow<T>& flow, Slide sliding, T level) const {
-    if (sliding == Slide::absent) return never;
-    Path<T> guard = flow.velocity;
-    guard.start -= level;
-    return first_root(oscillator_, guard, sign(sliding), never);
+  void advance(const Exit& exit) {
+    if (exit.cause == Cause::input) {
+      look_ahead();
+    } else {
+      now_.plate_velocity.value = now_.plate_velocity.at(exit.tau);
+      now_.load.value = now_.load.at(exit.tau);
+    }
   }
 
-  /// How a slide without a further event ends.
-  End ending(const Flow<T>& flow) const {
-    if (flow.position.value == 0 && flow.position.slope == 0) return End::resting;
-    if (oscillator_.alpha() < 0) return End::decaying;
+  void look_ahead() {
+    now_ = {inputs_.mouse_velocity.from(time_), inputs_.plate_load.from(time_)};
+    row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
+  }
+
+  Event arrive(const Exit& exit) {
+    v_ = exit.plate ? now_.plate_velocity.value : T(0);
+    if (exit.finger && !drive_.finger.rigid()) {  // skin grips, and never blocks the pin
+      skin_ = sign(mode_.finger) * drive_.finger.kinetic;
+      mode_.finger = Slide::gripping;
+      if (!exit.plate) return {Kind::stick, false, true};
+    }
+    const bool plate = exit.plate, finger = exit.finger && drive_.finger.rigid();
+    Mode stuck = mode_;
+    if (plate) stuck.plate = Slide::stuck;
+    if (finger) stuck.finger = Slide::stuck;
+    const bool parting = stuck.plate == Slide::stuck && stuck.finger == Slide::stuck &&
+                         now_.plate_velocity.rate != 0;
+    const bool held = mode_.stuck();
+    const int side = sign(plate ? mode_.plate : mode_.finger);
+    mode_ = parting || held ? friction_.holding(stuck, mode_, now_, x_, skin_)
+                            : friction_.arriving(stuck, side, now_, x_, skin_);
+    const bool sticks = plate ? mode_.plate == Slide::stuck : mode_.finger == Slide::stuck;
+    if (held) changed_plate_ = changed_finger_ = true;
+    return {sticks ? Kind::stick : Kind::cross, exit.plate, exit.finger};
+  }
+
+  Event change_region(const Exit& exit) {
+    const int step = exit.cause == Cause::faster ? 1 : -1;
+    const auto border = [&](const Contact<T>& contact, Slide slide, int& index) {
+      const Region<T> region = contact.region(index);
+      index += step;
+      return sign(slide) * (step > 0 ? region.to : region.from);
+    };
+    if (exit.plate)
+      v_ = now_.plate_velocity.value + border(drive_.plate, mode_.plate, mode_.plate_region);
+    if (exit.finger) v_ = border(drive_.finger, mode_.finger, mode_.finger_region);
+    if (exit.plate && step > 0) note_recurrence(false);
+    return {Kind::bend, exit.plate, exit.finger};
+  }
+
+  Event give_way(const Segment<T>& segment, const Exit& exit) {
+    const Event event{Kind::slip, exit.plate, exit.finger};
+    if (mode_.finger == Slide::gripping && exit.finger) {
+      mode_.finger = static_cast<Slide>(exit.side);
+      friction_.sort_regions(mode_, v_, now_);
+      return event;
+    }
+    const auto even = [](bool taken, const Contact<T>& contact) {
+      return !taken || contact.kinetic == contact.static_limit;
+    };
+    tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
+    tangent_ = friction_.level(mode_, now_).rate;
+    mode_ = friction_.released(mode_, -exit.side, now_);
+    if (exit.plate) {
+      hold_begin_ = segment.begin;
+      note_recurrence(true);
+    }
+    return event;
+  }
+
+  /// A row of an input: what holds the pin may be asked for more, or the surfaces part.
+  Event meet_input(Mode before) {
+    if (!before.stuck()) return {Kind::bend, false, false};
+    Mode stuck = before;
+    if (slides(stuck.plate) && v_ == now_.plate_velocity.value) stuck.plate = Slide::stuck;
+    if (slides(stuck.finger) && v_ == 0 && drive_.finger.rigid()) stuck.finger = Slide::stuck;
+    mode_ = friction_.holding(stuck, before, now_, x_, skin_);
+    const auto turned = [](Slide from, Slide to, Slide what) { return from == what && to != what; };
+    const Event loose{Kind::slip, turned(before.plate, mode_.plate, Slide::stuck),
+                      turned(before.finger, mode_.finger, Slide::stuck)};
+    const Event caught{Kind::stick, turned(mode_.plate, before.plate, Slide::stuck),
+                       turned(mode_.finger, before.finger, Slide::stuck)};
+    changed_plate_ = loose.plate;
+    changed_finger_ = loose.finger;
+    if (loose.plate || loose.finger) return loose;
+    return caught.plate || caught.finger ? caught : Event{Kind::bend, false, false};
+  }
+
+  // ---- how the motion ends -----------------------------------------------------------------------
+
+  /// How a mode without an exit ends.
+  End ending(const Flow<T>& flow) {
+    outcome_.since = time_;
+    if (!flow.position.oscillates())
+      return flow.velocity.start == 0 && flow.velocity.straight() ? End::resting : End::moving;
+    const T alpha = flow.oscillator.alpha();
+    if (alpha < 0) return End::decaying;
+    if (alpha > 0) return End::moving;
+    outcome_.period = flow.oscillator.zeros(T(0), T(1)).spacing * 2;
     return tangential_ ? End::grazing : End::free;
   }
 
-  Segment<T> last(const Flow<T>& flow, End end) {
-    outcome_.end = end;
-    outcome_.since = time_;
-    if (end == End::free || end == End::grazing)
-      outcome_.period = oscillator_.zeros(T(0), T(1)).spacing * 2;
-    return {time_, never, mode_, flow, {}};
-  }
-
-  Segment<T> cut(const Flow<T>& flow) const { return {time_, duration_, mode_, flow, {}}; }
-
-  /// Every release from the plate starts from the same state, so the second one closes a cycle.
-  /// It began where the first carried phase joined the one that the cycle repeats.
-  void note_release(const Segment<T>& carried) {
-    if (released_before_) {
-      outcome_.end = End::stick_slip;
-      outcome_.period = carried.end - first_release_;
-      outcome_.cycle_begin = first_release_;
-      outcome_.since = std::max(first_hold_, first_release_ - (carried.end - carried.begin));
+  /// A state that comes back closes a cycle (Brent's way to find one of any length): looked for at
+  /// releases from the plate and where the pin slides faster than a row of the plate's curve.
+  void note_recurrence(bool release) {
+    if (row_ < never) return;
+    using std::abs;
+    using std::sqrt;
+    const T size = abs(x_) + abs(v_) * sqrt(drive_.mass / drive_.stiffness);
+    const auto same = [](T one, T other, T scale) {
+      return abs(one - other) <= T(recurrence) * scale;
+    };
+    if (marks_ > 0 && mark_.mode.plate == mode_.plate && mark_.mode.finger == mode_.finger &&
+        mark_.mode.plate_region == mode_.plate_region && same(mark_.x, x_, size) &&
+        same(mark_.v, v_, size * sqrt(drive_.stiffness / drive_.mass)) &&
+        same(mark_.skin, skin_, drive_.finger.static_limit)) {
+      outcome_.end = release || mark_.released ? End::stick_slip : End::limit_cycle;
+      outcome_.period = time_ - mark_.time;
+      outcome_.cycle_begin = outcome_.since = mark_.time;
+      // The cycle began where the first carried phase joined the one that it repeats.
+      if (release && mode_.finger != Slide::gripping)
+        outcome_.since = std::max(mark_.hold_begin, mark_.time - (time_ - hold_begin_));
+      return;
     }
-    released_before_ = true;
-    first_release_ = carried.end;
-    first_hold_ = carried.begin;
+    mark_.released = mark_.released || release;
+    if ((marks_ & (marks_ + 1)) == 0) mark_ = {time_, x_, v_, skin_, hold_begin_, mode_, release};
+    ++marks_;
   }
+
+  struct Mark {
+    T time, x, v, skin, hold_begin;
+    Mode mode;
+    bool released;
+  };
 
   Drive<T> drive_;
+  Inputs<T> inputs_;
   Friction<T> friction_;
-  Oscillator<T> oscillator_;
-  T duration_;
 
   T time_{0}, x_, v_;
-  Mode mode_;
-  bool tangential_{false};  ///< the pin has just left the plate with no relative acceleration
+  T skin_{0};  ///< force in a gripping skin, N
+  Mode mode_{};
+  Instant<T> now_{};
+  T row_{never};  ///< time of the next row of an input, s
 
-  bool released_before_{false};
-  T first_release_{}, first_hold_{};
+  bool changed_plate_{true}, changed_finger_{true};  ///< by the last event: their zeros are no roots
+  bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
+  T tangent_{0};            ///< … at this acceleration
+
+  Mark mark_{};
+  long long marks_{0};
+  T hold_begin_{0};
   Outcome<T> outcome_{};
 };
 

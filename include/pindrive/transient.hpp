@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "pindrive/motion.hpp"
+#include "pindrive/quadrature.hpp"
 #include "pindrive/roots.hpp"
 
 namespace pindrive {
@@ -14,8 +16,8 @@ namespace pindrive {
 template <class T>
 struct ContactUse {
   T reversals{0};      ///< how often its sliding velocity came to zero
-  T time_stuck{0};     ///< s
-  T distance_slid{0};  ///< m
+  T time_stuck{0};     ///< or gripping, s
+  T distance_slid{0};  ///< by the pin over the surface, m
   T dissipated{0};     ///< J
   T peak_force{0};     ///< largest friction force, N
 };
@@ -24,17 +26,31 @@ template <class T>
 struct Transient {
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
-  T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
-  T trough_displacement{none},
-      trough_time{none};  ///< x_m,c at t_c; t_c infinite if only approached
-  T swing{none};          ///< (17), m
+  T peak_displacement{none}, peak_time{none};        ///< x_m,a at t_a: m, s
+  T trough_displacement{none}, trough_time{none};    ///< x_m,c at t_c; t_c infinite if only approached
+  T swing{none};                                     ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
-  T first_reversal_time{none};                          ///< t_1, s
-  T settling_time{none};                                ///< s
+  T first_reversal_time{none};                       ///< t_1, s
+  T settling_time{none};                             ///< s
+  T peak_stretch{none}, peak_stretch_rate{none};     ///< largest of a compliant finger's: m, m/s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
   ContactUse<T> plate, finger;
 };
+
+/// Calls visit(τ, value) at both ends of a stretch of a path and at each extremum between them.
+template <class T, class Visitor>
+void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, path.at(oscillator, from));
+  const Path<T> slope = path.derivative(oscillator);
+  const int side = side_after_start(oscillator, slope);
+  if (side != 0)
+    each_root(oscillator, slope, side, to, [&](T tau) {
+      if (tau > from) visit(tau, path.at(oscillator, tau));
+      return true;
+    });
+  visit(to, path.at(oscillator, to));
+}
 
 /// Measures a motion over [0, duration]; what happens later, or never, is NaN.
 template <class T>
@@ -63,21 +79,6 @@ class Measurement {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  T settled_after(T x_end, T band) const {
-    using std::abs;
-    const Outcome<T>& outcome = motion_.outcome();
-    T since = Transient<T>::none;
-    if (outcome.end == End::moving) return since;
-    if (outcome.end != End::resting && outcome.end != End::decaying) {
-      since = outcome.since;
-    } else {
-      const T width = band * abs(motion_.begin()->flow.position.start - x_end);
-      since = T(0);
-      for (const Segment<T>& segment : motion_) follow_band(segment, x_end, width, since);
-    }
-    return since <= duration_ && since < never ? since : Transient<T>::none;
-  }
-
   T length(const Segment<T>& segment) const {
     return std::min(segment.end, duration_) - segment.begin;
   }
@@ -86,16 +87,14 @@ class Measurement {
 
   /// The direction in which the pin moves just after a segment begins; 0 at rest.
   static int heading(const Flow<T>& flow) {
-    const Path<T>& v = flow.velocity;
-    if (v.start != 0) return sign_of(v.start);
-    if (v.slope + v.drift != 0) return sign_of(v.slope + v.drift);
-    return sign_of(flow.oscillator.bend(v.value, v.slope));
+    return side_after_start(flow.oscillator, flow.velocity);
   }
 
   /// Calls visit(time, position) at each turning point in order until it returns false.
   template <class Visitor>
   void turning_points(Visitor&& visit) const {
     int direction = 0;
+    bool more = true;
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_) return;
       const Flow<T>& flow = segment.flow;
@@ -103,19 +102,19 @@ class Measurement {
       if (direction * start < 0 || (direction != 0 && start == 0))
         if (!visit(segment.begin, flow.position.start)) return;
       direction = start;
-      if (direction == 0 || segment.mode.stuck() || turns_end_it(segment)) continue;
-      Roots<T, 1> turns(flow.oscillator, flow.velocity, direction, length(segment));
-      for (T tau = turns.next(); tau < never; tau = turns.next()) {
-        if (!visit(segment.begin + tau, flow.position.at(flow.oscillator, tau))) return;
+      if (direction == 0) continue;
+      // A velocity of zero that ends the segment belongs to the next one.
+      const Segment<T>* following = &segment + 1;
+      const bool turns_at_end =
+          following != motion_.end() && following->flow.velocity.start == 0;
+      const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
+      each_root(flow.oscillator, flow.velocity, direction, inside, [&](T tau) {
         direction = -direction;
-      }
+        more = visit(segment.begin + tau, flow.position.at(flow.oscillator, tau));
+        return more;
+      });
+      if (!more) return;
     }
-  }
-
-  /// Whether a velocity of zero is an event, so that no turning point lies inside the segment.
-  bool turns_end_it(const Segment<T>& segment) const {
-    return segment.mode.finger != Slide::absent ||
-           (segment.mode.plate != Slide::absent && motion_.inputs().mouse_velocity == 0);
   }
 
   /// Peak, trough, swing and the extreme velocity between them.
@@ -123,7 +122,7 @@ class Measurement {
     const Inputs<T>& inputs = motion_.inputs();
     int outward = sign_of(inputs.displacement);
     if (outward == 0) outward = sign_of(inputs.velocity);
-    if (outward == 0) outward = sign_of(inputs.mouse_velocity);
+    if (outward == 0) outward = sign_of(inputs.mouse_velocity.from(T(0)).value);
     if (heading(motion_.begin()->flow) != outward) {
       result.peak_time = T(0);
       result.peak_displacement = inputs.displacement;
@@ -143,36 +142,32 @@ class Measurement {
       result.trough_time = never;
       result.trough_displacement = std::prev(motion_.end())->flow.position.centre();
     }
-    result.swing =
-        (result.peak_displacement - result.trough_displacement) * (outward == 0 ? 1 : outward);
-    return_velocity(result, outward == 0 ? 1 : outward);
+    const int sign = outward == 0 ? 1 : outward;
+    result.swing = (result.peak_displacement - result.trough_displacement) * sign;
+    return_velocity(result, sign);
   }
 
   void return_velocity(Transient<T>& result, int outward) const {
-    const T until = std::isnan(result.trough_time) ? duration_ : result.trough_time;
-    const auto consider = [&](T time, T velocity) {
-      if (time < result.peak_time || time > until || -outward * velocity <= 0) return;
-      if (outward * velocity >= outward * result.return_velocity) return;
-      result.return_velocity = velocity;
-      result.return_velocity_time = time;
-    };
+    const T until = std::min(std::isnan(result.trough_time) ? duration_ : result.trough_time,
+                             duration_);
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > until || segment.begin > duration_) break;
-      const Flow<T>& flow = segment.flow;
-      consider(segment.begin, flow.velocity.start);
-      if (segment.mode.stuck()) continue;
-      const Zeros<T> level =
-          flow.oscillator.zeros(flow.acceleration.start, flow.acceleration.slope);
-      const T stop = std::min(length(segment), until - segment.begin);
-      for (T tau = level.first; tau <= stop; tau += level.spacing)
-        consider(segment.begin + tau, flow.velocity.at(flow.oscillator, tau));
+      if (segment.begin > until) break;
+      const T from = std::max(result.peak_time - segment.begin, T(0));
+      const T to = std::min(segment.end, until) - segment.begin;
+      if (from > to) continue;
+      extrema(segment.flow.oscillator, segment.flow.velocity, from, to, [&](T tau, T velocity) {
+        if (-outward * velocity <= 0) return;
+        if (outward * velocity >= outward * result.return_velocity) return;
+        result.return_velocity = velocity;
+        result.return_velocity_time = segment.begin + tau;
+      });
     }
   }
 
   void first_reversal(Transient<T>& result) const {
     for (const Segment<T>& segment : motion_) {
       if (segment.end > duration_) return;
-      if (!segment.event.plate || segment.event.kind == Kind::slip) continue;
+      if (!segment.event.plate || !came_to_zero(segment.event)) continue;
       result.first_reversal_time = segment.end;
       return;
     }
@@ -196,6 +191,7 @@ class Measurement {
         result.amplitude = last.amplitude();
         return;
       case End::stick_slip:
+      case End::limit_cycle:
         break;
     }
     T low = never, high = -never;
@@ -205,45 +201,36 @@ class Measurement {
       high = std::max(high, position);
       return true;
     };
-    Measurement(motion_, never).turning_points(widen);
+    Measurement(motion_, outcome.until).turning_points(widen);
     result.end_position = (low + high) / 2;
     result.amplitude = (high - low) / 2;
+  }
+
+  static bool came_to_zero(Event event) {
+    return event.kind == Kind::stick || event.kind == Kind::cross;
+  }
+
+  T settled_after(T x_end, T band) const {
+    using std::abs;
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.end == End::moving) return Transient<T>::none;
+    T since = outcome.since;
+    if (outcome.end == End::resting || outcome.end == End::decaying) {
+      const T width = band * abs(motion_.begin()->flow.position.start - x_end);
+      since = T(0);
+      for (const Segment<T>& segment : motion_) follow_band(segment, x_end, width, since);
+    }
+    return since <= duration_ && since < never ? since : Transient<T>::none;
   }
 
   /// Follows |x − x_end| against the width through one segment, from extremum to extremum.
   void follow_band(const Segment<T>& segment, T x_end, T width, T& since) const {
     using std::abs;
-    using std::log;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
-    const bool lasts = !std::isfinite(segment.end);
-    if (segment.mode.stuck() && lasts) return;  // at x_end
-
-    const T length = segment.end - segment.begin;
-    const Zeros<T> turns = segment.mode.stuck()
-                               ? Zeros<T>{never, never}
-                               : oscillator.zeros(x.slope, segment.flow.velocity.slope);
-    T low = T(0), high = std::min(turns.first, length);
-    T before = x.start - x_end;
-    if (abs(before) > width) since = never;
-    if (lasts && !(width > 0)) {  // approached for ever
-      since = never;
-      return;
-    }
-    const bool shrinks = lasts && turns.spacing < never;
-    const T extremum = shrinks ? abs(x.at(oscillator, high) - x_end) : T(0);
-    if (extremum > width) {
-      // The extrema of a free decay shrink by one factor, so the last one outside is known.
-      const T count = std::floor(log(extremum / width) / (-oscillator.alpha() * turns.spacing));
-      low = high + count * turns.spacing;
-      high = low + turns.spacing;
-      before = x.at(oscillator, low) - x_end;
-      since = never;
-    }
-    for (;;) {
-      const bool tail = !std::isfinite(high);
-      if (tail) high = settled_by(oscillator, x, x_end, width, low);
-      const T after = x.at(oscillator, high) - x_end;
+    T low{0}, before = x.start - x_end;
+    const auto follow_to = [&](T high, T position) {
+      const T after = position - x_end;
       if (abs(after) > width) {
         since = never;
       } else if (abs(before) > width) {
@@ -252,50 +239,100 @@ class Measurement {
         distance.start -= x_end + side * width;
         since = segment.begin + root_between(oscillator, distance, low, high, side);
       }
-      if (tail || high >= length || (shrinks && abs(after) <= width)) return;
       low = high;
       before = after;
-      high = std::min(low + turns.spacing, length);
+    };
+    if (abs(before) > width) since = never;
+    if (std::isfinite(segment.end)) {
+      extrema(oscillator, x, T(0), segment.end - segment.begin, follow_to);
+      return;
+    }
+    if (!x.oscillates()) return;  // at x_end
+    if (!(width > 0)) {           // approached for ever
+      since = never;
+      return;
+    }
+    const Zeros<T> turns = oscillator.zeros(x.slope, segment.flow.velocity.slope);
+    if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
+    if (turns.spacing < never && abs(before) > width) {
+      // The extrema of a free decay shrink by one factor, so the last one outside is known.
+      using std::log;
+      const T count =
+          std::floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
+      low = turns.first + count * turns.spacing;
+      before = x.at(oscillator, low) - x_end;
+      while (abs(before) > width)
+        follow_to(low + turns.spacing, x.at(oscillator, low + turns.spacing));
+    } else if (turns.spacing == never) {
+      T step = -1 / oscillator.slowest_rate();
+      while (abs(x.at(oscillator, low + step) - x_end) > width && step < T(1e300)) step *= 2;
+      follow_to(low + step, x.at(oscillator, low + step));
     }
   }
 
-  /// A time by which a monotone decay towards x_end has come within the width.
-  static T settled_by(const Oscillator<T>& oscillator, const Path<T>& x, T x_end, T width, T from) {
-    using std::abs;
-    T step = -1 / oscillator.slowest_rate();
-    while (abs(x.at(oscillator, from + step) - x_end) > width && step < T(1e300)) step *= 2;
-    return from + step;
+  void contacts(Transient<T>& result) const {
+    const Drive<T>& drive = motion_.drive();
+    const bool skin = drive.finger.present() && !drive.finger.rigid();
+    if (skin) result.peak_stretch = result.peak_stretch_rate = T(0);
+    motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
+      const bool whole = to >= segment.end - segment.begin;
+      const bool came = whole && came_to_zero(segment.event);
+      use(result.plate, segment, segment.mode.plate, segment.plate_velocity, segment.plate_force,
+          came && segment.event.plate, from, to, times);
+      use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
+          came && segment.event.finger, from, to, times);
+      if (!skin) return;
+      result.finger.dissipated += times * skin_loss(segment, from, to, whole);
+      const Oscillator<T>& oscillator = segment.flow.oscillator;
+      const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
+      peak(result.peak_stretch, oscillator, stretch, from, to);
+      peak(result.peak_stretch_rate, oscillator, stretch.derivative(oscillator), from, to);
+    });
   }
 
-  void contacts(Transient<T>& result) const {
-    motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
-      const Oscillator<T>& oscillator = segment.flow.oscillator;
-      const T x_from = segment.flow.position.at(oscillator, from);
-      const T x_to = segment.flow.position.at(oscillator, to);
-      const T moved = segment.flow.position.change(oscillator, to) -
-                      segment.flow.position.change(oscillator, from);
-      const auto use = [&](ContactUse<T>& contact, Slide slide, const Contact<T>& law, T surface,
-                           bool arrived, T force_from, T force_to) {
-        using std::abs;
-        if (slide == Slide::absent) return;
-        if (slide == Slide::stuck) {
-          contact.time_stuck += times * (to - from);
-        } else {
-          const T distance = abs(moved - surface * (to - from));
-          contact.distance_slid += times * distance;
-          contact.dissipated += times * law.kinetic * distance;
-          const bool stopped = arrived && to >= segment.end - segment.begin;
-          if (stopped && segment.event.kind != Kind::slip) contact.reversals += times;
-        }
-        contact.peak_force = std::max({contact.peak_force, abs(force_from), abs(force_to)});
-      };
-      const auto at_from = motion_.friction().forces(segment.mode, x_from);
-      const auto at_to = motion_.friction().forces(segment.mode, x_to);
-      use(result.plate, segment.mode.plate, motion_.drive().plate, motion_.inputs().mouse_velocity,
-          segment.event.plate, at_from.plate, at_to.plate);
-      use(result.finger, segment.mode.finger, motion_.drive().finger, T(0), segment.event.finger,
-          at_from.finger, at_to.finger);
+  static void peak(T& largest, const Oscillator<T>& oscillator, const Path<T>& path, T from, T to) {
+    extrema(oscillator, path, from, to, [&](T, T value) {
+      using std::abs;
+      largest = std::max(largest, abs(value));
     });
+  }
+
+  void use(ContactUse<T>& contact, const Segment<T>& segment, Slide slide, Line<T> surface,
+           const Path<T>& force, bool came_to_zero, T from, T to, T times) const {
+    using std::abs;
+    if (slide == Slide::absent) return;
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    peak(contact.peak_force, oscillator, force, from, to);
+    if (!slides(slide)) {
+      contact.time_stuck += times * (to - from);
+      return;
+    }
+    const Path<T>& x = segment.flow.position;
+    const T moved = x.change(oscillator, to) - x.change(oscillator, from);
+    const T distance = abs(moved - (surface.at(from) + surface.at(to)) / 2 * (to - from));
+    contact.distance_slid += times * distance;
+    if (came_to_zero) contact.reversals += times;
+    const bool constant = !force.oscillates() && force.straight();
+    contact.dissipated +=
+        times * (constant ? abs(force.start) * distance
+                          : integral(oscillator, from, to, [&](T tau) {
+                              const T u = segment.flow.velocity.at(oscillator, tau) - surface.at(tau);
+                              return -force.at(oscillator, tau) * u;
+                            }));
+  }
+
+  /// What a stretched skin gives to its slider, or takes from it, beside the pin's own sliding, J.
+  T skin_loss(const Segment<T>& segment, T from, T to, bool whole) const {
+    const Contact<T>& finger = motion_.drive().finger;
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const auto energy = [&](T force) { return force * force / (2 * finger.stiffness); };
+    const T start = energy(segment.finger_force.at(oscillator, from));
+    const T end = energy(segment.finger_force.at(oscillator, to));
+    if (slides(segment.mode.finger)) return start - end;
+    if (!whole || segment.event.kind != Kind::slip || !segment.event.finger) return T(0);
+    using std::abs;
+    const T speed = abs(segment.flow.velocity.at(oscillator, to));
+    return end - energy(finger.region(finger.region_of(speed)).at(speed));
   }
 
   const Motion<T>& motion_;
@@ -324,6 +361,7 @@ T duration_of(const Motion<T>& motion) {
     case End::grazing:
       return outcome.since + 3 * outcome.period;
     case End::stick_slip:
+    case End::limit_cycle:
       return outcome.until + 3 * outcome.period;
     case End::moving:
       break;

@@ -1,9 +1,15 @@
 // Arrays in and out of the exact core. No logic lives here.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -30,34 +36,85 @@ Array<T> to_array(std::vector<T>&& values) {
   return Array<T>(owned->data(), {owned->size()}, owner);
 }
 
-/// A motion that owns its segments.
+using Rows = std::vector<std::pair<double, double>>;
+using Regions = std::vector<std::tuple<double, double, double, double>>;
+
+/// One contact as it comes from Python: kinetic, static, stiffness, and the regions of a curve.
+struct ContactRows {
+  double kinetic, static_limit, stiffness;
+  std::vector<pd::Region<double>> regions;
+
+  ContactRows(double kinetic, double static_limit, double stiffness, const Regions& curve)
+      : kinetic(kinetic), static_limit(static_limit), stiffness(stiffness) {
+    for (const auto& [from, to, force, slope] : curve) regions.push_back({from, to, force, slope});
+  }
+  pd::Contact<double> view() const {
+    return {kinetic, static_limit, stiffness, regions.data(), static_cast<int>(regions.size())};
+  }
+};
+
+/// An input as it comes from Python: one row is a constant.
+struct ProfileRows {
+  std::vector<double> times, values;
+
+  explicit ProfileRows(const Rows& rows) {
+    for (const auto& [time, value] : rows) {
+      times.push_back(time);
+      values.push_back(value);
+    }
+  }
+  pd::Profile<double> view() const {
+    if (times.size() == 1) return {values[0]};
+    return {times.data(), values.data(), times.size()};
+  }
+};
+
+/// A motion that owns its inputs and its segments.
 class CoreMotion {
  public:
-  CoreMotion(const pd::Drive<double>& drive, const pd::Inputs<double>& inputs)
-      : drive_(drive), inputs_(inputs) {
-    outcome_ = pd::simulate(drive, inputs,
-                            [this](const pd::Segment<double>& s) { segments_.push_back(s); });
-  }
+  CoreMotion(double mass, double stiffness, double damping, ContactRows plate, ContactRows finger,
+             ProfileRows mouse_velocity, ProfileRows plate_load, double displacement,
+             double velocity, double skin_stretch, double duration)
+      : plate_(std::move(plate)),
+        finger_(std::move(finger)),
+        mouse_velocity_(std::move(mouse_velocity)),
+        plate_load_(std::move(plate_load)),
+        drive_{mass, stiffness, damping, plate_.view(), finger_.view()},
+        inputs_{mouse_velocity_.view(), displacement, velocity,
+                duration,               plate_load_.view(), skin_stretch},
+        outcome_(pd::simulate(drive_, inputs_, [this](const pd::Segment<double>& segment) {
+          segments_.push_back(segment);
+        })) {}
+
   pd::Motion<double> view() const {
     return {drive_, inputs_, segments_.data(), segments_.size(), outcome_};
   }
   const std::vector<pd::Segment<double>>& segments() const { return segments_; }
   const pd::Outcome<double>& outcome() const { return outcome_; }
+  const pd::Drive<double>& drive() const { return drive_; }
 
  private:
+  ContactRows plate_, finger_;
+  ProfileRows mouse_velocity_, plate_load_;
   pd::Drive<double> drive_;
   pd::Inputs<double> inputs_;
   std::vector<pd::Segment<double>> segments_;
   pd::Outcome<double> outcome_;
 };
 
-CoreMotion simulate(double mass, double stiffness, double damping, double plate_kinetic,
-                    double plate_static, double finger_kinetic, double finger_static,
-                    double mouse_velocity, double displacement, double velocity, double duration) {
+using ContactNumbers = std::tuple<double, double, double, Regions>;
+
+std::unique_ptr<CoreMotion> simulate(double mass, double stiffness, double damping,
+                                     const ContactNumbers& plate, const ContactNumbers& finger,
+                                     const Rows& mouse_velocity, const Rows& plate_load,
+                                     double displacement, double velocity, double skin_stretch,
+                                     double duration) {
   const nb::gil_scoped_release unlocked;
-  return {
-      {mass, stiffness, damping, {plate_kinetic, plate_static}, {finger_kinetic, finger_static}},
-      {mouse_velocity, displacement, velocity, duration}};
+  return std::make_unique<CoreMotion>(mass, stiffness, damping,
+                                      std::make_from_tuple<ContactRows>(plate),
+                                      std::make_from_tuple<ContactRows>(finger),
+                                      ProfileRows(mouse_velocity), ProfileRows(plate_load),
+                                      displacement, velocity, skin_stretch, duration);
 }
 
 /// f(segment, τ) at each time.
@@ -85,12 +142,23 @@ Array<double> evaluate(const CoreMotion& motion, const Times& times, bool right)
   });
 }
 
-template <double pd::Friction<double>::Forces::* contact>
+using ForcePath = pd::Path<double> pd::Segment<double>::*;
+
+template <ForcePath path>
 Array<double> force(const CoreMotion& motion, const Times& times, bool right) {
-  const auto friction = motion.view().friction();
-  return at_times(motion, times, right, [&](const pd::Segment<double>& segment, double tau) {
-    const double x = segment.flow.position.at(segment.flow.oscillator, tau);
-    return friction.forces(segment.mode, x).*contact;
+  return at_times(motion, times, right, [](const pd::Segment<double>& segment, double tau) {
+    return (segment.*path).at(segment.flow.oscillator, tau);
+  });
+}
+
+/// Stretch of a compliant finger's skin, or how fast it grows.
+template <bool rate>
+Array<double> stretch(const CoreMotion& motion, const Times& times, bool right) {
+  const double stiffness = motion.drive().finger.stiffness;
+  return at_times(motion, times, right, [=](const pd::Segment<double>& segment, double tau) {
+    const auto& oscillator = segment.flow.oscillator;
+    const auto& force = segment.finger_force;
+    return -(rate ? force.derivative(oscillator) : force).at(oscillator, tau) / stiffness;
   });
 }
 
@@ -112,6 +180,8 @@ nb::dict segments(const CoreMotion& motion) {
       column<double>(motion, [](const Segment& s) { return s.flow.position.start; });
   table["velocity"] =
       column<double>(motion, [](const Segment& s) { return s.flow.velocity.start; });
+  table["acceleration"] =
+      column<double>(motion, [](const Segment& s) { return s.flow.acceleration.start; });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
   table["event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.kind; });
@@ -143,6 +213,8 @@ nb::dict transient(const CoreMotion& motion, double duration, double band) {
   d["return_velocity_time"] = t.return_velocity_time;
   d["first_reversal_time"] = t.first_reversal_time;
   d["settling_time"] = t.settling_time;
+  d["peak_stretch"] = t.peak_stretch;
+  d["peak_stretch_rate"] = t.peak_stretch_rate;
   d["end_position"] = t.end_position;
   d["amplitude"] = t.amplitude;
   d["plate"] = contact_use(t.plate);
@@ -157,7 +229,10 @@ nb::dict ledger(const CoreMotion& motion, double duration) {
   d["kinetic_end"] = l.kinetic_end;
   d["spring_start"] = l.spring_start;
   d["spring_end"] = l.spring_end;
+  d["skin_start"] = l.skin_start;
+  d["skin_end"] = l.skin_end;
   d["plate_work"] = l.plate_work;
+  d["inertia_work"] = l.inertia_work;
   d["damper_dissipated"] = l.damper_dissipated;
   d["plate_dissipated"] = l.plate_dissipated;
   d["finger_dissipated"] = l.finger_dissipated;
@@ -171,6 +246,7 @@ nb::dict certificate(const CoreMotion& motion, double duration) {
   nb::dict d;
   d["motion_law"] = c.motion_law;
   d["kinematics"] = c.kinematics;
+  d["friction_law"] = c.friction_law;
   d["force_bound"] = c.force_bound;
   d["sliding_sign"] = c.sliding_sign;
   d["sticking"] = c.sticking;
@@ -190,8 +266,10 @@ NB_MODULE(_core, m) {
       .def("position", &evaluate<&pd::Flow<double>::position>, "times"_a, "right"_a)
       .def("velocity", &evaluate<&pd::Flow<double>::velocity>, "times"_a, "right"_a)
       .def("acceleration", &evaluate<&pd::Flow<double>::acceleration>, "times"_a, "right"_a)
-      .def("plate_force", &force<&pd::Friction<double>::Forces::plate>, "times"_a, "right"_a)
-      .def("finger_force", &force<&pd::Friction<double>::Forces::finger>, "times"_a, "right"_a)
+      .def("plate_force", &force<&pd::Segment<double>::plate_force>, "times"_a, "right"_a)
+      .def("finger_force", &force<&pd::Segment<double>::finger_force>, "times"_a, "right"_a)
+      .def("stretch", &stretch<false>, "times"_a, "right"_a)
+      .def("stretch_rate", &stretch<true>, "times"_a, "right"_a)
       .def("segments", &segments, "Columns, one row a segment.")
       .def("transient", &transient, "duration"_a, "band"_a)
       .def("ledger", &ledger, "duration"_a)
@@ -203,12 +281,14 @@ NB_MODULE(_core, m) {
       .def_prop_ro("end", [](const CoreMotion& c) { return static_cast<int>(c.outcome().end); })
       .def_prop_ro("since", [](const CoreMotion& c) { return c.outcome().since; })
       .def_prop_ro("period", [](const CoreMotion& c) { return c.outcome().period; })
+      .def_prop_ro("cycle_begin", [](const CoreMotion& c) { return c.outcome().cycle_begin; })
       .def_prop_ro("until", [](const CoreMotion& c) { return c.outcome().until; });
 
-  m.def("simulate", &simulate, "mass"_a, "stiffness"_a, "damping"_a, "plate_kinetic"_a,
-        "plate_static"_a, "finger_kinetic"_a, "finger_static"_a, "mouse_velocity"_a,
-        "displacement"_a, "velocity"_a, "duration"_a,
-        "Simulates one pin from its release until its ending is known or the duration is over.");
+  m.def("simulate", &simulate, "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a,
+        "mouse_velocity"_a, "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a,
+        "duration"_a,
+        "Simulates one pin from its release until its ending is known or the duration is over. "
+        "Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, value).");
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
 }

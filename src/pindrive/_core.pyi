@@ -1,5 +1,6 @@
 """The exact core. All quantities in SI units; nothing is checked here."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy
@@ -18,6 +19,10 @@ class Motion:
     def plate_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
 
     def finger_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def stretch(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def stretch_rate(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
 
     def segments(self) -> dict:
         """Columns, one row a segment."""
@@ -47,11 +52,14 @@ class Motion:
     def period(self) -> float: ...
 
     @property
+    def cycle_begin(self) -> float: ...
+
+    @property
     def until(self) -> float: ...
 
-def simulate(mass: float, stiffness: float, damping: float, plate_kinetic: float, plate_static: float, finger_kinetic: float, finger_static: float, mouse_velocity: float, displacement: float, velocity: float, duration: float) -> Motion:
+def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float, float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float, float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, duration: float) -> Motion:
     """
-    Simulates one pin from its release until its ending is known or the duration is over.
+    Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, value).
     """
 
 settling_band: float = 0.05

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, isinf, sqrt
 from typing import TYPE_CHECKING, overload
 
@@ -62,6 +63,29 @@ class Contact:
         """Whether the contact carries no force at all: it is as good as absent."""
         return self.static_friction == 0.0 and (
             self.curve is None or not any(force for _, force in self.curve)
+        )
+
+    @property
+    def regions(self) -> tuple[tuple[float, float, float, float], ...]:
+        """The curve as (from speed, to speed, force at from, slope), empty if Coulomb.
+
+        The last slope goes on; where it falls, until the force is zero: friction never pushes.
+        """
+        if self.curve is None or len(self.curve) == 1:
+            return ()
+        rows = list(self.curve)
+        slopes = [(f1 - f0) / (u1 - u0) for (u0, f0), (u1, f1) in pairwise(rows)]
+        speed, force = rows[-1]
+        if slopes[-1] < 0.0:
+            if force > 0.0:
+                slopes.append(slopes[-1])
+                rows.append((speed - force / slopes[-1], 0.0))
+            slopes.append(0.0)
+        else:
+            slopes.append(slopes[-1])
+        ends = [u for u, _ in rows[1:]] + [inf]
+        return tuple(
+            (u, end, f, slope) for (u, f), end, slope in zip(rows, ends, slopes, strict=True)
         )
 
     @property

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from math import inf
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
 from pindrive import _core
-from pindrive.drive import Drive, Profile
+from pindrive.drive import Contact, Drive, Profile
 from pindrive.quantities import QUANTITIES, check, refusal
 from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
 
@@ -30,7 +30,7 @@ ModeName = Literal["slip", "carried", "resting"]
 # In the order of `Kind` and `Slide` in model.hpp.
 _KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
 _CONTACTS: tuple[Literal["plate", "finger", "both"], ...] = ("plate", "finger", "both")
-_ABSENT = 2
+_SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +63,7 @@ class Segment:
     plate: int | None
     """Sign of the sliding velocity, 0 while stuck, None for a frictionless contact."""
     finger: int | None
+    """The same; 0 also while compliant skin grips."""
 
 
 class Motion:
@@ -70,10 +71,10 @@ class Motion:
 
     Attributes:
         drive: the drive that was simulated.
-        mouse_velocity: the plate's velocity in the housing, m/s.
+        mouse_velocity: the plate's velocity in the housing, m/s, constant or a `Profile`.
         displacement: x(0), m.
         initial_velocity: x'(0), m/s.
-        plate_load: factor on the plate's friction.
+        plate_load: factor on the plate's friction, constant or a `Profile`.
         duration: s; the one asked for, or long enough to see the ending.
     """
 
@@ -81,10 +82,10 @@ class Motion:
         self,
         core: _core.Motion,
         drive: Drive,
-        mouse_velocity: float,
+        mouse_velocity: float | Profile,
         displacement: float,
         initial_velocity: float,
-        plate_load: float,
+        plate_load: float | Profile,
     ) -> None:
         self._core = core
         self.drive = drive
@@ -151,6 +152,25 @@ class Motion:
         of_contact = self._core.plate_force if contact == "plate" else self._core.finger_force
         return self._evaluate(of_contact, t, side)
 
+    @overload
+    def stretch(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def stretch(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def stretch(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Stretch of a compliant finger's skin, m, the way of x; 0 for a rigid finger.
+
+        The force on the skin is `-force("finger", t)`.
+        """
+        return self._evaluate(self._core.stretch, t, side)
+
+    @overload
+    def stretch_rate(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def stretch_rate(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def stretch_rate(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """How fast the skin of a compliant finger stretches, m/s."""
+        return self._evaluate(self._core.stretch_rate, t, side)
+
     def _evaluate(
         self,
         closed_form: Callable[[NDArray[np.float64], bool], NDArray[np.float64]],
@@ -183,7 +203,7 @@ class Motion:
             for i, (kind, contacts) in enumerate(
                 zip(table["event"], table["event_contacts"], strict=True)
             )
-            if kind
+            if 0 < kind <= len(_KINDS)
             for state in [self._state_after(table, i)]
         )
 
@@ -196,29 +216,29 @@ class Motion:
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
-        columns = ("begin", "end", "plate", "finger")
+        columns = ("begin", "end", "plate", "finger", "velocity", "acceleration")
         rows = zip(*(self._table[name].tolist() for name in columns), strict=True)
         return tuple(
             Segment(
                 begin,
                 end,
-                self._mode(plate, finger),
-                None if plate == _ABSENT else plate,
-                None if finger == _ABSENT else finger,
+                _mode(plate, finger, velocity == acceleration == 0.0),
+                _SLIDING[plate],
+                _SLIDING[finger],
             )
-            for begin, end, plate, finger in rows
+            for begin, end, plate, finger, velocity, acceleration in rows
         )
-
-    def _mode(self, plate: int, finger: int) -> ModeName:
-        if 0 not in (plate, finger):
-            return "slip"
-        return "carried" if finger != 0 and self.mouse_velocity != 0.0 else "resting"
 
     @cached_property
     def status(self) -> str:
         """Either "ok", or what stopped the simulation and what to do about it."""
         if self._core.status == 0:
             return "ok"
+        if self._core.status == 2:
+            return (
+                f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
+                "parameter by a little, and please report the drive"
+            )
         return (
             f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
             "and damping are too weak to end the motion; give a shorter duration"
@@ -279,7 +299,7 @@ class Motion:
         from pindrive import __version__
 
         t = self.sample_times() if times is None else np.atleast_1d(np.asarray(times, np.float64))
-        series = {
+        series: dict[str, tuple[Any, str, str]] = {
             "position": (self.position(t), "m", "deflection of the pin from the spring's rest"),
             "velocity": (self.velocity(t), "m/s", "velocity of the pin in the housing"),
             "acceleration": (
@@ -294,6 +314,9 @@ class Motion:
                 "friction force of the finger on the pin",
             ),
         }
+        if not self.drive.finger.rigid:
+            series["stretch"] = (self.stretch(t), "m", "stretch of the finger's skin")
+            series["stretch_rate"] = (self.stretch_rate(t), "m/s", "stretch rate of the skin")
         data: dict[str, Any] = {
             name: ("time", values, {"units": unit, "long_name": meaning})
             for name, (values, unit, meaning) in series.items()
@@ -322,10 +345,29 @@ class Motion:
         time = ("time", t, {"units": "s", "long_name": "time since the release"})
         return xr.Dataset(data, coords={"time": time}, attrs=origin)
 
-    def inputs(self) -> dict[str, float]:
-        """What was simulated, SI, by the names of the table of quantities."""
+    def inputs(self) -> dict[str, float | list[float]]:
+        """What was simulated, SI, by the names of the table of quantities.
+
+        A curve and an input that changes are lists of their rows, one for each column.
+        """
         drive = self.drive
-        return {
+        rows: dict[str, float | list[float]] = {}
+        for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
+            if contact.regions and contact.curve is not None:
+                rows[f"{name}.curve.speed"] = [speed for speed, _ in contact.curve]
+                rows[f"{name}.curve.force"] = [force for _, force in contact.curve]
+        if not drive.finger.rigid:
+            rows["finger.stiffness"] = drive.finger.stiffness
+        for name, given in (
+            ("mouse_velocity", self.mouse_velocity),
+            ("plate_load", self.plate_load),
+        ):
+            if isinstance(given, Profile):
+                rows[f"{name}.times"] = list(given.times)
+                rows[f"{name}.values"] = list(given.values)
+            else:
+                rows[name] = given
+        return rows | {
             "mass": drive.mass,
             "stiffness": drive.stiffness,
             "damping": drive.damping,
@@ -333,10 +375,8 @@ class Motion:
             "plate.static": drive.plate.static_friction,
             "finger.kinetic": drive.finger.kinetic,
             "finger.static": drive.finger.static_friction,
-            "mouse_velocity": self.mouse_velocity,
             "displacement": self.displacement,
             "velocity": self.initial_velocity,
-            "plate_load": self.plate_load,
             "duration": self.duration,
         }
 
@@ -373,57 +413,82 @@ def simulate(
     """Follow the pin of a drive from its release, exactly.
 
     Args:
-        drive: the drive.
-        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s.
+        drive: the drive; its finger may be compliant, its contacts may have friction curves.
+        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s; constant
+            or a `Profile`, whose acceleration acts on the pin.
         displacement: x(0), deflection from the spring's rest, m.
         velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
-        plate_load: factor on the plate's friction, at least 0.
-        skin_stretch: for a compliant finger; not simulated yet.
+        plate_load: factor on the plate's friction, at least 0; constant or a `Profile`.
+        skin_stretch: stretch of a compliant finger that grips at the start, m; None: the stretch of
+            a finger being slid along or, for a pin at rest, none.
         duration: s, greater than 0; None: long enough to see the ending.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.
 
     Raises:
-        ValueError: a value is no number or out of its range, or asks for what is not simulated yet.
+        ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
+            skin cannot hold; a plate with a friction curve whose load changes, because their
+            product is not piecewise linear.
     """
-    v_plate = check("mouse_velocity", _constant(mouse_velocity, "mouse_velocity"))
-    load = check("plate_load", _constant(plate_load, "plate_load"))
+    v_plate = _rows(mouse_velocity, "mouse_velocity")
+    load = _rows(plate_load, "plate_load")
     x = check("displacement", displacement)
-    v = v_plate if velocity is None else check("velocity", velocity)
+    v = _value_at_start(v_plate) if velocity is None else check("velocity", velocity)
     end = inf if duration is None else check("duration", duration)
-    for label, contact in (("plate", drive.plate), ("finger", drive.finger)):
-        if not contact.rigid:
-            raise ValueError(
-                _not_yet(f"{label} stiffness", "infinite", f"{contact.stiffness!r} N/m")
-            )
-        if contact.curve is not None and len(contact.curve) > 1:
-            raise ValueError(_not_yet(f"{label} curve", "one row", f"{len(contact.curve)} rows"))
-    if skin_stretch is not None:
-        raise ValueError(_not_yet("skin_stretch", "None", f"{skin_stretch!r} m"))
+    plate, finger = drive.plate, drive.finger
+    if not plate.rigid:
+        raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
+    if plate.regions and len(load) > 1:
+        required = "constant for a plate with a friction curve"
+        raise ValueError(refusal("plate_load", required, "a profile that changes"))
+    stretch = nan if skin_stretch is None else _checked_stretch(skin_stretch, finger)
     core = _core.simulate(
         drive.mass,
         drive.stiffness,
         drive.damping,
-        drive.plate.kinetic * load,
-        drive.plate.static_friction * load,
-        drive.finger.kinetic,
-        drive.finger.static_friction,
+        (plate.kinetic, plate.static_friction, plate.stiffness, plate.regions),
+        (finger.kinetic, finger.static_friction, finger.stiffness, finger.regions),
         v_plate,
+        load,
         x,
         v,
+        stretch,
         end,
     )
-    return Motion(core, drive, v_plate, x, v, load)
+    return Motion(core, drive, mouse_velocity, x, v, plate_load)
 
 
-def _constant(value: float | Profile, name: str) -> float:
-    if not isinstance(value, Profile):
-        return value
-    if any(y != value.values[0] for y in value.values):
-        raise ValueError(_not_yet(name, "constant", "a profile that changes"))
-    return value.values[0]
+Rows = list[tuple[float, float]]
 
 
-def _not_yet(label: str, required: str, given: str) -> str:
-    return refusal(label, f"{required} (anything else is not simulated yet)", given)
+def _rows(given: float | Profile, name: str) -> Rows:
+    """An input as rows (time, value): one row is a constant."""
+    if not isinstance(given, Profile):
+        return [(0.0, check(name, given))]
+    values = [check(name, y, label=f"{name} values[{i}]") for i, y in enumerate(given.values)]
+    if all(y == values[0] for y in values):
+        return [(0.0, values[0])]
+    return list(zip(given.times, values, strict=True))
+
+
+def _value_at_start(rows: Rows) -> float:
+    times, values = zip(*rows, strict=True)
+    return float(np.interp(0.0, times, values))
+
+
+def _checked_stretch(given: float, finger: Contact) -> float:
+    if finger.rigid:
+        raise ValueError(refusal("skin_stretch", "None for a rigid finger", f"{given!r} m"))
+    stretch = check("skin_stretch", given)
+    largest = finger.static_friction / finger.stiffness
+    if abs(stretch) > largest:
+        required = f"at most static friction over stiffness, {largest!r} m, either way"
+        raise ValueError(refusal("skin_stretch", required, f"{stretch!r} m"))
+    return stretch
+
+
+def _mode(plate: int, finger: int, still: bool) -> ModeName:
+    if 0 not in (plate, finger):
+        return "slip"
+    return "resting" if still or finger == 0 else "carried"

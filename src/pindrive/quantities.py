@@ -264,6 +264,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
 """What a device file may give, in its order."""
 
 PARTS: Final[tuple[Quantity, ...]] = (
+    Quantity("skin_stretch", "s", "m", "stretch of a compliant finger's skin at release", FINITE),
     Quantity("kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE),
     Quantity("static", "F_s", "N", "largest friction force without sliding", NON_NEGATIVE),
     Quantity(
@@ -355,6 +356,10 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
         "from then on within 5 % of the way to the resting place",
         source=f"{PAPER}, the time of the transitional period",
     ),
+    Quantity("transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"),
+    Quantity(
+        "transient.peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched"
+    ),
     Quantity("transient.settled", "", "", "whether the motion settled in its duration"),
     *(
         Quantity(
@@ -382,7 +387,10 @@ ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.kinetic_end", "E_k", "J", "kinetic energy at the end"),
     Quantity("energy.spring_start", "E_s,0", "J", "energy in the spring at release"),
     Quantity("energy.spring_end", "E_s", "J", "energy in the spring at the end"),
+    Quantity("energy.skin_start", "E_f,0", "J", "energy in a compliant finger at release"),
+    Quantity("energy.skin_end", "E_f", "J", "energy in a compliant finger at the end"),
     Quantity("energy.plate_work", "W_in", "J", "work that the moving plate puts in"),
+    Quantity("energy.inertia_work", "W_a", "J", "work of the accelerating housing"),
     Quantity("energy.damper_dissipated", "W_b", "J", "energy turned into heat in the damper"),
     Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
     Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),
@@ -393,6 +401,7 @@ ENERGY: Final[tuple[Quantity, ...]] = (
 CERTIFICATE: Final[tuple[Quantity, ...]] = (
     Quantity("certificate.motion_law", "r_a", "1", "equation of motion between events"),
     Quantity("certificate.kinematics", "r_v", "1", "velocity is the rate of position"),
+    Quantity("certificate.friction_law", "r_k", "1", "kinetic friction where a contact slides"),
     Quantity("certificate.force_bound", "r_F", "1", "friction within its bounds"),
     Quantity("certificate.sliding_sign", "r_s", "1", "friction opposes sliding"),
     Quantity("certificate.sticking", "r_0", "1", "a stuck contact does not slide"),

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pindrive import _core
 
 EndKind = Literal["moving", "resting", "decaying", "steady"]
-Cycle = Literal["free", "grazing", "stick-slip"]
+Cycle = Literal["free", "grazing", "stick-slip", "limit cycle"]
 
 _ENDS: tuple[tuple[EndKind, Cycle | None], ...] = (
     ("moving", None),
@@ -22,6 +22,7 @@ _ENDS: tuple[tuple[EndKind, Cycle | None], ...] = (
     ("steady", "free"),
     ("steady", "grazing"),
     ("steady", "stick-slip"),
+    ("steady", "limit cycle"),
 )
 """In the order of `End` in model.hpp."""
 
@@ -65,6 +66,10 @@ class Transient:
     settling_time: float
     """The paper's time of the transitional period, s: from then on x stays within 5 % of
     |x(0) - x_end| about x_end; for a steady oscillation, when that begins."""
+    peak_stretch: float
+    """Largest stretch of a compliant finger's skin, m; NaN for a rigid one."""
+    peak_stretch_rate: float
+    """How fast it stretched or relaxed at the most, m/s."""
     plate: ContactUse
     finger: ContactUse
 
@@ -83,7 +88,7 @@ class Ending:
     oscillation or creep towards `position` without another event; `moving`: not known yet."""
     cycle: Cycle | None
     """Of a steady oscillation: `free` of any event, `grazing` the plate's velocity once a period,
-    or `stick-slip`."""
+    `stick-slip`, or a `limit cycle` that falling friction sustains without a carried phase."""
     position: float
     """Resting place, or middle of the final oscillation, m."""
     since: float
@@ -113,8 +118,13 @@ class Ledger:
     kinetic_end: float
     spring_start: float
     spring_end: float
+    skin_start: float
+    """In a compliant finger."""
+    skin_end: float
     plate_work: float
     """What the moving plate put in through friction."""
+    inertia_work: float
+    """What the housing put in by accelerating."""
     damper_dissipated: float
     plate_dissipated: float
     finger_dissipated: float
@@ -130,9 +140,11 @@ class Certificate:
     """
 
     motion_law: float
-    """m x'' + b x' + k x = R_plate + R_finger."""
+    """m x'' + b x' + k x = R_plate + R_finger + m v_p'."""
     kinematics: float
     """x' and x'' are the derivatives of x."""
+    friction_law: float
+    """A sliding contact carries its kinetic friction."""
     force_bound: float
     """A stuck contact carries no more than its static friction."""
     sliding_sign: float
