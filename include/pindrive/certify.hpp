@@ -42,7 +42,7 @@ class Certifier {
     for (const Segment<T>& segment : motion_) scales(segment);
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_) break;
-      laws(segment);
+      if (segment.end > segment.begin) laws(segment);
       derivatives(segment);
       if (&segment + 1 != motion_.end()) junction(segment, *(&segment + 1));
     }
@@ -65,11 +65,12 @@ class Certifier {
   State state(const Segment<T>& segment, T tau) const {
     const Transition<T> moved = segment.flow.oscillator.after(tau);
     const Line<T> v_plate = motion_.inputs().mouse_velocity.from(segment.begin);
+    const auto friction = motion_.friction(segment, tau);
     return {segment.flow.position.at(moved, tau),
             segment.flow.velocity.at(moved, tau),
             segment.flow.acceleration.at(moved, tau),
-            segment.plate_force.at(moved, tau),
-            segment.finger_force.at(moved, tau),
+            friction.plate,
+            friction.finger,
             {v_plate.at(tau), v_plate.rate},
             motion_.inputs().plate_load.from(segment.begin).at(tau)};
   }
@@ -109,9 +110,9 @@ class Certifier {
       const State s = state(segment, tau);
       x_scale_ = std::max(x_scale_, abs(s.x));
       v_scale_ = std::max({v_scale_, abs(s.v), abs(s.plate_velocity.value)});
-      force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                               abs(drive_.stiffness * s.x), abs(s.plate_force),
-                               abs(s.finger_force)});
+      force_scale_ =
+          std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                    abs(drive_.stiffness * s.x), abs(s.plate_force), abs(s.finger_force)});
     });
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
     x_scale_ = std::max(x_scale_, v_scale_ / omega0);
@@ -137,7 +138,8 @@ class Certifier {
             drive_.mass * (s.a - s.plate_velocity.rate) + drive_.damping * s.v +
                 drive_.stiffness * s.x - s.plate_force - s.finger_force,
             force_scale_);
-      contact(drive_.plate, segment.mode.plate, s.v - s.plate_velocity.value, s.plate_force, s.load);
+      contact(drive_.plate, segment.mode.plate, s.v - s.plate_velocity.value, s.plate_force,
+              s.load);
       contact(drive_.finger, segment.mode.finger, s.v, s.finger_force, T(1));
     });
   }
@@ -184,8 +186,10 @@ class Certifier {
   /// What the contacts of an event would have had to carry to stay, against what they could.
   void cannot_hold(Event event, const State& now, Mode after) {
     using std::abs;
-    const bool meets_both = now.v == 0 && now.plate_velocity.value == 0 && drive_.finger.rigid();
-    if (meets_both && !(event.plate && event.finger)) return;  // the surfaces part
+    const T still = T(1e-12) * v_scale_;
+    const bool meets_both =
+        abs(now.v) <= still && abs(now.plate_velocity.value) <= still && drive_.finger.rigid();
+    if (meets_both && now.plate_velocity.rate != 0) return;  // the surfaces part
     const bool finger = event.finger && drive_.finger.rigid();
     if (!event.plate && !finger) return;
     const T follows = event.plate ? now.plate_velocity.rate : T(0);

@@ -56,15 +56,13 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
   motion.stretches(duration, [&](const Segment<T>& segment, T from, T to, T times) {
     const Flow<T>& flow = segment.flow;
     const Oscillator<T>& oscillator = flow.oscillator;
-    const auto over = [&](auto&& power) { return times * integral(oscillator, from, to, power); };
-    const auto velocity = [&](T tau) { return flow.velocity.at(oscillator, tau); };
-    ledger.damper_dissipated +=
-        over([&](T tau) { return drive.damping * velocity(tau) * velocity(tau); });
-    ledger.plate_work += over([&](T tau) {
-      return segment.plate_force.at(oscillator, tau) * segment.plate_velocity.at(tau);
-    });
+    const auto over = [&](const Path<T>& p, const Path<T>& q) {
+      return times * product_integral(oscillator, p, q, from, to);
+    };
+    ledger.damper_dissipated += drive.damping * over(flow.velocity, flow.velocity);
+    ledger.plate_work += over(segment.plate_force, segment.plate_velocity);
     ledger.inertia_work +=
-        over([&](T tau) { return drive.mass * segment.plate_velocity.rate * velocity(tau); });
+        over(Line<T>{drive.mass * segment.plate_velocity.rate, T(0)}, flow.velocity);
   });
   const auto uses = Measurement<T>(motion, duration).transient(T(settling_band));
   ledger.plate_dissipated = uses.plate.dissipated;

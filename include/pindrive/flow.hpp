@@ -47,7 +47,7 @@ class Oscillator {
     if (discriminant_ <= 0) {
       // The root that needs no subtraction first; the other from their product ω₀².
       const T large = alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_;
-      slowest_ = alpha_ < 0 ? omega0_squared_ / large : large;
+      gentle_ = omega0_squared_ / large;
     }
   }
 
@@ -57,7 +57,7 @@ class Oscillator {
   bool oscillates() const { return discriminant_ > 0; }
 
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
-  T slowest_rate() const { return oscillates() ? alpha_ : slowest_; }
+  T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle_ : alpha_ + omega_; }
 
   /// The second derivative of a free oscillation from its value and slope.
   T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
@@ -75,9 +75,10 @@ class Oscillator {
       const T angle = omega_ * tau;
       return damped(tau, cos(angle) - 1, sin(angle) / omega_);
     }
-    const auto [slow, slow_change] = exponential(slowest_ * tau);
-    const T gain = -slow * expm1(-2 * omega_ * tau) / (2 * omega_);
-    return {slow_change - slowest_ * gain, gain};
+    const auto [gentle, gentle_change] = exponential(gentle_ * tau);
+    const T apart = to_other_root();
+    const T gain = gentle * expm1(apart * tau) / apart;
+    return {gentle_change - gentle_ * gain, gain};
   }
 
   /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
@@ -94,9 +95,9 @@ class Oscillator {
       if (alpha_ * angle < -extinct * omega_) return {never, never};
       return {angle / omega_, pi / omega_};
     }
-    const T ratio = value / (slowest_ * value - slope);
-    if (!(ratio > 0) || 2 * omega_ * ratio >= 1) return {never, never};
-    return {omega_ > 0 ? -log1p(-2 * omega_ * ratio) / (2 * omega_) : ratio, never};
+    const T ratio = value / (gentle_ * value - slope), apart = to_other_root();
+    if (!(ratio > 0) || apart * ratio <= -1) return {never, never};
+    return {omega_ > 0 ? log1p(apart * ratio) / apart : ratio, never};
   }
 
  private:
@@ -133,6 +134,9 @@ class Oscillator {
                                      (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
   }
 
+  /// From the gentle one of two real rates to the other: −2ω in a decay, 2ω in a growth.
+  T to_other_root() const { return alpha_ < 0 ? -2 * omega_ : 2 * omega_; }
+
   struct Exponential {
     T value, change;
   };
@@ -155,7 +159,7 @@ class Oscillator {
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
   }
 
-  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, slowest_{}, hurry_{};
+  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, gentle_{}, hurry_{};
 };
 
 /// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
@@ -179,6 +183,14 @@ struct Path {
 
   Path derivative(const Oscillator<T>& oscillator) const {
     return {slope + drift, slope, oscillator.bend(value, slope), curvature, T(0)};
+  }
+  /// The same path with its time counted from τ on.
+  Path from(const Oscillator<T>& oscillator, T tau) const {
+    const Transition<T> moved = oscillator.after(tau);
+    const T wave = value + value * moved.decline + slope * moved.gain;
+    const T bend = oscillator.bend(value, slope);
+    return {at(moved, tau), wave, slope + slope * moved.decline + bend * moved.gain,
+            drift + curvature * tau, curvature};
   }
   bool oscillates() const { return value != 0 || slope != 0; }
   bool straight() const { return drift == 0 && curvature == 0; }
@@ -222,8 +234,8 @@ struct Flow {
             {acceleration, acceleration, jerk}};
   }
   /// Stuck to a surface that moves with the given velocity.
-  static Flow stuck(const Oscillator<T>& oscillator, T x, Line<T> velocity) {
-    return {oscillator,
+  static Flow stuck(T x, Line<T> velocity) {
+    return {Oscillator<T>(T(1), T(0), T(1)),
             {x, T(0), T(0), velocity.value, velocity.rate},
             velocity,
             {velocity.rate, T(0), T(0)}};

@@ -76,8 +76,7 @@ class Friction {
     return drive_.mass * level.rate + equation.damping * level.value - equation.pull.value;
   }
 
-  /// Friction on the pin along the flow of a mode, N; two stuck contacts share what is needed in
-  /// proportion to their static friction.
+  /// Friction on the pin along the flow of a mode, N; of two stuck contacts the sum, at the plate.
   Forces<T> forces(Mode mode, const Instant<T>& now, const Equation<T>& equation,
                    const Flow<T>& flow, T skin_force) const {
     Forces<T> on_pin{sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
@@ -89,17 +88,7 @@ class Friction {
       on_pin.finger.start = -skin_force;
     }
     if (!mode.stuck()) return on_pin;
-    const Path<T> load = needed(equation, flow);
-    const T whole = capacity(mode, now).value;
-    const T part = whole > 0 ? drive_.plate.static_limit * now.load.value / whole : T(0);
-    if (mode.finger != Slide::stuck) {
-      on_pin.plate = load;
-    } else if (mode.plate != Slide::stuck) {
-      on_pin.finger = load;
-    } else {
-      on_pin.plate = part * load;
-      on_pin.finger = (1 - part) * load;
-    }
+    (mode.plate == Slide::stuck ? on_pin.plate : on_pin.finger) = needed(equation, flow);
     return on_pin;
   }
 
@@ -126,8 +115,9 @@ class Friction {
     if (stuck.plate != Slide::stuck || stuck.finger != Slide::stuck || w == 0) {
       const T force = needed(equation(stuck, now, x, skin_force), level(stuck, now));
       const T limit = capacity(stuck, now).value;
-      return force > limit ? released(stuck, -1, now) : force < -limit ? released(stuck, 1, now)
-                                                                       : stuck;
+      return force > limit    ? released(stuck, -1, now)
+             : force < -limit ? released(stuck, 1, now)
+                              : stuck;
     }
     // The surfaces part: with the plate, with the finger, or with neither.
     const int parting = w > 0 ? 1 : -1;
@@ -140,8 +130,8 @@ class Friction {
       return abs(force) <= capacity(mode, now).value;
     };
     const bool plate_first = before.plate == Slide::stuck || before.finger != Slide::stuck;
-    for (const Mode& mode : {plate_first ? with_plate : with_finger,
-                             plate_first ? with_finger : with_plate})
+    for (const Mode& mode :
+         {plate_first ? with_plate : with_finger, plate_first ? with_finger : with_plate})
       if (holds(mode)) return mode;
     // Neither holds: the pin is thrown ahead of both or behind both, or slides between them.
     const auto acceleration = [&](Mode mode) {
@@ -167,10 +157,10 @@ class Friction {
   /// Puts each sliding contact in the region of its curve that its speed lies in.
   void sort_regions(Mode& mode, T v, const Instant<T>& now) const {
     mode.plate_region =
-        slides(mode.plate) ? drive_.plate.region_of(sign(mode.plate) * (v - now.plate_velocity.value))
-                           : 0;
-    mode.finger_region =
-        slides(mode.finger) ? drive_.finger.region_of(sign(mode.finger) * v) : 0;
+        slides(mode.plate)
+            ? drive_.plate.region_of(sign(mode.plate) * (v - now.plate_velocity.value))
+            : 0;
+    mode.finger_region = slides(mode.finger) ? drive_.finger.region_of(sign(mode.finger) * v) : 0;
   }
 
  private:

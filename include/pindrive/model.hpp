@@ -10,16 +10,16 @@ namespace pindrive {
 
 /// Every limit that is not physics, named once.
 inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
-inline constexpr int standstill_limit = 100;  ///< events at one instant after which it is given up
+inline constexpr int standstill_limit = 100;   ///< events at one instant after which it is given up
 inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
 inline constexpr double recurrence = 1e-14;    ///< how closely a state returns in a cycle, relative
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
 struct Region {
-  T from, to;   ///< m/s
-  T force;      ///< at `from`, N
-  T slope;      ///< N s/m; negative where friction falls with speed
+  T from, to;  ///< m/s
+  T force;     ///< at `from`, N
+  T slope;     ///< N s/m; negative where friction falls with speed
 
   T at(T speed) const { return force + slope * (speed - from); }
 };
@@ -50,9 +50,9 @@ struct Contact {
 
 template <class T>
 struct Drive {
-  T mass;       ///< electromagnet and pin, kg; > 0
-  T stiffness;  ///< spring, N/m; > 0
-  T damping;    ///< damper, N s/m; >= 0
+  T mass;                    ///< electromagnet and pin, kg; > 0
+  T stiffness;               ///< spring, N/m; > 0
+  T damping;                 ///< damper, N s/m; >= 0
   Contact<T> plate, finger;  ///< the plate is rigid
 };
 
@@ -132,8 +132,9 @@ struct Segment {
   T begin, end;  ///< s
   Mode mode;
   Flow<T> flow;
-  Line<T> plate_velocity;             ///< m/s
-  Path<T> plate_force, finger_force;  ///< friction on the pin, N
+  Line<T> plate_velocity, load;       ///< the inputs: m/s, 1
+  Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
+                                      ///< is what they carry together
   Event event;                        ///< at the end
 };
 

@@ -58,6 +58,21 @@ class Motion {
     return {low, std::min(std::max(t - low->begin, T(0)), low->end - low->begin)};
   }
 
+  struct Friction {
+    T plate, finger;
+  };
+  /// Friction of each contact on the pin, N. Two stuck contacts share in proportion to their static
+  /// friction: how they really do is not determined.
+  Friction friction(const Segment<T>& segment, T tau) const {
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const T plate = segment.plate_force.at(oscillator, tau);
+    if (segment.mode.plate != Slide::stuck || segment.mode.finger != Slide::stuck)
+      return {plate, segment.finger_force.at(oscillator, tau)};
+    const T at_plate = drive_.plate.static_limit * segment.load.at(tau);
+    const T part = at_plate > 0 ? at_plate / (at_plate + drive_.finger.static_limit) : T(0);
+    return {part * plate, (1 - part) * plate};
+  }
+
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often).
   template <class Visitor>
   void stretches(T until, Visitor&& visit) const {

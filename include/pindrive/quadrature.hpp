@@ -29,22 +29,78 @@ T gauss(Function&& f, T low, T high) {
   return sum * half;
 }
 
-/// ∫ f from low to high for a function of a mode: panels that resolve its oscillation and, once that
-/// has decayed or where there is none, grow with time.
+/// ∫ f from 0 to `to` for a function of a mode: panels that resolve its oscillation and, where there
+/// is none, grow with time.
 template <class T, class Function>
-T integral(const Oscillator<T>& oscillator, T low, T high, Function&& f) {
+T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
   using std::abs;
   using std::sqrt;
-  const T decay = -oscillator.alpha();
   const T quick = 1 / (abs(oscillator.alpha()) + sqrt(oscillator.omega0_squared()));
   T sum{0};
-  while (low < high) {
-    const bool grows = !oscillator.oscillates() || decay * low > 40;
-    const T next = std::min(low + (grows ? std::max(quick, low / 2) : quick), high);
-    sum += gauss<T>(f, low, next);
-    low = next;
+  T low{0};
+  while (low < to) {
+    const bool grows = !oscillator.oscillates() || -oscillator.alpha() * low > 40;
+    const T high = std::min(low + (grows ? std::max(quick, low / 2) : quick), to);
+    sum += gauss<T>(f, low, high);
+    low = high;
   }
   return sum;
+}
+
+/// ∫₀^to p q for two quantities of a mode that are each a line and an oscillation.
+template <class T>
+T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path<T>& q, T to) {
+  using std::cos;
+  using std::exp;
+  using std::expm1;
+  using std::sin;
+  const T alpha = oscillator.alpha(), omega = oscillator.omega();
+  const bool waves = p.oscillates() || q.oscillates();
+  const bool curved = p.curvature != 0 || q.curvature != 0;
+  if (!waves || curved || !oscillator.oscillates() || omega * to < 16)
+    return panels(oscillator, to,
+                  [&](T tau) { return p.at(oscillator, tau) * q.at(oscillator, tau); });
+
+  // Lines with lines.
+  const T a0 = p.centre(), a1 = p.drift, b0 = q.centre(), b1 = q.drift;
+  T sum = to * (a0 * b0 + to * ((a0 * b1 + a1 * b0) / 2 + to * a1 * b1 / 3));
+
+  // Lines with oscillations: ∫w = (2α w − w')/ω₀², and ∫τ w = τ ∫w − ∫∫w.
+  const auto antiderivative = [&](const Path<T>& w) {
+    const T scale = 1 / oscillator.omega0_squared();
+    const T bend = oscillator.bend(w.value, w.slope);
+    return Path<T>{T(0), scale * (2 * alpha * w.value - w.slope),
+                   scale * (2 * alpha * w.slope - bend)};
+  };
+  const auto wave_at = [&](const Path<T>& w, T tau) { return w.value + w.change(oscillator, tau); };
+  const auto with_line = [&](const Path<T>& path, T constant, T slope) {
+    const Path<T> wave{T(0), path.value, path.slope};
+    const Path<T> once = antiderivative(wave), twice = antiderivative(once);
+    return constant * (wave_at(once, to) - once.value) + slope * to * wave_at(once, to) -
+           slope * (wave_at(twice, to) - twice.value);
+  };
+  sum += with_line(p, b0, b1) + with_line(q, a0, a1);
+
+  // Oscillations: e^2ατ times a constant and a wave of 2ω.
+  const T pa = p.value, pb = (p.slope - alpha * p.value) / omega;
+  const T qa = q.value, qb = (q.slope - alpha * q.value) / omega;
+  const T c = (pa * qa - pb * qb) / 2, d = (pa * qb + pb * qa) / 2;
+  const T u = (alpha * c - omega * d) / (2 * oscillator.omega0_squared());
+  const T v = (omega * c + alpha * d) / (2 * oscillator.omega0_squared());
+  const T mean = alpha == 0 ? to : expm1(2 * alpha * to) / (2 * alpha);
+  const T angle = 2 * omega * to;
+  return sum + (pa * qa + pb * qb) / 2 * mean +
+         exp(2 * alpha * to) * (u * cos(angle) + v * sin(angle)) - u;
+}
+
+/// ∫ p q over a stretch of a mode.
+template <class T>
+T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path<T>& q, T from,
+                   T to) {
+  if (from > 0)
+    return product_integral(oscillator, p.from(oscillator, from), q.from(oscillator, from),
+                            to - from);
+  return product_integral(oscillator, p, q, to);
 }
 
 }  // namespace pindrive

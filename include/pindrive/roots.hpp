@@ -78,18 +78,25 @@ class Roots {
 
   T next() {
     while (!exhausted_ && left_ < horizon_) {
-      const T extremum = extrema_.next();
-      const T right = extremum < never ? extremum : end_of_search();
+      if (!(left_ < extremum_)) extremum_ = extrema_.next();
+      const T right = end_of_bracket();
+      if (!(left_ < right)) break;
       const T value = path_.at(oscillator_, right);
       const T low = left_;
+      const bool turned = right == extremum_;
       left_ = right;
       if (side_ * value < 0) {
         const T root = root_between(oscillator_, path_, low, right, side_);
         side_ = -side_;
+        approaching_ = turned;
         return root;
       }
-      // A decaying oscillation that turned back before zero never comes as far again.
-      exhausted_ = exhausted_ || (shrinks() && approaching_);
+      if (!turned) continue;
+      // A decaying oscillation that turned back before zero never comes as far again; a growing
+      // one comes farther by one factor each time.
+      exhausted_ = shrinks() && approaching_;
+      if constexpr (Degree == 1)
+        if (approaching_ && oscillator_.alpha() > 0) left_ = skip_short_swings(value);
       approaching_ = !approaching_;
     }
     return never;
@@ -108,13 +115,30 @@ class Roots {
     return oscillator_.bend(path_.value, path_.slope) > 0 ? 1 : -1;
   }
 
-  /// With no extremum ahead the path runs monotonically to the horizon or, without one, to its
-  /// centre: far enough to see it change sign, if it will.
-  T end_of_search() {
-    if (horizon_ < never) return horizon_;
-    exhausted_ = true;
+  /// The last extremum of a growing oscillation that still turns back before zero.
+  T skip_short_swings(T value) {
+    using std::abs;
+    using std::floor;
+    using std::log;
+    const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
+    const T short_of = abs(path_.centre() / (value - path_.centre()));
+    if (!(short_of > 1) || !(growth > 0)) return left_;
+    const T periods = floor(log(short_of) / growth) - 1;
+    if (periods < 1) return left_;
+    extremum_ = extrema_.skip(2 * periods);
+    return std::min(extremum_, horizon_);
+  }
+
+  /// The path is monotone up to here: to its next extremum, to the horizon or, where there is
+  /// neither, as far as shows whether it comes to zero. A growing one is followed in strides that
+  /// do not overflow.
+  T end_of_bracket() {
+    const T right = std::min(extremum_, horizon_);
+    const T rate = oscillator_.slowest_rate();
+    if (rate > 0) return right < never || approaching_ ? std::min(right, left_ + 16 / rate) : left_;
+    if (right < never) return right;
     if (!shrinks() || !(side_ * path_.centre() < 0)) return left_;
-    T step = -1 / oscillator_.slowest_rate();
+    T step = -1 / rate;
     while (side_ * path_.at(oscillator_, left_ + step) > 0) step *= 2;
     return left_ + step;
   }
@@ -124,7 +148,7 @@ class Roots {
   int side_;
   T horizon_;
   Roots<T, Degree - 1> extrema_;
-  T left_{0};
+  T left_{0}, extremum_{0};
   bool approaching_;
   bool exhausted_;
 };
@@ -137,16 +161,34 @@ class Roots<T, 0> {
       : zeros_(oscillator.zeros(path.start, path.slope)), horizon_(horizon) {}
 
   T next() {
-    const T zero = count_ == 0 ? zeros_.first : zeros_.first + T(count_) * zeros_.spacing;
-    ++count_;
+    const T zero = count_ == 0 ? zeros_.first : zeros_.first + count_ * zeros_.spacing;
+    count_ += 1;
     return zero <= horizon_ ? zero : std::numeric_limits<T>::infinity();
   }
+  /// Passes over so many zeros, an even number, from the last one returned to the one returned now.
+  T skip(T zeros) {
+    count_ += zeros - 1;
+    return next();
+  }
+  T spacing() const { return zeros_.spacing; }
 
  private:
   Zeros<T> zeros_;
   T horizon_;
-  long long count_{0};
+  T count_{0};
 };
+
+/// How long a decaying oscillation cannot bring a path, whose line is on its side, to zero.
+template <class T>
+T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
+  using std::hypot;
+  const T reach =
+      hypot(path.value, (path.slope - oscillator.alpha() * path.value) / oscillator.omega());
+  const T distance = side * path.centre() - reach;
+  if (!(distance > 0)) return T(0);
+  const T approach = -side * path.drift;
+  return approach > 0 ? distance / approach : std::numeric_limits<T>::infinity();
+}
 
 /// Calls visit(τ) at each sign change of a path in (0, horizon], until it returns false.
 template <class T, class Visitor>
@@ -174,13 +216,35 @@ void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T
 
 /// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
 template <class T>
-T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
-  T first = std::numeric_limits<T>::infinity();
-  each_root(oscillator, path, side, horizon, [&](T root) {
-    first = root;
-    return false;
-  });
-  return first;
+T first_root(const Oscillator<T>& oscillator, Path<T> path, int side, T horizon) {
+  constexpr T never = std::numeric_limits<T>::infinity();
+  T passed{0};
+  // While the line is out of the reach of a decaying oscillation, nothing need be looked at; else
+  // a few of its periods are, before the reach is measured again.
+  const bool patient =
+      oscillator.oscillates() && oscillator.alpha() <= 0 && path.oscillates() && path.drift != 0;
+  for (;;) {
+    T until = horizon - passed;
+    if (patient) {
+      const T idle = out_of_reach(oscillator, path, side);
+      if (!(idle < until)) return never;
+      if (idle * oscillator.omega() > 8) {
+        path = path.from(oscillator, idle);
+        passed += idle;
+        continue;
+      }
+      until = std::min(until, 64 / oscillator.omega());
+    }
+    T first = never;
+    each_root(oscillator, path, side, until, [&](T root) {
+      first = root;
+      return false;
+    });
+    if (first < never) return passed + first;
+    if (!patient || !(passed + until < horizon)) return never;
+    path = path.from(oscillator, until);
+    passed += until;
+  }
 }
 
 /// The sign of a path just after τ = 0; 0 if it stays zero.

@@ -17,7 +17,11 @@ template <class T>
 class Simulation {
  public:
   Simulation(const Drive<T>& drive, const Inputs<T>& inputs)
-      : drive_(drive), inputs_(inputs), friction_(drive), x_(inputs.displacement), v_(inputs.velocity) {
+      : drive_(drive),
+        inputs_(inputs),
+        friction_(drive),
+        x_(inputs.displacement),
+        v_(inputs.velocity) {
     look_ahead();
     const bool given = !std::isnan(inputs.skin_stretch);
     if (given) skin_ = drive.finger.stiffness * inputs.skin_stretch;
@@ -44,6 +48,7 @@ class Simulation {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+  static constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
   /// Why a mode ends: a sliding velocity comes to zero, or to the lower or upper end of a region
   /// of a friction curve; a contact cannot hold any longer; or an input has its next row.
@@ -60,14 +65,16 @@ class Simulation {
 
   Segment<T> next() {
     const Equation<T> equation = friction_.equation(mode_, now_, x_, skin_);
-    const Oscillator<T> oscillator(drive_.mass, equation.damping, equation.stiffness);
-    const Flow<T> flow = mode_.stuck()
-                             ? Flow<T>::stuck(oscillator, x_, friction_.level(mode_, now_))
-                             : free_flow(equation, oscillator);
+    const Flow<T> flow =
+        mode_.stuck() ? Flow<T>::stuck(x_, friction_.level(mode_, now_)) : free_flow(equation);
     const auto forces = friction_.forces(mode_, now_, equation, flow, skin_);
-    Segment<T> segment{time_, never, mode_, flow, now_.plate_velocity, forces.plate, forces.finger, {}};
+    Segment<T> segment{time_,     never,        mode_,         flow, now_.plate_velocity,
+                       now_.load, forces.plate, forces.finger, {}};
 
-    const Exit exit = first_exit(segment, equation);
+    Exit exit = first_exit(segment, equation);
+    // What happens at the row of an input to rounding is judged with what the row brings.
+    if (exit.tau < never && row_ < never && row_ - (time_ + exit.tau) <= rounding * row_)
+      exit = {row_ - time_, Cause::input, false, false, 0};
     if (exit.tau == never) {
       outcome_.end = ending(flow);
       if (outcome_.end == End::moving) segment.end = inputs_.duration;
@@ -81,12 +88,12 @@ class Simulation {
     return segment;
   }
 
-  Flow<T> free_flow(const Equation<T>& equation, const Oscillator<T>& oscillator) const {
+  Flow<T> free_flow(const Equation<T>& equation) const {
+    const Oscillator<T> oscillator(drive_.mass, equation.damping, equation.stiffness);
     const T drift = equation.pull.rate / equation.stiffness;
     const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
-    const T acceleration = tangential_
-                               ? tangent_
-                               : (equation.pull.value - equation.damping * v_) / drive_.mass;
+    const T acceleration =
+        tangential_ ? tangent_ : (equation.pull.value - equation.damping * v_) / drive_.mass;
     return Flow<T>::free(oscillator, x_, v_, acceleration, y, drift);
   }
 
@@ -98,8 +105,8 @@ class Simulation {
     Exit first;
     if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
 
-    const auto consider = [&](const Path<T>& guard, bool just_left, Exit exit) {
-      exit.tau = exit_time(flow.oscillator, guard, just_left, exit.cause, row_ - time_);
+    const auto consider = [&](const Path<T>& guard, int goes, Exit exit) {
+      exit.tau = exit_time(flow.oscillator, guard, goes, row_ - time_);
       if (exit.tau == never || exit.tau > first.tau) return;
       if (exit.tau == first.tau && exit.cause == first.cause) {
         first.plate = first.plate || exit.plate;
@@ -117,23 +124,31 @@ class Simulation {
       Path<T> above = speed, below = T(-1) * speed;
       above.start -= region.from;
       below.start += region.to;
+      const auto goes = [&](const Path<T>& guard) {
+        return just_changed ? 1 : side_after_zero(flow.oscillator, guard);
+      };
       exit.cause = index == 0 ? Cause::arrives : Cause::slower;
-      consider(above, just_changed, exit);
+      // A pin that stays at its level has arrived there.
+      consider(above, index == 0 && goes(above) == 0 ? -1 : goes(above), exit);
       exit.cause = Cause::faster;
-      if (region.to < never) consider(below, just_changed, exit);
+      if (region.to < never) consider(below, goes(below), exit);
     };
     const auto holding = [&](const Path<T>& force, Line<T> limit, Exit exit) {
       exit.cause = Cause::gives_way;
       for (const int side : {1, -1}) {
         exit.side = side;
-        const Path<T> most = limit;
-        consider(most + T(-side) * force, false, exit);
+        const Path<T> most = limit, left = most + T(-side) * force;
+        // A gripping skin stretches as the pin moves, whose start is exact.
+        const int goes = mode.stuck() ? side_after_zero(flow.oscillator, left)
+                                      : -side * side_after_start(flow.oscillator, flow.velocity);
+        consider(left, goes, exit);
       }
     };
 
     const Exit plate{never, Cause::nothing, true, false, 0};
     const Exit finger{never, Cause::nothing, false, true, 0};
-    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, changed_plate_, plate);
+    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, changed_plate_,
+            plate);
     sliding(drive_.finger, mode.finger, mode.finger_region, {}, changed_finger_, finger);
     if (mode.finger == Slide::gripping)
       holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
@@ -143,16 +158,16 @@ class Simulation {
     return first;
   }
 
-  /// When a guard that is positive in this mode comes to zero. At its zero already, it has just been
-  /// left if the mode says so; else where it goes decides. A pin that stays at a level has arrived.
-  static T exit_time(const Oscillator<T>& oscillator, Path<T> guard, bool just_left, Cause cause,
-                     T horizon) {
-    if (!(guard.start > 0) && !just_left) {
-      guard.start = T(0);
-      const int goes = side_after_start(oscillator, guard);
-      if (goes < 0 || (goes == 0 && cause == Cause::arrives)) return T(0);
-    }
+  /// When a guard that is positive in this mode comes to zero. At its zero already, it leaves it to
+  /// the side where it goes.
+  static T exit_time(const Oscillator<T>& oscillator, const Path<T>& guard, int goes, T horizon) {
+    if (!(guard.start > 0) && goes < 0) return T(0);
     return first_root(oscillator, guard, 1, horizon);
+  }
+
+  static int side_after_zero(const Oscillator<T>& oscillator, Path<T> guard) {
+    guard.start = T(0);
+    return side_after_start(oscillator, guard);
   }
 
   // ---- what follows ------------------------------------------------------------------------------
@@ -167,9 +182,12 @@ class Simulation {
     segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
     advance(exit);
     if (before.stuck()) v_ = friction_.level(before, now_).value;
-    tangential_ = false;
-    changed_plate_ = exit.plate;
-    changed_finger_ = exit.finger;
+    // Changing to another region at once, the pin still leaves as the event before let it go.
+    const bool at_once =
+        exit.tau == 0 && (exit.cause == Cause::slower || exit.cause == Cause::faster);
+    tangential_ = tangential_ && at_once;
+    changed_plate_ = exit.plate || (changed_plate_ && at_once);
+    changed_finger_ = exit.finger || (changed_finger_ && at_once);
 
     switch (exit.cause) {
       case Cause::arrives:
@@ -244,7 +262,11 @@ class Simulation {
     if (mode_.finger == Slide::gripping && exit.finger) {
       mode_.finger = static_cast<Slide>(exit.side);
       friction_.sort_regions(mode_, v_, now_);
-      return event;
+      if (!mode_.stuck()) return event;
+      // The skin's force drops to its kinetic friction: the plate may not hold what is left.
+      mode_ = friction_.holding(mode_, mode_, now_, x_, skin_);
+      changed_plate_ = !mode_.stuck();
+      return {Kind::slip, changed_plate_, true};
     }
     const auto even = [](bool taken, const Contact<T>& contact) {
       return !taken || contact.kinetic == contact.static_limit;
@@ -334,9 +356,10 @@ class Simulation {
   Instant<T> now_{};
   T row_{never};  ///< time of the next row of an input, s
 
-  bool changed_plate_{true}, changed_finger_{true};  ///< by the last event: their zeros are no roots
-  bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
-  T tangent_{0};            ///< … at this acceleration
+  bool changed_plate_{false},
+      changed_finger_{false};  ///< by the last event: a zero there is no root
+  bool tangential_{false};     ///< the pin breaks loose with no relative acceleration, …
+  T tangent_{0};               ///< … at this acceleration
 
   Mark mark_{};
   long long marks_{0};

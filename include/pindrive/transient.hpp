@@ -26,13 +26,14 @@ template <class T>
 struct Transient {
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
 
-  T peak_displacement{none}, peak_time{none};        ///< x_m,a at t_a: m, s
-  T trough_displacement{none}, trough_time{none};    ///< x_m,c at t_c; t_c infinite if only approached
-  T swing{none};                                     ///< (17), m
+  T peak_displacement{none}, peak_time{none};  ///< x_m,a at t_a: m, s
+  T trough_displacement{none},
+      trough_time{none};  ///< x_m,c at t_c; t_c infinite if only approached
+  T swing{none};          ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
-  T first_reversal_time{none};                       ///< t_1, s
-  T settling_time{none};                             ///< s
-  T peak_stretch{none}, peak_stretch_rate{none};     ///< largest of a compliant finger's: m, m/s
+  T first_reversal_time{none};                          ///< t_1, s
+  T settling_time{none};                                ///< s
+  T peak_stretch{none}, peak_stretch_rate{none};        ///< largest of a compliant finger's: m, m/s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
   ContactUse<T> plate, finger;
@@ -105,8 +106,7 @@ class Measurement {
       if (direction == 0) continue;
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
-      const bool turns_at_end =
-          following != motion_.end() && following->flow.velocity.start == 0;
+      const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
       const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
       each_root(flow.oscillator, flow.velocity, direction, inside, [&](T tau) {
         direction = -direction;
@@ -148,8 +148,8 @@ class Measurement {
   }
 
   void return_velocity(Transient<T>& result, int outward) const {
-    const T until = std::min(std::isnan(result.trough_time) ? duration_ : result.trough_time,
-                             duration_);
+    const T until =
+        std::min(std::isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > until) break;
       const T from = std::max(result.peak_time - segment.begin, T(0));
@@ -257,8 +257,7 @@ class Measurement {
     if (turns.spacing < never && abs(before) > width) {
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
       using std::log;
-      const T count =
-          std::floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
+      const T count = std::floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
       before = x.at(oscillator, low) - x_end;
       while (abs(before) > width)
@@ -281,6 +280,12 @@ class Measurement {
           came && segment.event.plate, from, to, times);
       use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
           came && segment.event.finger, from, to, times);
+      for (const T tau : {from, to}) {
+        using std::abs;
+        const auto friction = motion_.friction(segment, tau);
+        result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
+        result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
+      }
       if (!skin) return;
       result.finger.dissipated += times * skin_loss(segment, from, to, whole);
       const Oscillator<T>& oscillator = segment.flow.oscillator;
@@ -302,7 +307,8 @@ class Measurement {
     using std::abs;
     if (slide == Slide::absent) return;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    peak(contact.peak_force, oscillator, force, from, to);
+    if (!(segment.mode.plate == Slide::stuck && segment.mode.finger == Slide::stuck))
+      peak(contact.peak_force, oscillator, force, from, to);
     if (!slides(slide)) {
       contact.time_stuck += times * (to - from);
       return;
@@ -312,13 +318,14 @@ class Measurement {
     const T distance = abs(moved - (surface.at(from) + surface.at(to)) / 2 * (to - from));
     contact.distance_slid += times * distance;
     if (came_to_zero) contact.reversals += times;
-    const bool constant = !force.oscillates() && force.straight();
-    contact.dissipated +=
-        times * (constant ? abs(force.start) * distance
-                          : integral(oscillator, from, to, [&](T tau) {
-                              const T u = segment.flow.velocity.at(oscillator, tau) - surface.at(tau);
-                              return -force.at(oscillator, tau) * u;
-                            }));
+    if (!force.oscillates() && force.straight()) {
+      contact.dissipated += times * abs(force.start) * distance;
+    } else {
+      const Path<T> level = surface;
+      contact.dissipated -=
+          times *
+          product_integral(oscillator, force, segment.flow.velocity + T(-1) * level, from, to);
+    }
   }
 
   /// What a stretched skin gives to its slider, or takes from it, beside the pin's own sliding, J.

@@ -80,8 +80,8 @@ class CoreMotion {
         mouse_velocity_(std::move(mouse_velocity)),
         plate_load_(std::move(plate_load)),
         drive_{mass, stiffness, damping, plate_.view(), finger_.view()},
-        inputs_{mouse_velocity_.view(), displacement, velocity,
-                duration,               plate_load_.view(), skin_stretch},
+        inputs_{mouse_velocity_.view(), displacement, velocity, duration,
+                plate_load_.view(),     skin_stretch},
         outcome_(pd::simulate(drive_, inputs_, [this](const pd::Segment<double>& segment) {
           segments_.push_back(segment);
         })) {}
@@ -110,11 +110,10 @@ std::unique_ptr<CoreMotion> simulate(double mass, double stiffness, double dampi
                                      double displacement, double velocity, double skin_stretch,
                                      double duration) {
   const nb::gil_scoped_release unlocked;
-  return std::make_unique<CoreMotion>(mass, stiffness, damping,
-                                      std::make_from_tuple<ContactRows>(plate),
-                                      std::make_from_tuple<ContactRows>(finger),
-                                      ProfileRows(mouse_velocity), ProfileRows(plate_load),
-                                      displacement, velocity, skin_stretch, duration);
+  return std::make_unique<CoreMotion>(
+      mass, stiffness, damping, std::make_from_tuple<ContactRows>(plate),
+      std::make_from_tuple<ContactRows>(finger), ProfileRows(mouse_velocity),
+      ProfileRows(plate_load), displacement, velocity, skin_stretch, duration);
 }
 
 /// f(segment, τ) at each time.
@@ -142,12 +141,13 @@ Array<double> evaluate(const CoreMotion& motion, const Times& times, bool right)
   });
 }
 
-using ForcePath = pd::Path<double> pd::Segment<double>::*;
+using MotionView = pd::Motion<double>;
 
-template <ForcePath path>
+template <double MotionView::Friction::* contact>
 Array<double> force(const CoreMotion& motion, const Times& times, bool right) {
-  return at_times(motion, times, right, [](const pd::Segment<double>& segment, double tau) {
-    return (segment.*path).at(segment.flow.oscillator, tau);
+  const auto view = motion.view();
+  return at_times(motion, times, right, [&](const pd::Segment<double>& segment, double tau) {
+    return view.friction(segment, tau).*contact;
   });
 }
 
@@ -266,8 +266,8 @@ NB_MODULE(_core, m) {
       .def("position", &evaluate<&pd::Flow<double>::position>, "times"_a, "right"_a)
       .def("velocity", &evaluate<&pd::Flow<double>::velocity>, "times"_a, "right"_a)
       .def("acceleration", &evaluate<&pd::Flow<double>::acceleration>, "times"_a, "right"_a)
-      .def("plate_force", &force<&pd::Segment<double>::plate_force>, "times"_a, "right"_a)
-      .def("finger_force", &force<&pd::Segment<double>::finger_force>, "times"_a, "right"_a)
+      .def("plate_force", &force<&MotionView::Friction::plate>, "times"_a, "right"_a)
+      .def("finger_force", &force<&MotionView::Friction::finger>, "times"_a, "right"_a)
       .def("stretch", &stretch<false>, "times"_a, "right"_a)
       .def("stretch_rate", &stretch<true>, "times"_a, "right"_a)
       .def("segments", &segments, "Columns, one row a segment.")
@@ -288,7 +288,8 @@ NB_MODULE(_core, m) {
         "mouse_velocity"_a, "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a,
         "duration"_a,
         "Simulates one pin from its release until its ending is known or the duration is over. "
-        "Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, value).");
+        "Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, "
+        "value).");
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
 }

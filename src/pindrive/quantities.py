@@ -356,7 +356,9 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
         "from then on within 5 % of the way to the resting place",
         source=f"{PAPER}, the time of the transitional period",
     ),
-    Quantity("transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"),
+    Quantity(
+        "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"
+    ),
     Quantity(
         "transient.peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched"
     ),
