@@ -94,7 +94,8 @@ class Certifier {
     const T span = length(segment);
     const int count = 192;
     for (int i = 0; i <= count; ++i) visit(i == count ? span : span * (T(i) / count));
-    for (T tau = span / count; tau > span * T(1e-9); tau /= 8) visit(tau);
+    T tau = span / count;
+    for (int i = 0; i < 8; ++i) visit(tau /= 8);
   }
 
   static void worst(T& residual, T error, T scale) {

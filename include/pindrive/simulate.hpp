@@ -52,7 +52,7 @@ class Simulation {
 
   /// Why a mode ends: a sliding velocity comes to zero, or to the lower or upper end of a region
   /// of a friction curve; a contact cannot hold any longer; or an input has its next row.
-  enum class Cause { nothing, arrives, slower, faster, gives_way, input };
+  enum class Cause : signed char { nothing, arrives, slower, faster, gives_way, input };
 
   struct Exit {
     T tau{never};
@@ -336,7 +336,10 @@ class Simulation {
       return;
     }
     mark_.released = mark_.released || release;
-    if ((marks_ & (marks_ + 1)) == 0) mark_ = {time_, x_, v_, skin_, hold_begin_, mode_, release};
+    if (marks_ == next_mark_) {
+      mark_ = {time_, x_, v_, skin_, hold_begin_, mode_, release};
+      next_mark_ = 2 * next_mark_ + 1;
+    }
     ++marks_;
   }
 
@@ -362,7 +365,7 @@ class Simulation {
   T tangent_{0};               ///< … at this acceleration
 
   Mark mark_{};
-  long long marks_{0};
+  long long marks_{0}, next_mark_{0};  ///< states seen, and when the one to compare with is renewed
   T hold_begin_{0};
   Outcome<T> outcome_{};
 };

@@ -212,10 +212,9 @@ Verdict judge(const Case& c, std::vector<pd::Segment<double>>& segments) {
   const auto outcome = pd::simulate(
       drive, inputs, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
   const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
-  Verdict verdict{{}, outcome.status, segments.size()};
-  if (outcome.status == pd::Status::ok)
-    verdict.certificate = pd::Certifier<double>(motion, c.duration).certify();
-  return verdict;
+  if (outcome.status != pd::Status::ok) return {{}, outcome.status, segments.size()};
+  pd::Certifier<double> certifier(motion, c.duration);
+  return {certifier.certify(), outcome.status, segments.size()};
 }
 
 void print(const char* name, const Verdict& verdict) {
@@ -284,7 +283,7 @@ int fuzz(long long count, std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   if (argc > 2 && std::strcmp(argv[1], "--replay") == 0) return replay(argc - 2, argv + 2);
-  if (argc == 3) return fuzz(std::atoll(argv[1]), std::strtoull(argv[2], nullptr, 10));
+  if (argc == 3) return fuzz(std::strtoll(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));
   std::fprintf(stderr, "usage: fuzz COUNT SEED | fuzz --replay FILE...\n");
   return 2;
 }
