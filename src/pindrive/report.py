@@ -20,6 +20,8 @@ WIDTH = 100
 """Columns where the output is no terminal."""
 HEAD, TAIL = 14, 6
 """How many phases of a long motion are shown, from its start and from its end."""
+TRUSTED = 1e-8
+"""Largest relative residual that a million events may leave; numbers that overflow leave more."""
 
 _MODES = {"slip": "slip", "carried": "carried by plate", "resting": "resting on finger"}
 _KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
@@ -32,6 +34,11 @@ def console() -> Console:
     if not screen.is_terminal:
         screen.width = WIDTH
     return screen
+
+
+def show(report: RenderableType) -> None:
+    """Print a report; what is wider than the terminal is left for it to wrap, never cut off."""
+    console().print(report, crop=False)
 
 
 def device_report(device: DeviceFile) -> RenderableType:
@@ -149,4 +156,5 @@ def ending(motion: Motion) -> str:
 def trust(motion: Motion) -> str:
     """How well the motion keeps the laws, checked without the solver."""
     worst = motion.certificate().worst
-    return f"Laws checked without the solver: largest relative residual {worst:.1e}."
+    doubt = "" if worst <= TRUSTED else " Do not trust this motion."
+    return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"
