@@ -23,7 +23,6 @@ HEAD, TAIL = 14, 6
 TRUSTED = 1e-8
 """Largest relative residual that a million events may leave; numbers that overflow leave more."""
 
-_MODES = {"slip": "slip", "carried": "carried by plate", "resting": "resting on finger"}
 _KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
 _TIME, _POSITION, _VELOCITY = (QUANTITIES[q] for q in ("duration", "displacement", "velocity"))
 
@@ -93,7 +92,7 @@ def _phases(motion: Motion) -> Table:
             _TIME.digits(segment.begin),
             _TIME.digits(segment.end) if lasts else "",
             _TIME.digits(segment.end - segment.begin) if lasts else "for ever",
-            _MODES[segment.mode],
+            segment.mode,
             _POSITION.digits(motion.position(segment.begin)),
             _VELOCITY.digits(motion.velocity(segment.begin)),
             ", ".join(causes.get(segment.end, [])),
