@@ -239,14 +239,6 @@ def test_several_files_at_once_and_nothing_else() -> None:
     assert sorted(path.name for path in Path().iterdir()) == ["a.csv", "a.json"]
 
 
-def test_a_link_stays_and_its_target_is_replaced() -> None:
-    Path("old.json").write_text("old")
-    Path("link.json").symlink_to("old.json")
-    assert run("simulate", EXAMPLE, "--json", "link.json").exit_code == 0
-    assert Path("link.json").is_symlink()
-    assert json.loads(Path("old.json").read_text(encoding="utf-8"))
-
-
 # ---- bad input -----------------------------------------------------------------------------------
 
 GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")

@@ -108,6 +108,26 @@ def test_steady_motion_settles_where_it_begins() -> None:
     assert motion.transient.settling_time == motion.ending.since > 0
 
 
+@pytest.mark.parametrize(
+    ("cycle", "plate"),
+    [("free", Contact(0.0)), ("grazing", Contact(0.02)), ("stick-slip", Contact(0.02, 0.03))],
+)
+def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
+    """Amplitude and middle are those of one round; no shorter period brings the motion back."""
+    drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=plate, finger=Contact(0.0))
+    motion = Release(drive, 0.1, 1.5e-3).run()
+    ending = motion.ending
+    assert ending.cycle == cycle
+    t = ending.since + np.linspace(0.0, ending.period, SAMPLES)
+    x = motion.position(t)
+    assert ending.position == pytest.approx((x.max() + x.min()) / 2, abs=1e-10)
+    assert ending.amplitude == pytest.approx((x.max() - x.min()) / 2, abs=1e-10)
+    assert motion.position(t + ending.period) == pytest.approx(x, abs=1e-15)
+    for part in (2, 3):
+        off = np.abs(motion.position(t + ending.period / part) - x)
+        assert off.max() > ending.amplitude / 10
+
+
 def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
     drive = Drive.with_damping_ratio(
         mass=0.01, stiffness=100.0, damping_ratio=2.0, plate=Contact(0.02), finger=Contact(0.0)
