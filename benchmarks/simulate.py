@@ -120,11 +120,17 @@ def main() -> None:
             displacement=release.displacement,
         )
 
+    def with_numbers() -> object:
+        motion = exact()
+        return motion.transient, motion.ending
+
     motion = exact()
     print(f"{machine()}\n{EXAMPLE.name}: {len(motion.events)} events, {motion.ending.kind}\n")
     ours = per_call(exact, rounds)
     print(f"{'':24}{'median':>12}{'ratio':>9}{'error in x at rest':>22}")
     print(f"{'pindrive.simulate':24}{1e6 * ours:9.1f} µs{1:9.0f}{'':>22}")
+    numbers = per_call(with_numbers, rounds)
+    print(f"{'... and its numbers':24}{1e6 * numbers:9.1f} µs{numbers / ours:9.1f}")
     for method, rtol in (("RK45", 1e-8), ("DOP853", 1e-8)):
 
         def general(method: str = method, rtol: float = rtol) -> tuple[float, float]:

@@ -8,12 +8,14 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+import numpy as np
 import pytest
 import xarray as xr
 from typer.testing import CliRunner, Result
 
 import pindrive
 from pindrive.cli import app
+from pindrive.config import load
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "tactile-mouse.toml"
 
@@ -25,6 +27,14 @@ def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def example() -> pindrive.Motion:
+    """The motion of the example file, from Python."""
+    device = load(EXAMPLE)
+    return pindrive.simulate(
+        device.drive, mouse_velocity=device.mouse_velocity, displacement=device.displacement
+    )
 
 
 def refused(*arguments: str | Path) -> str:
@@ -83,6 +93,27 @@ def test_simulate_leaves_the_middle_of_many_phases_out() -> None:
     assert len(output.splitlines()) < 60
 
 
+def test_phases_are_told_in_their_units() -> None:
+    """The fourth phase of the example begins where the plate's velocity is crossed."""
+    rows = [line.split() for line in run("simulate", EXAMPLE).stdout.splitlines()]
+    assert ["ms", "ms", "ms", "mm", "mm/s"] in rows
+    (row,) = (row for row in rows if row[:2] == ["42.31", "46.10"])
+    assert row == ["42.31", "46.10", "3.790", "slip", "-0.5794", "60.00", "plate", "sticks"]
+
+
+def test_the_last_lines_are_whole_however_narrow_the_screen() -> None:
+    frictions = ("finger.kinetic=0 N", "finger.static=0 N", "damping_ratio=0")
+    output = run("simulate", EXAMPLE, *(f"--set={value}" for value in frictions)).stdout
+    assert "Steady stick-slip oscillation" in output
+    assert "period 62.83 ms.\n" in output
+
+
+def test_a_motion_that_breaks_a_law_is_not_to_be_trusted() -> None:
+    """Its energies are beyond the largest float."""
+    assert "Do not trust" not in run("simulate", EXAMPLE).stdout
+    assert "Do not trust" in run("simulate", EXAMPLE, "--set", "displacement=1e200 m").stdout
+
+
 def test_numbers_of_an_absent_contact_are_left_out() -> None:
     output = run("simulate", EXAMPLE, "--set=finger.kinetic=0 N", "--set=finger.static=0 N").stdout
     assert "at the plate" in output
@@ -93,6 +124,31 @@ def test_set_replaces_values() -> None:
     damped = run("simulate", EXAMPLE, "--set", "damping_ratio=2", "--set", "mass=12 g")
     assert damped.exit_code == 0
     assert damped.stdout != run("simulate", EXAMPLE).stdout
+
+
+@pytest.mark.parametrize(
+    ("override", "name", "value"),
+    [
+        ("drive.mass=12 g", "mass", 0.012),
+        ("drive.stiffness=0.2 N/mm", "stiffness", 200.0),
+        ("drive.damping=0.1 N*s/m", "damping", 0.1),
+        ("drive.damping_ratio=50 %", "damping", 1.0),
+        ("plate.kinetic=21 mN", "plate.kinetic", 0.021),
+        ("plate.static=40 mN", "plate.static", 0.040),
+        ("finger.kinetic=6 mN", "finger.kinetic", 0.006),
+        ("finger.static=9 mN", "finger.static", 0.009),
+        ("motion.mouse_velocity=-5 cm/s", "mouse_velocity", -0.05),
+        ("motion.displacement=-1 mm", "displacement", -0.001),
+        ("motion.velocity=0 m/s", "velocity", 0.0),
+        ("motion.duration=0.5 s", "duration", 0.5),
+    ],
+)
+def test_every_key_that_is_set_reaches_the_simulation(
+    override: str, name: str, value: float
+) -> None:
+    assert run("simulate", EXAMPLE, "--set", override, "--json", "out.json").exit_code == 0
+    inputs = json.loads(Path("out.json").read_text(encoding="utf-8"))["inputs"]
+    assert inputs[name] == value
 
 
 def test_json_holds_every_number() -> None:
@@ -125,14 +181,47 @@ def test_csv_holds_samples_and_events() -> None:
     ]
     assert times == sorted(set(times))
     assert len(times) > 50
-    assert (float(rows[0]["position_m"]), float(rows[0]["velocity_m_per_s"])) == (0.002, 0.06)
+    motion = example()
+    for row in rows:
+        t = float(row["time_s"])
+        assert [float(value) for value in list(row.values())[1:]] == [
+            motion.position(t),
+            motion.velocity(t),
+            motion.acceleration(t),
+            motion.force("plate", t),
+            motion.force("finger", t),
+        ]
+
+
+def test_the_number_of_samples_is_as_asked() -> None:
+    for option in ("--csv", "--netcdf"):
+        run("simulate", EXAMPLE, option, "few", "--samples", "2")
+        run("simulate", EXAMPLE, option, "many", "--samples", "2000")
+        assert Path("few").stat().st_size < Path("many").stat().st_size
 
 
 def test_netcdf_has_units() -> None:
     assert run("simulate", EXAMPLE, "--netcdf", "out.nc").exit_code == 0
     with xr.open_dataset("out.nc", engine="h5netcdf", decode_timedelta=False) as dataset:
-        assert dataset["position"].attrs["units"] == "m"
-        assert float(dataset["position"][0]) == 0.002
+        units = {name: variable.attrs["units"] for name, variable in dataset.items()
+                 if "time" in variable.dims}  # fmt: skip
+        assert units == {
+            "position": "m",
+            "velocity": "m/s",
+            "acceleration": "m/s2",
+            "plate_force": "N",
+            "finger_force": "N",
+        }
+        motion, t = example(), dataset["time"].values
+        assert np.array_equal(dataset["position"], motion.position(t))
+        assert np.array_equal(dataset["velocity"], motion.velocity(t))
+        assert np.array_equal(dataset["acceleration"], motion.acceleration(t))
+        assert np.array_equal(dataset["plate_force"], motion.force("plate", t))
+        assert np.array_equal(dataset["finger_force"], motion.force("finger", t))
+        assert dataset["event_kind"].values.tolist() == [e.kind for e in motion.events]
+        assert dataset["event_time"].values.tolist() == [e.time for e in motion.events]
+        assert dataset["transient_settling_time"].attrs["units"] == "s"
+        assert float(dataset["transient_settling_time"]) == motion.transient.settling_time
 
 
 @pytest.mark.parametrize(
@@ -150,28 +239,9 @@ def test_several_files_at_once_and_nothing_else() -> None:
     assert sorted(path.name for path in Path().iterdir()) == ["a.csv", "a.json"]
 
 
-def test_a_link_stays_and_its_target_is_replaced() -> None:
-    Path("old.json").write_text("old")
-    Path("link.json").symlink_to("old.json")
-    assert run("simulate", EXAMPLE, "--json", "link.json").exit_code == 0
-    assert Path("link.json").is_symlink()
-    assert json.loads(Path("old.json").read_text(encoding="utf-8"))
-
-
 # ---- bad input -----------------------------------------------------------------------------------
 
-GOOD = """
-[drive]
-mass = "10 g"
-stiffness = "100 N/m"
-damping = "0.40 N*s/m"
-[plate]
-kinetic = "20 mN"
-[finger]
-kinetic = "5 mN"
-[motion]
-mouse_velocity = "100 mm/s"
-"""
+GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -203,8 +273,20 @@ def test_bad_device_file(command: str, old: str, new: str, place: str, bound: st
 
 
 @pytest.mark.parametrize("command", ["check", "simulate"])
-def test_missing_device_file(command: str) -> None:
+def test_unreadable_device_file(command: str) -> None:
+    Path("empty.toml").write_text("")
+    Path("bytes.toml").write_bytes(b"\xff")
     assert refused(command, "no.toml") == "no.toml: cannot be read: No such file or directory"
+    assert refused(command, ".").startswith(".: cannot be read: ")
+    assert refused(command, "empty.toml").startswith("empty.toml: is empty; `pindrive init FILE`")
+    assert refused(command, "bytes.toml") == "bytes.toml: is not UTF-8 text, at byte 0"
+
+
+def test_init_where_no_file_can_be() -> None:
+    Path("folder").mkdir()
+    assert refused("init", "folder") == "folder: cannot be written: not a regular file"
+    line = refused("init", "no/such/new.toml")
+    assert line == "no/such/new.toml: cannot be written: No such file or directory"
 
 
 def test_every_problem_has_its_line() -> None:
@@ -221,6 +303,8 @@ def test_every_problem_has_its_line() -> None:
         ("kinetic=1 mN", "--set kinetic: give the key in full"),
         ("mas=1 g", "--set mas: unknown key mas; did you mean drive.mass?"),
         ("mass", '--set "mass": must be key=value'),
+        ("plate=3", "--set plate: unknown key plate; there are plate.kinetic, plate.static"),
+        ("speed=3", "--set speed: unknown key speed; there are device.name, "),
     ],
 )
 def test_bad_override(override: str, problem: str) -> None:
@@ -281,6 +365,36 @@ def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     line = refused("simulate", EXAMPLE, "--json", "a.json", "--csv", "a.csv")
     assert line == "a.csv: cannot be written: No space left on device"
     assert Path("a.csv").read_text() == "old"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no limit on the size of files")
+@pytest.mark.parametrize("name", ["a.png", "a.svg", "a.pdf", "a.csv", "a.nc", "a.json"])
+def test_a_disk_that_fills_up_leaves_nothing(name: str) -> None:
+    import resource
+
+    sizes = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, sizes[1]))
+    try:
+        option = {".csv": "--csv", ".nc": "--netcdf", ".json": "--json"}
+        line = refused("simulate", EXAMPLE, option.get(Path(name).suffix, "--plot"), name)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, sizes)
+    assert line == f"{name}: cannot be written: File too large"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
+@pytest.mark.parametrize("arguments", [["--help"], ["init", "a"], ["simulate", str(EXAMPLE)]])
+def test_a_full_standard_output_is_said(arguments: list[str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "pindrive", *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert done.stderr == "standard output: cannot be written: No space left on device\n"
 
 
 def test_interruption_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,18 +13,7 @@ from pindrive.quantities import INPUTS
 from pindrive.units import UnitError, to_si
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "tactile-mouse.toml"
-GOOD = """
-[drive]
-mass = "10 g"
-stiffness = "100 N/m"
-damping = "0.40 N*s/m"
-[plate]
-kinetic = "20 mN"
-[finger]
-kinetic = "5 mN"
-[motion]
-mouse_velocity = "100 mm/s"
-"""
+GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
 
 Write = Callable[..., Path]
 

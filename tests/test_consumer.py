@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -48,6 +49,17 @@ def check(consumer: Path) -> None:
     motion = pindrive.simulate(drive, mouse_velocity=0.10, displacement=1.5e-3)
     expected = [f"{segment.begin:.9f} s" for segment in motion.segments]
     assert run(consumer).split("\n") == [*expected, motion.ending.kind, ""]
+
+
+def test_the_core_stands_alone() -> None:
+    """Headers of the standard library alone; nothing that allocates, throws or prints."""
+    headers = {path.name: path.read_text("utf-8") for path in ROOT.glob("include/pindrive/*.hpp")}
+    assert headers
+    allowed = {"algorithm", "array", "cmath", "cstddef", "iterator", "limits", "utility"}
+    for name, text in headers.items():
+        code = re.sub(r"//.*", "", text)
+        assert set(re.findall(r"#include <(.*)>", code)) <= allowed, name
+        assert not re.search(r"\b(new|delete|malloc|throw|try)\b", code), name
 
 
 def test_find_package(tmp_path: Path) -> None:

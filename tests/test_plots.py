@@ -243,6 +243,8 @@ def test_too_many_events_are_not_marked_and_it_says_so(
 
 def test_colours_are_from_the_palette() -> None:
     assert {to_hex(colour).upper() for colour in PALETTE.values()} <= OKABE_ITO
+    assert len({PALETTE[name] for name in ("curve", "stick", "slip", "cross")}) == 4
+    assert PALETTE["carried"] != PALETTE["resting"]
 
 
 @pytest.mark.parametrize("name", MOTIONS)

@@ -6,6 +6,7 @@ from dataclasses import fields
 import pytest
 
 from pindrive import Contact, Drive, simulate
+from pindrive._core import settling_band
 from pindrive.quantities import (
     CERTIFICATE,
     INPUTS,
@@ -123,6 +124,10 @@ def test_check_says_where() -> None:
 )
 def test_significant_digits(value: float, text: str) -> None:
     assert significant(value) == text
+
+
+def test_the_settling_band_is_said_as_it_is() -> None:
+    assert f"within {100 * settling_band:g} %" in QUANTITIES["transient.settling_time"].meaning
 
 
 def test_values_are_shown_in_display_units() -> None:

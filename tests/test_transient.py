@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, isnan
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -59,10 +60,9 @@ def test_numbers_against_samples(release: Release) -> None:
             distance = abs(motion.position(settled) - motion.ending.position)
             assert distance == pytest.approx(band, rel=1e-9, abs=1e-12 * size)
 
-    for use, surface, sliding in (
-        (transient.plate, motion.mouse_velocity, motion.drive.plate),
-        (transient.finger, 0.0, motion.drive.finger),
-    ):
+    names: tuple[Literal["plate", "finger"], ...] = ("plate", "finger")
+    for name, surface in zip(names, (motion.mouse_velocity, 0.0), strict=True):
+        use, sliding = getattr(transient, name), getattr(motion.drive, name)
         if sliding.frictionless:
             assert use.distance_slid == use.dissipated == use.reversals == 0
             continue
@@ -70,6 +70,16 @@ def test_numbers_against_samples(release: Release) -> None:
         slack = step * np.abs(v).max() * (3 + use.reversals) + 1e-9 * size
         assert use.distance_slid == pytest.approx(slid, abs=slack, rel=1e-4)
         assert use.dissipated == pytest.approx(use.distance_slid * sliding.kinetic, rel=1e-12)
+        # A sliding contact's force is constant, a stuck one's runs from end to end.
+        ends = np.union1d(motion.sample_times(2), t)
+        forces = [np.abs(motion.force(name, ends, side)).max() for side in ("left", "right")]
+        assert use.peak_force == pytest.approx(max(forces), rel=1e-12)
+        if motion.ending.cycle != "stick-slip":
+            stops = [e for e in motion.events if e.kind != "slip" and e.contact in (name, "both")]
+            assert use.reversals == len([e for e in stops if e.time <= motion.duration])
+            stuck = [s for s in motion.segments if getattr(s, name) == 0]
+            lasted = [min(s.end, motion.duration) - s.begin for s in stuck]
+            assert use.time_stuck == pytest.approx(sum(d for d in lasted if d > 0), rel=1e-12)
 
 
 def example(**changes: float) -> Motion:
@@ -106,6 +116,26 @@ def test_steady_motion_settles_where_it_begins() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
     motion = Release(drive, 0.1, 1.5e-3).run()
     assert motion.transient.settling_time == motion.ending.since > 0
+
+
+@pytest.mark.parametrize(
+    ("cycle", "plate"),
+    [("free", Contact(0.0)), ("grazing", Contact(0.02)), ("stick-slip", Contact(0.02, 0.03))],
+)
+def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
+    """Amplitude and middle are those of one round; no shorter period brings the motion back."""
+    drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=plate, finger=Contact(0.0))
+    motion = Release(drive, 0.1, 1.5e-3).run()
+    ending = motion.ending
+    assert ending.cycle == cycle
+    t = ending.since + np.linspace(0.0, ending.period, SAMPLES)
+    x = motion.position(t)
+    assert ending.position == pytest.approx((x.max() + x.min()) / 2, abs=1e-10)
+    assert ending.amplitude == pytest.approx((x.max() - x.min()) / 2, abs=1e-10)
+    assert motion.position(t + ending.period) == pytest.approx(x, abs=1e-15)
+    for part in (2, 3):
+        off = np.abs(motion.position(t + ending.period / part) - x)
+        assert off.max() > ending.amplitude / 10
 
 
 def test_overdamped_pin_approaches_its_trough_for_ever() -> None:

@@ -32,7 +32,12 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
-    app()
+    try:
+        app()
+    except OSError as error:  # other files have been named already
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
+        print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)
+        sys.exit(2)
 
 
 @contextmanager
@@ -76,7 +81,7 @@ def init(
     from pindrive.output import OutputError, atomic_write
 
     with _refusing():
-        if file.exists() and not force:
+        if file.is_file() and not force:
             raise OutputError(f"{file}: exists already; --force replaces it")
         with atomic_write(file) as part:
             part.write_text(template(), encoding="utf-8")
@@ -90,9 +95,9 @@ def check(file: DeviceArgument) -> None:
 
     with _refusing():
         device = load(file)
-    from pindrive.report import console, device_report
+    from pindrive.report import device_report, show
 
-    console().print(device_report(device))
+    show(device_report(device))
 
 
 @app.command()
@@ -140,12 +145,11 @@ def simulate(
             for path, write in outputs.items():
                 with naming(path):
                     write(motion, parts[path])
-    from pindrive.report import console, motion_report
+    from pindrive.report import motion_report, show
 
-    screen = console()
-    screen.print(motion_report(motion))
+    show(motion_report(motion))
     for path in outputs:
-        screen.print(f"Wrote {path}", soft_wrap=True)
+        typer.echo(f"Wrote {path}")
 
 
 def _simulate(device: DeviceFile) -> Motion:

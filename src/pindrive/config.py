@@ -141,7 +141,7 @@ def _override(tables: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[st
         if not equals or not given:
             problems.append(f"--set {quoted(override)}: must be key=value")
         elif not keys:
-            problems.append(f"{place}: {_not_known(given)}")
+            problems.append(f"{place}: {_not_known(given, tables=False)}")
         elif len(keys) > 1:
             problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
         else:
@@ -160,23 +160,26 @@ def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
     return unknown + [key for key in full if key not in KEYS]
 
 
-def _nearest(key: str) -> str | None:
+def _nearest(key: str, *, tables: bool = True) -> str | None:
     """The known table or key most like `key`; a known name in the wrong table finds its table."""
     names = {known.partition(".")[2]: known for known in KEYS}
-    if "." not in key:
+    if tables and "." not in key:
         names |= {table: table for table in TABLES}
     name = key.rpartition(".")[2]
     near = get_close_matches(key, KEYS, 1, cutoff=0.8) or get_close_matches(name, names, 1)
     return names.get(near[0], near[0]) if near else None
 
 
-def _not_known(key: str) -> str:
-    nearest = _nearest(key)
+def _not_known(key: str, *, tables: bool = True) -> str:
+    """What to say of an unknown key; without `tables` where only a key can stand."""
+    nearest = _nearest(key, tables=tables)
     said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
     if nearest:
         return f"unknown key {said}; did you mean {nearest}?"
     table = key.partition(".")[0]
-    known = [known for known in KEYS if known.startswith(f"{table}.")] or TABLES
+    known = [known for known in KEYS if known.startswith(f"{table}.")] or (
+        TABLES if tables else KEYS
+    )
     return f"unknown key {said}; there are {', '.join(known)}"
 
 

@@ -1,10 +1,15 @@
-"""A motion as files: a figure, samples as CSV, everything as NetCDF, the numbers as JSON."""
+"""A motion as files: a figure, samples as CSV, everything as NetCDF, the numbers as JSON.
+
+Pictures and NetCDF are made in memory first: on a full disk the libraries that make them fail in
+ways of their own, while plain writing raises OSError.
+"""
 
 from __future__ import annotations
 
 import csv
 import json
 from dataclasses import asdict
+from io import BytesIO
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +25,9 @@ def write_figure(motion: Motion, path: Path, format: str) -> None:
     """Draw the motion as "png", "svg" or "pdf"."""
     from pindrive.plots import plot_motion, save
 
-    save(plot_motion(motion), path, format)
+    file = BytesIO()
+    save(plot_motion(motion), file, format)
+    path.write_bytes(file.getvalue())
 
 
 def write_csv(motion: Motion, path: Path, samples: int) -> None:
@@ -42,8 +49,10 @@ def write_csv(motion: Motion, path: Path, samples: int) -> None:
 
 def write_netcdf(motion: Motion, path: Path, samples: int) -> None:
     """Write `motion.to_dataset` at even times and at its events."""
+    file = BytesIO()
     dataset = motion.to_dataset(motion.sample_times(samples))
-    dataset.to_netcdf(path, engine="h5netcdf")
+    dataset.to_netcdf(file, engine="h5netcdf")
+    path.write_bytes(file.getvalue())
 
 
 def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:

@@ -20,8 +20,9 @@ WIDTH = 100
 """Columns where the output is no terminal."""
 HEAD, TAIL = 14, 6
 """How many phases of a long motion are shown, from its start and from its end."""
+TRUSTED = 1e-8
+"""Largest relative residual that a million events may leave; numbers that overflow leave more."""
 
-_MODES = {"slip": "slip", "carried": "carried by plate", "resting": "resting on finger"}
 _KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
 _TIME, _POSITION, _VELOCITY = (QUANTITIES[q] for q in ("duration", "displacement", "velocity"))
 
@@ -32,6 +33,11 @@ def console() -> Console:
     if not screen.is_terminal:
         screen.width = WIDTH
     return screen
+
+
+def show(report: RenderableType) -> None:
+    """Print a report; what is wider than the terminal is left for it to wrap, never cut off."""
+    console().print(report, crop=False)
 
 
 def device_report(device: DeviceFile) -> RenderableType:
@@ -86,7 +92,7 @@ def _phases(motion: Motion) -> Table:
             _TIME.digits(segment.begin),
             _TIME.digits(segment.end) if lasts else "",
             _TIME.digits(segment.end - segment.begin) if lasts else "for ever",
-            _MODES[segment.mode],
+            segment.mode,
             _POSITION.digits(motion.position(segment.begin)),
             _VELOCITY.digits(motion.velocity(segment.begin)),
             ", ".join(causes.get(segment.end, [])),
@@ -149,4 +155,5 @@ def ending(motion: Motion) -> str:
 def trust(motion: Motion) -> str:
     """How well the motion keeps the laws, checked without the solver."""
     worst = motion.certificate().worst
-    return f"Laws checked without the solver: largest relative residual {worst:.1e}."
+    doubt = "" if worst <= TRUSTED else " Do not trust this motion."
+    return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"

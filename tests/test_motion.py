@@ -1,0 +1,101 @@
+"""A motion as Python sees it: shapes, limits at events, and what it refuses."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pindrive import Contact, Drive, Motion, simulate
+
+DRIVE = Drive(
+    mass=0.010, stiffness=100.0, damping=0.32, plate=Contact(0.022, 0.0265), finger=Contact(0.005)
+)
+
+
+@pytest.fixture(scope="module")
+def motion() -> Motion:
+    return simulate(DRIVE, mouse_velocity=0.06, displacement=2e-3)
+
+
+def test_a_time_gives_a_float_and_times_an_array_of_their_shape(motion: Motion) -> None:
+    for of in (motion.position, motion.velocity, motion.acceleration):
+        assert type(of(0.01)) is float
+        assert type(of(np.float64(0.01))) is float
+        for shape in ((0,), (1,), (3,), (2, 3), (2, 0, 3)):
+            assert of(np.full(shape, 0.01)).shape == shape
+        grid = np.linspace(0.0, 0.2, 12).reshape(3, 4)
+        assert np.array_equal(of(grid.T), of(grid).T), "an array that is not in C order"
+        assert of([0.01, 0.02]).tolist() == [of(0.01), of(0.02)]
+
+
+def test_the_limits_at_an_event_are_those_from_its_sides(motion: Motion) -> None:
+    """Friction jumps, and the acceleration with it; just beside the event they are the limits."""
+    assert {event.kind for event in motion.events} == {"cross", "stick", "slip"}
+    beside = 1e-9
+    for event in motion.events:
+        jump = 0.0
+        for contact in ("plate", "finger"):
+            left, right = (motion.force(contact, event.time, side) for side in ("left", "right"))
+            assert motion.force(contact, event.time - beside) == pytest.approx(left, abs=1e-7)
+            assert motion.force(contact, event.time + beside) == pytest.approx(right, abs=1e-7)
+            jump += right - left
+        left, right = (motion.acceleration(event.time, side) for side in ("left", "right"))
+        assert motion.acceleration(event.time - beside) == pytest.approx(left, abs=1e-5)
+        assert motion.acceleration(event.time + beside) == pytest.approx(right, abs=1e-5)
+        assert DRIVE.mass * (right - left) == pytest.approx(jump, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"mouse_velocity": math.nan}, "mouse_velocity must be finite, got nan m/s"),
+        ({"mouse_velocity": "1 m/s"}, "mouse_velocity must be a number in m/s, got '1 m/s'"),
+        ({"displacement": math.inf}, "displacement must be finite, got inf m"),
+        ({"velocity": -math.inf}, "velocity must be finite, got -inf m/s"),
+        ({"plate_load": -1.0}, "plate_load must be finite and at least 0, got -1.0"),
+        ({"duration": 0.0}, "duration must be finite and greater than 0 s, got 0.0 s"),
+        ({"duration": math.inf}, "duration must be finite and greater than 0 s, got inf s"),
+    ],
+)
+def test_a_bad_release_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError) as refused:
+        simulate(DRIVE, **({"mouse_velocity": 0.06} | changes))
+    assert str(refused.value) == message
+
+
+@pytest.mark.parametrize("time", [-1e-9, math.nan, math.inf, [0.0, -1.0], "soon"])
+def test_a_bad_time_is_refused(motion: Motion, time: Any) -> None:
+    with pytest.raises(ValueError):
+        motion.position(time)
+
+
+def test_a_time_beyond_what_is_known_is_refused() -> None:
+    cut = simulate(DRIVE, mouse_velocity=0.06, displacement=2e-3, duration=0.05)
+    assert cut.ending.kind == "moving"
+    with pytest.raises(ValueError, match=r"t must be from 0 s to 0\.05 s, got 0\.06 s"):
+        cut.position([0.01, 0.06])
+
+
+def test_a_bad_name_is_refused(motion: Motion) -> None:
+    nowhere: Any = "up"
+    with pytest.raises(ValueError, match="side must be"):
+        motion.velocity(0.0, nowhere)
+    with pytest.raises(ValueError, match="contact must be"):
+        motion.force(nowhere, 0.0)
+
+
+def test_plate_load_multiplies_the_friction_of_the_plate() -> None:
+    release = {"mouse_velocity": 0.06, "displacement": 2e-3}
+    doubled = Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=0.32,
+        plate=Contact(0.044, 0.053),
+        finger=Contact(0.005),
+    )
+    pressed = simulate(DRIVE, plate_load=2.0, **release)
+    assert pressed.events == simulate(doubled, **release).events
+    assert pressed.events != simulate(DRIVE, **release).events
