@@ -202,7 +202,7 @@ def test_plate_velocity_is_drawn_and_named(
     motion, figure = drawn[name]
     for axes in (panel(figure, "v"), panel(figure, "portrait")):
         level = data(axes, "plate")[1]
-        assert level == pytest.approx(1e3 * motion.mouse_velocity)
+        assert level == pytest.approx(1e3 * float(motion.plate_velocity(0.0)))
         low, high = axes.get_ylim()
         assert low < level[0] < high
         assert any(text.get_text().startswith("plate") for text in axes.texts)

@@ -34,7 +34,7 @@ def test_numbers_against_samples(release: Release) -> None:
     transient = motion.transient
 
     turns = turning_points(t, v)
-    outward = np.sign(motion.displacement or motion.initial_velocity or motion.mouse_velocity)
+    outward = np.sign(motion.displacement or motion.initial_velocity or release.mouse_velocity)
     if transient.peak_time > 0:
         assert transient.peak_displacement * outward >= motion.displacement * outward - 1e-15
         assert transient.peak_time == pytest.approx(t[turns[0]], abs=2 * step)
@@ -61,7 +61,7 @@ def test_numbers_against_samples(release: Release) -> None:
             assert distance == pytest.approx(band, rel=1e-9, abs=1e-12 * size)
 
     names: tuple[Literal["plate", "finger"], ...] = ("plate", "finger")
-    for name, surface in zip(names, (motion.mouse_velocity, 0.0), strict=True):
+    for name, surface in zip(names, (release.mouse_velocity, 0.0), strict=True):
         use, sliding = getattr(transient, name), getattr(motion.drive, name)
         if sliding.frictionless:
             assert use.distance_slid == use.dissipated == use.reversals == 0

@@ -174,28 +174,27 @@ class Certifier {
     worst(result_.continuity, before.end - after.begin, before.end);
     const Event event = before.event;
     const bool soft = drive_.finger.present() && !drive_.finger.rigid();
-    const bool skin_slips = soft && event.finger && event.kind == Kind::slip;
+    const bool skin_slips = soft && event.finger == Kind::slip;
     if (soft && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
     if (skin_slips)
       worst(result_.transitions, drive_.finger.static_limit - std::abs(left.finger_force),
             force_scale_);
-    if (event.kind == Kind::cross || (event.kind == Kind::slip && !skin_slips))
-      cannot_hold(event, right, after.mode);
+    const auto let_go = [](Kind kind) { return kind == Kind::slip || kind == Kind::cross; };
+    cannot_hold(let_go(event.plate), let_go(event.finger) && !soft, right, after.mode);
   }
 
-  /// What the contacts of an event would have had to carry to stay, against what they could.
-  void cannot_hold(Event event, const State& now, Mode after) {
+  /// What contacts that let go would have had to carry to stay, against what they could.
+  void cannot_hold(bool plate, bool finger, const State& now, Mode after) {
+    if (!plate && !finger) return;
     using std::abs;
     const T still = T(1e-12) * v_scale_;
     const bool meets_both =
         abs(now.v) <= still && abs(now.plate_velocity.value) <= still && drive_.finger.rigid();
     if (meets_both && now.plate_velocity.rate != 0) return;  // the surfaces part
-    const bool finger = event.finger && drive_.finger.rigid();
-    if (!event.plate && !finger) return;
-    const T follows = event.plate ? now.plate_velocity.rate : T(0);
+    const T follows = plate ? now.plate_velocity.rate : T(0);
     T others{0}, limit{0};
-    if (event.plate)
+    if (plate)
       limit += drive_.plate.static_limit * now.load;
     else if (after.plate != Slide::absent)
       others += now.plate_force;
@@ -208,7 +207,7 @@ class Certifier {
     worst(result_.transitions, std::max(limit - abs(held), T(0)), force_scale_);
   }
 
-  const Motion<T>& motion_;
+  Motion<T> motion_;
   Drive<T> drive_;
   T duration_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};

@@ -118,13 +118,22 @@ struct Mode {
   bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
 };
 
-/// What ended a segment, and at which contacts. A bend is a row of an input or of a friction curve.
-enum class Kind : signed char { none, stick, slip, cross, bend };
+/// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
+/// sliding reverses. Nothing where only an input or a friction curve has its next row.
+enum class Kind : signed char { none, stick, slip, cross };
 
 struct Event {
-  Kind kind{Kind::none};
-  bool plate{false}, finger{false};
+  Kind plate{Kind::none}, finger{Kind::none};
 };
+
+inline Kind change(Slide before, Slide after) {
+  if (slides(before) && !slides(after)) return Kind::stick;
+  if (!slides(before) && slides(after)) return Kind::slip;
+  return before == after ? Kind::none : Kind::cross;
+}
+
+/// Whether the sliding velocity came to zero.
+inline bool stops(Kind kind) { return kind == Kind::stick || kind == Kind::cross; }
 
 /// One mode from begin to end (infinite for one that lasts for ever), with its friction.
 template <class T>

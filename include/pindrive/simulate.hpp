@@ -35,7 +35,7 @@ class Simulation {
       const Segment<T> segment = next();
       sink(segment);
       outcome_.until = segment.end;
-      if (segment.event.kind == Kind::none || outcome_.cycles()) return outcome_;
+      if (finished_ || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
       if (standing > standstill_limit) {
         outcome_.status = Status::standstill;
@@ -75,16 +75,16 @@ class Simulation {
     // What happens at the row of an input to rounding is judged with what the row brings.
     if (exit.tau < never && row_ < never && row_ - (time_ + exit.tau) <= rounding * row_)
       exit = {row_ - time_, Cause::input, false, false, 0};
+    finished_ = exit.tau == never || time_ + exit.tau >= inputs_.duration;
     if (exit.tau == never) {
       outcome_.end = ending(flow);
       if (outcome_.end == End::moving) segment.end = inputs_.duration;
       return segment;
     }
-    if (time_ + exit.tau >= inputs_.duration) {
+    if (finished_)
       segment.end = inputs_.duration;
-      return segment;
-    }
-    leave(segment, exit);
+    else
+      leave(segment, exit);
     return segment;
   }
 
@@ -191,20 +191,21 @@ class Simulation {
 
     switch (exit.cause) {
       case Cause::arrives:
-        segment.event = arrive(exit);
+        arrive(exit);
         break;
       case Cause::slower:
       case Cause::faster:
-        segment.event = change_region(exit);
+        change_region(exit);
         break;
       case Cause::gives_way:
-        segment.event = give_way(segment, exit);
+        give_way(segment, exit);
         break;
       case Cause::input:
       case Cause::nothing:
-        segment.event = meet_input(before);
+        meet_input();
         break;
     }
+    segment.event = {change(before.plate, mode_.plate), change(before.finger, mode_.finger)};
   }
 
   void advance(const Exit& exit) {
@@ -221,29 +222,31 @@ class Simulation {
     row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
   }
 
-  Event arrive(const Exit& exit) {
+  void arrive(const Exit& exit) {
     v_ = exit.plate ? now_.plate_velocity.value : T(0);
-    if (exit.finger && !drive_.finger.rigid()) {  // skin grips, and never blocks the pin
-      skin_ = sign(mode_.finger) * drive_.finger.kinetic;
-      mode_.finger = Slide::gripping;
-      if (!exit.plate) return {Kind::stick, false, true};
-    }
-    const bool plate = exit.plate, finger = exit.finger && drive_.finger.rigid();
+    if (exit.finger && !drive_.finger.rigid()) grip();
+    const bool finger = exit.finger && drive_.finger.rigid();
+    if (!exit.plate && !finger) return;
     Mode stuck = mode_;
-    if (plate) stuck.plate = Slide::stuck;
+    if (exit.plate) stuck.plate = Slide::stuck;
     if (finger) stuck.finger = Slide::stuck;
+    const bool held = mode_.stuck();
     const bool parting = stuck.plate == Slide::stuck && stuck.finger == Slide::stuck &&
                          now_.plate_velocity.rate != 0;
-    const bool held = mode_.stuck();
-    const int side = sign(plate ? mode_.plate : mode_.finger);
+    const int side = sign(exit.plate ? mode_.plate : mode_.finger);
     mode_ = parting || held ? friction_.holding(stuck, mode_, now_, x_, skin_)
                             : friction_.arriving(stuck, side, now_, x_, skin_);
-    const bool sticks = plate ? mode_.plate == Slide::stuck : mode_.finger == Slide::stuck;
     if (held) changed_plate_ = changed_finger_ = true;
-    return {sticks ? Kind::stick : Kind::cross, exit.plate, exit.finger};
   }
 
-  Event change_region(const Exit& exit) {
+  /// Skin that slid grips again, with the stretch that carries its kinetic friction. It never
+  /// blocks the pin.
+  void grip() {
+    skin_ = sign(mode_.finger) * drive_.finger.kinetic;
+    mode_.finger = Slide::gripping;
+  }
+
+  void change_region(const Exit& exit) {
     const int step = exit.cause == Cause::faster ? 1 : -1;
     const auto border = [&](const Contact<T>& contact, Slide slide, int& index) {
       const Region<T> region = contact.region(index);
@@ -254,19 +257,17 @@ class Simulation {
       v_ = now_.plate_velocity.value + border(drive_.plate, mode_.plate, mode_.plate_region);
     if (exit.finger) v_ = border(drive_.finger, mode_.finger, mode_.finger_region);
     if (exit.plate && step > 0) note_recurrence(false);
-    return {Kind::bend, exit.plate, exit.finger};
   }
 
-  Event give_way(const Segment<T>& segment, const Exit& exit) {
-    const Event event{Kind::slip, exit.plate, exit.finger};
+  void give_way(const Segment<T>& segment, const Exit& exit) {
     if (mode_.finger == Slide::gripping && exit.finger) {
       mode_.finger = static_cast<Slide>(exit.side);
       friction_.sort_regions(mode_, v_, now_);
-      if (!mode_.stuck()) return event;
+      if (!mode_.stuck()) return;
       // The skin's force drops to its kinetic friction: the plate may not hold what is left.
       mode_ = friction_.holding(mode_, mode_, now_, x_, skin_);
       changed_plate_ = !mode_.stuck();
-      return {Kind::slip, changed_plate_, true};
+      return;
     }
     const auto even = [](bool taken, const Contact<T>& contact) {
       return !taken || contact.kinetic == contact.static_limit;
@@ -274,29 +275,22 @@ class Simulation {
     tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
     tangent_ = friction_.level(mode_, now_).rate;
     mode_ = friction_.released(mode_, -exit.side, now_);
-    if (exit.plate) {
-      hold_begin_ = segment.begin;
-      note_recurrence(true);
-    }
-    return event;
+    if (!exit.plate) return;
+    hold_begin_ = segment.begin;
+    note_recurrence(true);
   }
 
   /// A row of an input: what holds the pin may be asked for more, or the surfaces part.
-  Event meet_input(Mode before) {
-    if (!before.stuck()) return {Kind::bend, false, false};
-    Mode stuck = before;
+  void meet_input() {
+    const Mode before = mode_;
+    if (slides(mode_.finger) && v_ == 0 && !drive_.finger.rigid()) grip();
+    if (!before.stuck()) return;
+    Mode stuck = mode_;
     if (slides(stuck.plate) && v_ == now_.plate_velocity.value) stuck.plate = Slide::stuck;
-    if (slides(stuck.finger) && v_ == 0 && drive_.finger.rigid()) stuck.finger = Slide::stuck;
-    mode_ = friction_.holding(stuck, before, now_, x_, skin_);
-    const auto turned = [](Slide from, Slide to, Slide what) { return from == what && to != what; };
-    const Event loose{Kind::slip, turned(before.plate, mode_.plate, Slide::stuck),
-                      turned(before.finger, mode_.finger, Slide::stuck)};
-    const Event caught{Kind::stick, turned(mode_.plate, before.plate, Slide::stuck),
-                       turned(mode_.finger, before.finger, Slide::stuck)};
-    changed_plate_ = loose.plate;
-    changed_finger_ = loose.finger;
-    if (loose.plate || loose.finger) return loose;
-    return caught.plate || caught.finger ? caught : Event{Kind::bend, false, false};
+    if (slides(stuck.finger) && v_ == 0) stuck.finger = Slide::stuck;
+    mode_ = friction_.holding(stuck, mode_, now_, x_, skin_);
+    changed_plate_ = before.plate == Slide::stuck && mode_.plate != Slide::stuck;
+    changed_finger_ = before.finger == Slide::stuck && mode_.finger != Slide::stuck;
   }
 
   // ---- how the motion ends -----------------------------------------------------------------------
@@ -367,6 +361,7 @@ class Simulation {
   Mark mark_{};
   long long marks_{0}, next_mark_{0};  ///< states seen, and when the one to compare with is renewed
   T hold_begin_{0};
+  bool finished_{false};
   Outcome<T> outcome_{};
 };
 

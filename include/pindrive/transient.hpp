@@ -167,7 +167,7 @@ class Measurement {
   void first_reversal(Transient<T>& result) const {
     for (const Segment<T>& segment : motion_) {
       if (segment.end > duration_) return;
-      if (!segment.event.plate || !came_to_zero(segment.event)) continue;
+      if (!stops(segment.event.plate)) continue;
       result.first_reversal_time = segment.end;
       return;
     }
@@ -204,10 +204,6 @@ class Measurement {
     Measurement(motion_, outcome.until).turning_points(widen);
     result.end_position = (low + high) / 2;
     result.amplitude = (high - low) / 2;
-  }
-
-  static bool came_to_zero(Event event) {
-    return event.kind == Kind::stick || event.kind == Kind::cross;
   }
 
   T settled_after(T x_end, T band) const {
@@ -275,11 +271,10 @@ class Measurement {
     if (skin) result.peak_stretch = result.peak_stretch_rate = T(0);
     motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
       const bool whole = to >= segment.end - segment.begin;
-      const bool came = whole && came_to_zero(segment.event);
       use(result.plate, segment, segment.mode.plate, segment.plate_velocity, segment.plate_force,
-          came && segment.event.plate, from, to, times);
+          whole && stops(segment.event.plate), from, to, times);
       use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
-          came && segment.event.finger, from, to, times);
+          whole && stops(segment.event.finger), from, to, times);
       for (const T tau : {from, to}) {
         using std::abs;
         const auto friction = motion_.friction(segment, tau);
@@ -336,13 +331,13 @@ class Measurement {
     const T start = energy(segment.finger_force.at(oscillator, from));
     const T end = energy(segment.finger_force.at(oscillator, to));
     if (slides(segment.mode.finger)) return start - end;
-    if (!whole || segment.event.kind != Kind::slip || !segment.event.finger) return T(0);
+    if (!whole || segment.event.finger != Kind::slip) return T(0);
     using std::abs;
     const T speed = abs(segment.flow.velocity.at(oscillator, to));
     return end - energy(finger.region(finger.region_of(speed)).at(speed));
   }
 
-  const Motion<T>& motion_;
+  Motion<T> motion_;
   T duration_;
 };
 

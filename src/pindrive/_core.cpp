@@ -184,9 +184,9 @@ nb::dict segments(const CoreMotion& motion) {
       column<double>(motion, [](const Segment& s) { return s.flow.acceleration.start; });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
-  table["event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.kind; });
-  table["event_contacts"] = column<std::int8_t>(
-      motion, [](const Segment& s) { return (s.event.plate ? 1 : 0) + (s.event.finger ? 2 : 0); });
+  table["plate_event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
+  table["finger_event"] =
+      column<std::int8_t>(motion, [](const Segment& s) { return s.event.finger; });
   return table;
 }
 

@@ -29,7 +29,8 @@ ModeName = Literal["slip", "carried", "resting"]
 
 # In the order of `Kind` and `Slide` in model.hpp.
 _KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
-_CONTACTS: tuple[Literal["plate", "finger", "both"], ...] = ("plate", "finger", "both")
+_EACH: tuple[Literal["plate", "finger", "both"], ...] = ("plate", "finger")
+_BOTH: tuple[Literal["plate", "finger", "both"], ...] = ("both",)
 _SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0}
 
 
@@ -40,7 +41,7 @@ class Event:
     time: float
     """s"""
     contact: Literal["plate", "finger", "both"]
-    """Where; `both` when plate and finger have one velocity."""
+    """Where; `both` when plate and finger, at one velocity, do the same."""
     kind: EventKind
     """`stick`: sliding stopped and the contact holds; `slip`: it breaks loose; `cross`: sliding
     reversed without sticking."""
@@ -171,6 +172,13 @@ class Motion:
         """How fast the skin of a compliant finger stretches, m/s."""
         return self._evaluate(self._core.stretch_rate, t, side)
 
+    def plate_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
+        times = _times(t)
+        if isinstance(self.mouse_velocity, Profile):
+            return self.mouse_velocity(times)
+        return np.full_like(times, self.mouse_velocity)
+
     def _evaluate(
         self,
         closed_form: Callable[[NDArray[np.float64], bool], NDArray[np.float64]],
@@ -179,7 +187,7 @@ class Motion:
     ) -> float | NDArray[np.float64]:
         if side not in ("left", "right"):
             raise ValueError(refusal("side", '"left" or "right"', repr(side)))
-        times = np.asarray(t, dtype=np.float64)
+        times = _times(t)
         known = self._core.known_until
         good = (times >= 0.0) & (times <= known) & (times < inf)
         if not good.all():
@@ -196,16 +204,19 @@ class Motion:
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Every change of mode, in order; of a stick-slip cycle, one round of it."""
+        """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
         table = {name: column.tolist() for name, column in self._table.items()}
-        return tuple(
-            Event(table["end"][i], _CONTACTS[contacts - 1], _KINDS[kind - 1], *state)
-            for i, (kind, contacts) in enumerate(
-                zip(table["event"], table["event_contacts"], strict=True)
-            )
-            if 0 < kind <= len(_KINDS)
-            for state in [self._state_after(table, i)]
-        )
+        events = []
+        for i, kinds in enumerate(zip(table["plate_event"], table["finger_event"], strict=True)):
+            if any(kinds):
+                state = self._state_after(table, i)
+                causes = _BOTH if kinds[0] == kinds[1] else _EACH
+                events += [
+                    Event(table["end"][i], contact, _KINDS[kind - 1], *state)
+                    for contact, kind in zip(causes, kinds, strict=False)
+                    if kind
+                ]
+        return tuple(events)
 
     def _state_after(self, table: dict[str, list[Any]], i: int) -> tuple[float, float]:
         """Position and velocity at the end of segment i: where the next one starts."""
@@ -280,6 +291,8 @@ class Motion:
 
     def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
         """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
+        if not count >= 2:
+            raise ValueError(refusal("count", "at least 2", repr(count)))
         even = np.linspace(0.0, self.duration, count)
         events = self._table["end"]
         return np.union1d(even, events[events <= self.duration])
@@ -298,7 +311,9 @@ class Motion:
 
         from pindrive import __version__
 
-        t = self.sample_times() if times is None else np.atleast_1d(np.asarray(times, np.float64))
+        t = self.sample_times() if times is None else np.atleast_1d(_times(times))
+        if t.ndim != 1:
+            raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
         series: dict[str, tuple[Any, str, str]] = {
             "position": (self.position(t), "m", "deflection of the pin from the spring's rest"),
             "velocity": (self.velocity(t), "m/s", "velocity of the pin in the housing"),
@@ -390,6 +405,13 @@ class Motion:
         return dict(_flattened(groups))
 
 
+def _times(t: ArrayLike) -> NDArray[np.float64]:
+    try:
+        return np.asarray(t, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None
+
+
 def _flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]:
     rows = []
     for name, value in tree.items():
@@ -428,9 +450,11 @@ def simulate(
 
     Raises:
         ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
-            skin cannot hold; a plate with a friction curve whose load changes, because their
-            product is not piecewise linear.
+            skin cannot hold; a friction curve at a compliant finger, or at a plate whose load
+            changes: neither is piecewise linear.
     """
+    if not isinstance(drive, Drive):
+        raise ValueError(refusal("drive", "a Drive", repr(drive)))
     v_plate = _rows(mouse_velocity, "mouse_velocity")
     load = _rows(plate_load, "plate_load")
     x = check("displacement", displacement)
@@ -439,6 +463,9 @@ def simulate(
     plate, finger = drive.plate, drive.finger
     if not plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
+    if finger.regions and not finger.rigid:
+        required = "one row for a compliant finger, whose skin would lag behind it"
+        raise ValueError(refusal("finger curve", required, f"{len(finger.curve or ())} rows"))
     if plate.regions and len(load) > 1:
         required = "constant for a plate with a friction curve"
         raise ValueError(refusal("plate_load", required, "a profile that changes"))

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive._core import settling_band
+from pindrive.drive import Profile
 from pindrive.quantities import QUANTITIES
 from pindrive.trace import MM, Trace
 
@@ -155,11 +156,11 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     a.vlines(trace.t[trace.starts[1:]], left, right, color=PALETTE["curve"], lw=0.5, gid="jumps")
     _mark_events(trace, x, [(e.time + d) * trace.scale for e, d in trace.events], "position")
     _mark_events(trace, v, [(e.time + d) * trace.scale for e, d in trace.events], "velocity")
-    _draw_plate(motion, v)
+    _draw_plate(motion, v, trace)
     _mark_settling(motion, trace, x)
     _mark_extremes(motion, trace, x)
     x.set_ylim(_room(trace.x, 0.0))
-    v.set_ylim(_room(trace.v, 0.0, motion.mouse_velocity * MM))
+    v.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
     a.set_ylim(_room(trace.a, 0.0))
     a.set_xlabel(f"time after release ({trace.unit})")
     a.set_xlim(0.0, trace.end * trace.scale)
@@ -180,12 +181,13 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
         )
     axes.plot(trace.x, trace.v, color=PALETTE["curve"], gid="curve")
     _mark_events(trace, axes, [e.position * MM for e, _ in trace.events], "velocity")
-    _draw_plate(motion, axes)
+    if not isinstance(motion.mouse_velocity, Profile):
+        _draw_plate(motion, axes, trace)
     _mark_ends(motion, trace, axes)
     axes.set_xlabel("displacement $x$ (mm)")
     axes.set_ylabel("velocity $v$ (mm/s)")
     axes.set_xlim(_room(trace.x, margin=0.1))
-    axes.set_ylim(_room(trace.v, 0.0, motion.mouse_velocity * MM))
+    axes.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
     axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5)
 
 
@@ -242,10 +244,21 @@ def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -
             axes.plot([across[i] for i in chosen], up, **_marker(kind), zorder=3, gid=kind)
 
 
-def _draw_plate(motion: Motion, axes: Axes) -> None:
-    level = motion.mouse_velocity * MM
-    axes.axhline(level, color=PALETTE["plate"], lw=0.8, ls=(0, (5, 3)), zorder=1, gid="plate")
+def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
+    dashed: dict[str, Any] = {"color": PALETTE["plate"], "lw": 0.8, "ls": (0, (5, 3)), "zorder": 1, "gid": "plate"}
+    level = float(motion.plate_velocity(trace.end)) * MM
+    if isinstance(motion.mouse_velocity, Profile):
+        rows = [t for t in motion.mouse_velocity.times if 0.0 < t < trace.end]
+        times = np.array([0.0, *rows, trace.end])
+        axes.plot(times * trace.scale, motion.plate_velocity(times) * MM, **dashed)
+    else:
+        axes.axhline(level, **dashed)
     _note_level(axes, level, r"plate $v_\mathrm{p}$")
+
+
+def _plate_range(motion: Motion, trace: Trace) -> tuple[float, float]:
+    levels = motion.plate_velocity(trace.t / trace.scale) * MM
+    return float(levels.min()), float(levels.max())
 
 
 def _note_level(axes: Axes, level: float, text: str) -> None:
@@ -382,19 +395,22 @@ def _outcome(motion: Motion) -> str:
 
 def _parameters(motion: Motion) -> str:
     """The drive and its release."""
-    values = motion.inputs()
+    drive, v_plate = motion.drive, motion.mouse_velocity
     words = [
-        f"$m$ = {_short('mass', values['mass'])}",
-        f"$k$ = {_short('stiffness', values['stiffness'])}",
-        f"$ζ$ = {motion.drive.damping_ratio:.4g}",
+        f"$m$ = {_short('mass', drive.mass)}",
+        f"$k$ = {_short('stiffness', drive.stiffness)}",
+        f"$ζ$ = {drive.damping_ratio:.4g}",
     ]
-    for contact, index in (("plate", "p"), ("finger", "f")):
-        kinetic, static = values[f"{contact}.kinetic"], values[f"{contact}.static"]
+    for contact, index in ((drive.plate, "p"), (drive.finger, "f")):
+        kinetic, static = contact.kinetic, contact.static_friction
         more = "" if static == kinetic else f" (static {_short('plate.static', static)})"
         words.append(rf"$F_\mathrm{{{index}}}$ = {_short('plate.kinetic', kinetic)}{more}")
-    words.append(rf"$v_\mathrm{{p}}$ = {_short('mouse_velocity', motion.mouse_velocity)}")
+    if isinstance(v_plate, Profile):
+        words.append(r"$v_\mathrm{p}$ changes")
+    else:
+        words.append(rf"$v_\mathrm{{p}}$ = {_short('mouse_velocity', v_plate)}")
     words.append(f"$x_0$ = {_short('displacement', motion.displacement)}")
-    if motion.initial_velocity != motion.mouse_velocity:
+    if motion.initial_velocity != float(motion.plate_velocity(0.0)):
         words.append(f"$v_0$ = {_short('velocity', motion.initial_velocity)}")
     lines = [words[0]]
     for word in words[1:]:

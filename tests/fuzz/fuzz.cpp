@@ -283,7 +283,8 @@ int fuzz(long long count, std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   if (argc > 2 && std::strcmp(argv[1], "--replay") == 0) return replay(argc - 2, argv + 2);
-  if (argc == 3) return fuzz(std::strtoll(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));
+  if (argc == 3)
+    return fuzz(std::strtoll(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));
   std::fprintf(stderr, "usage: fuzz COUNT SEED | fuzz --replay FILE...\n");
   return 2;
 }
