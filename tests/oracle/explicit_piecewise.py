@@ -305,6 +305,18 @@ class ExplicitModes:
             self.f, self.on_finger, self.pieces["finger"] = -copysign(1.0, needed), False, 0
             self.left.add("finger level")
         self.note(name, "slip")
+        if name == "plate":
+            self.move_full_skin(self.p)
+
+    def move_full_skin(self, way: float) -> None:
+        """The pin leaves v = 0 this way while its skin is stretched to the limit."""
+        full = self.finger.static * (1 - 1e-12)
+        if self.grips and self.v == 0 and self.finger.stiffness * abs(self.s) > full:
+            if self.s * way > 0:
+                self.skin_slips()
+                self.left.add("finger level")
+            else:
+                self.left.add("finger limit")
 
     def arrive_plate(self, also: bool = False) -> None:
         self.v = self.mouse_at(self.t)
@@ -347,21 +359,8 @@ class ExplicitModes:
                 self.break_loose("finger")
             if self.soft and self.f and not self.grips and self.on_plate and self.vp == 0:
                 self.skin_grips()
-            full = self.soft and self.finger.stiffness * abs(self.s) > self.finger.static * (
-                1 - 1e-12
-            )
-            if (
-                self.soft
-                and self.grips
-                and full
-                and self.v == 0
-                and self.on_plate
-                and self.s * self.w > 0
-            ):
-                self.skin_slips()
-                self.left = {"finger level"}
-            elif self.soft and self.grips and full and self.on_plate:
-                self.left = {"finger limit"}
+            if self.on_plate:
+                self.move_full_skin(self.w)
         elif self.on_plate or self.on_finger:
             self.v = 0.0
             if not (was_rest and self.stopped()):
