@@ -86,11 +86,8 @@ def _first_zero(
             if values[i] > CLEAR * watch.scale:
                 asleep.remove(id(watch))
         elif values[i] < 0 and i > 0:
-            return (
-                float(brentq(value, grid[i - 1], grid[i], xtol=1e-17))
-                if values[i - 1] > 0
-                else None
-            )
+            assert values[i - 1] >= 0
+            return float(brentq(value, grid[i - 1], grid[i], xtol=1e-17))
         elif 0 < i < len(grid) - 1 and values[i - 1] > values[i] < values[i + 1]:
             dip = minimize_scalar(value, bounds=(grid[i - 1], grid[i + 1]), method="bounded")
             if dip.fun < 0:
