@@ -184,7 +184,8 @@ nb::dict segments(const CoreMotion& motion) {
       column<double>(motion, [](const Segment& s) { return s.flow.acceleration.start; });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
-  table["plate_event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
+  table["plate_event"] =
+      column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
   table["finger_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.finger; });
   return table;

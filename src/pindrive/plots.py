@@ -245,7 +245,13 @@ def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -
 
 
 def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
-    dashed: dict[str, Any] = {"color": PALETTE["plate"], "lw": 0.8, "ls": (0, (5, 3)), "zorder": 1, "gid": "plate"}
+    dashed: dict[str, Any] = {
+        "color": PALETTE["plate"],
+        "lw": 0.8,
+        "ls": (0, (5, 3)),
+        "zorder": 1,
+        "gid": "plate",
+    }
     level = float(motion.plate_velocity(trace.end)) * MM
     if isinstance(motion.mouse_velocity, Profile):
         rows = [t for t in motion.mouse_velocity.times if 0.0 < t < trace.end]

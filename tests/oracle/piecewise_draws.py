@@ -314,10 +314,9 @@ def any_damping(rng: random.Random) -> Inputs:
 
 
 def all_together(rng: random.Random) -> Inputs:
-    """A Stribeck finger of skin, a magnet and a hand, static > kinetic."""
+    """A finger of skin, a magnet and a hand, static > kinetic."""
     pin = common(rng)
     pin["load"], pin["mouse_velocity"] = pulls(rng, pin), steps(rng, pin)
-    bend(rng, pin, "finger", rng.choice(["stribeck", "falling", "rising"]))
     raise_static(rng, pin, "plate", "finger")
     soften(rng, pin, 1e2, 1e5)
     if rng.random() < 0.5:
@@ -326,7 +325,7 @@ def all_together(rng: random.Random) -> Inputs:
 
 
 def all_together_at_constant_load(rng: random.Random) -> Inputs:
-    """With a Stribeck curve at the plate too, which the load may then only scale."""
+    """With a Stribeck curve at the plate, which the load may then only scale."""
     pin = all_together(rng)
     pin["load"] = [[0.0, short(rng.uniform(0.5, 2.0))]]
     bend(rng, pin, "plate", "stribeck")
