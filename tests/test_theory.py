@@ -160,7 +160,7 @@ def test_stick_slip_repeats_one_release() -> None:
 
 @pytest.mark.parametrize("w", [-3.0, 2.0])
 def test_two_surfaces_that_part_decide_on_accelerations(w: float) -> None:
-    """The law m a in f - F_p Sgn(a - w) - F_f Sgn(a) has one solution, the middle of five candidates."""
+    """The force law m a in f - F_p Sgn(a - w) - F_f Sgn(a) has one solution: the middle of five."""
     plate, finger = 0.03, 0.012
     found = set()
     for force in np.linspace(-0.09, 0.09, 61):
