@@ -77,4 +77,4 @@ def test_add_subdirectory(tmp_path: Path) -> None:
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
 def test_ctest(tmp_path: Path) -> None:
     build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release")
-    run("ctest", "--test-dir", tmp_path, "--output-on-failure")
+    run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")

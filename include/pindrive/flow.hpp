@@ -70,7 +70,8 @@ class Oscillator {
     using std::sin;
     if (hurry_ * tau < early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
-    if (abs(z) < series_reach) return damped(tau, cosine_series(z), tau * sine_series(z));
+    if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
+      return damped(tau, cosine_series(z), tau * sine_series(z));
     if (oscillates()) {
       const T angle = omega_ * tau;
       return damped(tau, cos(angle) - 1, sin(angle) / omega_);

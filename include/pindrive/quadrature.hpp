@@ -55,11 +55,9 @@ T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path
   using std::expm1;
   using std::sin;
   const T alpha = oscillator.alpha(), omega = oscillator.omega();
-  const bool waves = p.oscillates() || q.oscillates();
-  const bool curved = p.curvature != 0 || q.curvature != 0;
-  if (!waves || curved || !oscillator.oscillates() || omega * to < 16)
-    return panels(oscillator, to,
-                  [&](T tau) { return p.at(oscillator, tau) * q.at(oscillator, tau); });
+  const auto product = [&](T tau) { return p.at(oscillator, tau) * q.at(oscillator, tau); };
+  if (!p.oscillates() && !q.oscillates()) return gauss<T>(product, T(0), to);  // a polynomial
+  if (!oscillator.oscillates() || omega * to < 16) return panels(oscillator, to, product);
 
   // Lines with lines.
   const T a0 = p.centre(), a1 = p.drift, b0 = q.centre(), b1 = q.drift;

@@ -82,6 +82,7 @@ class Roots {
       const T right = end_of_bracket();
       if (!(left_ < right)) break;
       const T value = path_.at(oscillator_, right);
+      if (!std::isfinite(value)) break;  // grown beyond all numbers on its side
       const T low = left_;
       const bool turned = right == extremum_;
       left_ = right;
@@ -157,8 +158,9 @@ class Roots {
 template <class T>
 class Roots<T, 0> {
  public:
-  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int, T horizon)
-      : zeros_(oscillator.zeros(path.start, path.slope)), horizon_(horizon) {}
+  Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
+      : zeros_(oscillator.zeros(side * path.start > 0 ? path.start : T(0), path.slope)),
+        horizon_(horizon) {}
 
   T next() {
     const T zero = count_ == 0 ? zeros_.first : zeros_.first + count_ * zeros_.spacing;
@@ -226,7 +228,8 @@ T first_root(const Oscillator<T>& oscillator, Path<T> path, int side, T horizon)
   for (;;) {
     T until = horizon - passed;
     if (patient) {
-      const T idle = out_of_reach(oscillator, path, side);
+      // Not all of it, so that the path stays clearly on its side.
+      const T idle = out_of_reach(oscillator, path, side) * T(0.99);
       if (!(idle < until)) return never;
       if (idle * oscillator.omega() > 8) {
         path = path.from(oscillator, idle);

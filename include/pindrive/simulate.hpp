@@ -182,9 +182,12 @@ class Simulation {
     segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
     advance(exit);
     if (before.stuck()) v_ = friction_.level(before, now_).value;
-    // Changing to another region at once, the pin still leaves as the event before let it go.
-    const bool at_once =
-        exit.tau == 0 && (exit.cause == Cause::slower || exit.cause == Cause::faster);
+    // Where no force jumps, a pin at the same instant still leaves as the event before let it go.
+    const bool skin_follows = exit.cause == Cause::gives_way && exit.finger &&
+                              before.finger == Slide::gripping &&
+                              drive_.finger.kinetic == drive_.finger.static_limit;
+    const bool at_once = exit.tau == 0 && (exit.cause == Cause::slower ||
+                                           exit.cause == Cause::faster || skin_follows);
     tangential_ = tangential_ && at_once;
     changed_plate_ = exit.plate || (changed_plate_ && at_once);
     changed_finger_ = exit.finger || (changed_finger_ && at_once);
@@ -223,6 +226,8 @@ class Simulation {
   }
 
   void arrive(const Exit& exit) {
+    const bool held = mode_.stuck();
+    if (held) now_.plate_velocity.value = T(0);  // one level carries the pin to the other
     v_ = exit.plate ? now_.plate_velocity.value : T(0);
     if (exit.finger && !drive_.finger.rigid()) grip();
     const bool finger = exit.finger && drive_.finger.rigid();
@@ -230,7 +235,6 @@ class Simulation {
     Mode stuck = mode_;
     if (exit.plate) stuck.plate = Slide::stuck;
     if (finger) stuck.finger = Slide::stuck;
-    const bool held = mode_.stuck();
     const bool parting = stuck.plate == Slide::stuck && stuck.finger == Slide::stuck &&
                          now_.plate_velocity.rate != 0;
     const int side = sign(exit.plate ? mode_.plate : mode_.finger);
