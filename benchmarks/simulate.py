@@ -111,6 +111,7 @@ def main() -> None:
     rounds = parser.parse_args().rounds
 
     device = load(EXAMPLE)
+    assert isinstance(device.mouse_velocity, float)
     release = Release(device.drive, device.mouse_velocity, device.displacement)
 
     def exact() -> Motion:

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pindrive.config import KEYS, ConfigError, load, template
+from pindrive.config import KEYS, ConfigError, load
 from pindrive.quantities import INPUTS
+from pindrive.template import NUMBERS, template
 from pindrive.units import UnitError, to_si
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "tactile-mouse.toml"
@@ -72,16 +73,40 @@ def test_template_loads_with_the_defaults_of_the_table(write: Write) -> None:
     assert device.values() | given == device.values()
 
 
-def test_every_commented_key_of_the_template_works(write: Write) -> None:
-    lines = [line.removeprefix("# ") for line in template().splitlines()]
-    keys = {key.partition(".")[2] for key in KEYS}
-    shown = [line for line in lines if line.startswith("[") or line.partition(" =")[0] in keys]
-    assert len(shown) == len(KEYS) + 5
-    text = "\n".join(line for line in shown if not line.startswith("damping_ratio"))
-    values = load(write(new=text)).values()
-    for quantity in INPUTS:
-        if quantity.example is not None:
-            assert values[quantity.key] == quantity.example
+COMMENTED = [
+    (table, line.removeprefix("# "))
+    for table, lines in (
+        (part.partition("]")[0], part.splitlines()) for part in template().split("\n[")[1:]
+    )
+    for line in lines
+    if line.startswith("# ") and f"{table}.{line[2:].partition(' = ')[0]}" in KEYS
+]
+
+
+def test_the_template_shows_every_key() -> None:
+    text = template().replace("\n# ", "\n")
+    assert [key for key in KEYS if f"\n{key.partition('.')[2]} = " not in text] == []
+    assert [line for _, line in COMMENTED if " = [" in line] == [
+        'curve = [["0 mm/s", "22 mN"], ["50 mm/s", "15 mN"]]',
+        'curve = [["0 mm/s", "5 mN"], ["50 mm/s", "4 mN"]]',
+        'mouse_velocity = [["0 ms", "60 mm/s"], ["100 ms", "0 mm/s"]]',
+        'plate_load = [["0 ms", 5], ["5 ms", 1]]',
+    ]
+
+
+@pytest.mark.parametrize(("table", "line"), COMMENTED, ids=str)
+def test_every_commented_line_of_the_template_works(write: Write, table: str, line: str) -> None:
+    name = line.partition(" = ")[0]
+    instead = {"damping": "damping_ratio =", "mouse_velocity": "mouse_velocity ="}.get(name, "!")
+    lines = [text for text in template().splitlines() if not text.startswith(instead)]
+    if name == "skin_stretch":  # of skin, and of skin alone
+        lines = [text.replace("# stiffness", "stiffness") for text in template().splitlines()]
+    lines.insert(lines.index(f"[{table}]") + 1, line)
+    device = load(write(new="\n".join(lines)))
+    if table != "device":
+        quantity = NUMBERS[f"{table}.{name}"]
+        given = quantity.rows if " = [" in line else quantity.example
+        assert device.values()[quantity.key] == given
 
 
 def test_windows_text_is_read(write: Write) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from typing import Any
 
 import numpy as np
@@ -69,6 +69,14 @@ def test_curve_is_kept_as_rows() -> None:
     assert hash(contact)
 
 
+def test_a_curve_alone_says_the_kinetic_friction() -> None:
+    contact = Contact(curve=[(0, 0.02), (0.1, 0.01)])
+    assert contact == Contact(None, None, [(0, 0.02), (0.1, 0.01)])
+    assert contact == Contact(0.02, curve=[(0, 0.02), (0.1, 0.01)])
+    assert (contact.kinetic, contact.static_friction) == (0.02, 0.02)
+    assert replace(contact, stiffness=1000.0).curve == contact.curve
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -91,6 +99,12 @@ def test_curve_is_kept_as_rows() -> None:
         (
             lambda: Contact(0.1, 0.05),
             "static must be at least the kinetic friction, 0.1 N, got 0.05 N",
+        ),
+        (lambda: Contact(), "kinetic must be a number in N unless a curve is given, got None"),
+        (lambda: Contact(static=0.1), "kinetic must be a number in N unless a curve is given"),
+        (
+            lambda: Contact(static=0.1, curve=[(0, 0.2)]),
+            "static must be at least the kinetic friction, 0.2 N, got 0.1 N",
         ),
         (lambda: Contact(0.1, stiffness=0.0), "stiffness must be greater than 0 N/m, got 0.0 N/m"),
         (lambda: Contact(0.1, curve=[]), "curve must be at least one row of (speed, force)"),

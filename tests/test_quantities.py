@@ -13,11 +13,9 @@ from pindrive.quantities import (
     OUTPUTS,
     PARTS,
     QUANTITIES,
-    Bounds,
-    Quantity,
     check,
-    significant,
 )
+from pindrive.quantity import Bounds, Quantity, significant
 
 
 def test_names_are_unique() -> None:
@@ -37,7 +35,9 @@ def test_every_quantity_is_described(quantity: Quantity) -> None:
 @pytest.mark.parametrize("quantity", INPUTS, ids=lambda q: q.name)
 def test_a_device_file_can_show_every_input(quantity: Quantity) -> None:
     assert "." in quantity.key
-    assert (quantity.default is None) != (quantity.example is None)
+    shown = [value for value in (quantity.default, quantity.example) if value is not None]
+    assert len(shown) == (1 if quantity.may_be_constant else 0)
+    assert bool(quantity.rows) == bool(quantity.rows_of)
 
 
 def test_every_number_of_a_motion_is_in_the_table() -> None:

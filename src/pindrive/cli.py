@@ -77,8 +77,8 @@ def init(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Write a commented device file to start from."""
-    from pindrive.config import template
     from pindrive.output import OutputError, atomic_write
+    from pindrive.template import template
 
     with _refusing():
         if file.is_file() and not force:
@@ -160,6 +160,8 @@ def _simulate(device: DeviceFile) -> Motion:
         mouse_velocity=device.mouse_velocity,
         displacement=device.displacement,
         velocity=device.velocity,
+        plate_load=device.plate_load,
+        skin_stretch=device.skin_stretch,
         duration=device.duration,
     )
 

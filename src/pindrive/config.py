@@ -7,29 +7,22 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from difflib import get_close_matches
+from math import inf
 from os import PathLike
 from pathlib import Path
-from textwrap import wrap
-from typing import Any, ClassVar, Final, cast
+from typing import Any, Final
 
-from pydantic import (
-    BaseModel,
-    StrictStr,
-    ValidationError,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+from pydantic import ValidationError
 
-from pindrive.drive import Contact, Drive, check_static
-from pindrive.quantities import INPUTS, Quantity, check, refusal
-from pindrive.units import UnitError, quoted, to_si
-
-NUMBERS: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
-"""The keys of a device file that hold a quantity, in their order."""
+from pindrive.drive import Drive, Profile
+from pindrive.quantities import refusal
+from pindrive.quantity import Rows
+from pindrive.schema import Place, Schema, over_time
+from pindrive.template import NUMBERS, line
+from pindrive.units import quoted
 
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
 TABLES: Final = ("device", "drive", "plate", "finger", "motion")
@@ -51,20 +44,25 @@ class DeviceFile:
     name: str
     description: str
     drive: Drive
-    mouse_velocity: float
+    mouse_velocity: float | Profile
+    plate_load: float | Profile
     displacement: float
     velocity: float | None
+    skin_stretch: float | None
     duration: float | None
 
-    def values(self) -> dict[str, float | None]:
-        """The value of every key that holds a number, in SI; None where it was left out."""
+    def values(self) -> dict[str, float | Rows | None]:
+        """The value of every key that holds a quantity, in SI; None where it was left out.
+
+        What changes is its rows: (speed, force) or (time, value).
+        """
         owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
         places = ((key, *key.split(".")) for key in NUMBERS)
-        return {key: getattr(owner.get(table, self), name) for key, table, name in places}
-
-
-Place = Callable[..., str]
-"""Where keys were written: on the command line if one of them was, else in the file."""
+        values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        return {
+            key: value.rows if isinstance(value, Profile) else None if value == inf else value
+            for key, value in values.items()
+        }
 
 
 def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile:
@@ -73,7 +71,8 @@ def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile
     Args:
         path: a TOML file; `template()` is one.
         overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
-            that is unique (mass=12 g). Setting damping replaces damping_ratio, and vice versa.
+            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
+            Setting damping replaces damping_ratio, and vice versa.
 
     Raises:
         ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
@@ -90,7 +89,8 @@ def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile
     problems += [f"{file}: {_not_known(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
     try:
-        schema = _Schema.model_validate(tables, context=place)
+        schema = Schema.model_validate(tables, context=place)
+        problems += schema.conflicts(place)
         if not problems:
             return _device(file, schema)
     except ValidationError as error:
@@ -146,12 +146,25 @@ def _override(tables: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[st
             problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
         else:
             table, _, name = keys[0].partition(".")
-            tables[table][name] = value
             places[keys[0]] = place
+            try:
+                tables[table][name] = _overridden(keys[0], value)
+            except (ValueError, RecursionError) as error:
+                problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
     for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
         if f"drive.{one}" in places and f"drive.{other}" not in places:
             tables["drive"].pop(other, None)
     return places, problems
+
+
+def _overridden(key: str, value: str) -> object:
+    """What is given for `key` on the command line: text, or rows as TOML has them."""
+    if key in NUMBERS and NUMBERS[key].rows and value.startswith("["):
+        given = tomllib.loads(f"rows = {value}")
+        if len(given) > 1:
+            raise ValueError("more than one value")
+        return given["rows"]
+    return value
 
 
 def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
@@ -162,7 +175,7 @@ def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
 
 def _nearest(key: str, *, tables: bool = True) -> str | None:
     """The known table or key most like `key`; a known name in the wrong table finds its table."""
-    names = {known.partition(".")[2]: known for known in KEYS}
+    names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
     if tables and "." not in key:
         names |= {table: table for table in TABLES}
     name = key.rpartition(".")[2]
@@ -172,7 +185,9 @@ def _nearest(key: str, *, tables: bool = True) -> str | None:
 
 def _not_known(key: str, *, tables: bool = True) -> str:
     """What to say of an unknown key; without `tables` where only a key can stand."""
-    nearest = _nearest(key, tables=tables)
+    if key == "plate.stiffness":
+        return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
+    nearest = _nearest(key, tables=tables) if tables or key not in TABLES else None
     said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
     if nearest:
         return f"unknown key {said}; did you mean {nearest}?"
@@ -186,83 +201,6 @@ def _not_known(key: str, *, tables: bool = True) -> str:
 # ---- its values ----------------------------------------------------------------------------------
 
 
-class _Table(BaseModel):
-    """A table of the file. The context of its validation maps a key to the place it was written."""
-
-    table: ClassVar[str]
-
-    @field_validator("*", mode="before")
-    @classmethod
-    def _in_si(cls, value: object, info: ValidationInfo) -> object:
-        key = f"{cls.table}.{info.field_name}"
-        if key not in NUMBERS:
-            return value
-        quantity, place = NUMBERS[key], cast(Place, info.context)(key)
-        try:
-            number = _number(value, quantity)
-        except UnitError as error:
-            raise ValueError(refusal(key, str(error), quoted(value), place)) from None
-        return check(quantity.name, number, where=place, label=key, given=quoted(value))
-
-
-def _number(value: object, quantity: Quantity) -> float:
-    """What TOML gave, in SI: text with a unit, or a bare number where the quantity has no unit."""
-    bare = isinstance(value, (int, float)) and not isinstance(value, bool)
-    text = value if isinstance(value, str) else repr(value) if bare else ""
-    return to_si(text, quantity.unit, _written(quantity))
-
-
-class _Device(_Table):
-    table = "device"
-    name: StrictStr = ""
-    description: StrictStr = ""
-
-
-class _Drive(_Table):
-    table = "drive"
-    mass: float
-    stiffness: float
-    damping: float | None = None
-    damping_ratio: float | None = None
-
-
-class _Contact(_Table):
-    kinetic: float
-    static: float | None = None
-
-    @model_validator(mode="after")
-    def _ordered(self, info: ValidationInfo) -> _Contact:
-        key = f"{self.table}.static"
-        if self.static is not None:
-            place = cast(Place, info.context)(key, f"{self.table}.kinetic")
-            check_static(self.static, self.kinetic, where=place, label=key)
-        return self
-
-
-class _Plate(_Contact):
-    table = "plate"
-
-
-class _Finger(_Contact):
-    table = "finger"
-
-
-class _Motion(_Table):
-    table = "motion"
-    mouse_velocity: float
-    displacement: float = 0.0
-    velocity: float | None = None
-    duration: float | None = None
-
-
-class _Schema(BaseModel):
-    device: _Device
-    drive: _Drive
-    plate: _Plate
-    finger: _Finger
-    motion: _Motion
-
-
 def _damping_problems(
     drive: Mapping[str, Any], meant: Container[str | None], place: Place
 ) -> list[str]:
@@ -274,17 +212,15 @@ def _damping_problems(
     return [f"{place(*keys)}: give exactly one of {' and '.join(keys)}, got {found}"]
 
 
-def _value_problems(
-    error: ValidationError, meant: Container[str | None], place: Place
-) -> list[str]:
+def _value_problems(error: ValidationError, meant: Set[str | None], place: Place) -> list[str]:
     problems = []
     for problem in error.errors():
         key = ".".join(str(part) for part in problem["loc"])
         if problem["type"] == "value_error":
             problems.append(str(problem["ctx"]["error"]))
-        elif problem["type"] == "missing" and key not in meant:
-            line, table = _line(NUMBERS[key]), key.partition(".")[0]
-            problems.append(f"{place(key)}: {key} is missing; write {line} in [{table}]")
+        elif problem["type"] == "missing" and not {key, f"{key.partition('.')[0]}.curve"} & meant:
+            table, written = key.partition(".")[0], line(NUMBERS[key])
+            problems.append(f"{place(key)}: {key} is missing; write {written} in [{table}]")
         elif problem["type"] == "string_type":
             problems.append(
                 f"{place(key)}: {refusal(key, 'text in quotes', quoted(problem['input']))}"
@@ -292,10 +228,9 @@ def _value_problems(
     return problems
 
 
-def _device(file: Path, schema: _Schema) -> DeviceFile:
+def _device(file: Path, schema: Schema) -> DeviceFile:
     drive, motion = schema.drive, schema.motion
-    plate = Contact(schema.plate.kinetic, schema.plate.static)
-    finger = Contact(schema.finger.kinetic, schema.finger.static)
+    plate, finger = schema.plate.contact(), schema.finger.contact()
     body = {"mass": drive.mass, "stiffness": drive.stiffness}
     return DeviceFile(
         path=file,
@@ -306,47 +241,10 @@ def _device(file: Path, schema: _Schema) -> DeviceFile:
         else Drive.with_damping_ratio(
             **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
         ),
-        mouse_velocity=motion.mouse_velocity,
+        mouse_velocity=over_time(motion.mouse_velocity),
+        plate_load=over_time(motion.plate_load),
         displacement=motion.displacement,
         velocity=motion.velocity,
+        skin_stretch=motion.skin_stretch,
         duration=motion.duration,
     )
-
-
-# ---- writing -------------------------------------------------------------------------------------
-
-
-def _written(quantity: Quantity) -> str:
-    """A usual value of `quantity` as a device file has it: "10 g"."""
-    value = quantity.example if quantity.default is None else quantity.default
-    return "" if value is None else quantity.written(value)
-
-
-def _line(quantity: Quantity) -> str:
-    """A line of a device file: mass = "10 g"."""
-    written, name = _written(quantity), quantity.key.partition(".")[2]
-    return f"{name} = {written}" if quantity.unit == "1" else f'{name} = "{written}"'
-
-
-def template() -> str:
-    """A commented device file with usual values, as `pindrive init` writes it."""
-    lines = [
-        "# A pin drive of a tactile mouse, for pindrive.",
-        "# Every value is written with its unit; the bounds below are in SI units.",
-        "",
-        "[device]",
-        'name = "my pin drive"',
-        '# description = "what is special about it"',
-    ]
-    table = "device"
-    for key, quantity in NUMBERS.items():
-        if key.partition(".")[0] != table:
-            table = key.partition(".")[0]
-            lines += ["", f"[{table}]"]
-        unit = "" if quantity.unit == "1" else quantity.unit
-        bounds = quantity.bounds.words(unit)
-        lines.append(f"# {quantity.symbol}: {quantity.meaning}")
-        lines.append("#   " + "; ".join(filter(None, (bounds, quantity.remark))))
-        lines += [f"#   {line}" for line in wrap(quantity.source, 94)]
-        lines.append(("# " if quantity.default is None else "") + _line(quantity))
-    return "\n".join(lines) + "\n"

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isinf, sqrt
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, cast, overload
 
 from pindrive.quantities import check, refusal
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 __all__ = ["Contact", "Drive", "Profile"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Contact:
     """Dry friction between the pin drive and a surface: the plate or the fingertip.
 
     Args:
         kinetic: friction force while sliding, N, at least 0; 0 with no static friction is no
-            contact at all.
+            contact at all. None with a curve: its first force.
         static: largest friction force without sliding, N, at least `kinetic`; `kinetic` if None.
         curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
             increasing from 0, linear between rows and on beyond the last; its first force is
@@ -32,26 +32,38 @@ class Contact:
         stiffness: tangential stiffness of the surface, N/m, greater than 0; infinite: rigid.
 
     Raises:
-        ValueError: a value is no number or out of its range, static friction is below kinetic.
+        ValueError: a value is no number or out of its range, static friction is below kinetic,
+            neither kinetic friction nor a curve is given, or they disagree.
     """
 
     kinetic: float
-    static: float | None = None
-    curve: Sequence[tuple[float, float]] | None = None
-    stiffness: float = inf
+    static: float | None
+    curve: tuple[tuple[float, float], ...] | None
+    stiffness: float
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        kinetic: float | None = None,
+        static: float | None = None,
+        curve: Iterable[tuple[float, float]] | None = None,
+        stiffness: float = inf,
+    ) -> None:
         """Validate, and keep plain floats and tuples."""
-        kinetic = check("kinetic", self.kinetic)
-        object.__setattr__(self, "kinetic", kinetic)
-        if self.static is not None:
-            static = check("static", self.static)
-            check_static(static, kinetic)
-            object.__setattr__(self, "static", static)
-        if self.curve is not None:
-            object.__setattr__(self, "curve", _checked_curve(self.curve, kinetic))
-        stiffness = check("contact.stiffness", self.stiffness, label="stiffness")
-        object.__setattr__(self, "stiffness", stiffness)
+        rows = None if curve is None else _checked_curve(curve)
+        if kinetic is None and rows is None:
+            raise ValueError(refusal("kinetic", "a number in N unless a curve is given", "None"))
+        at_rest = rows[0][1] if kinetic is None and rows else check("kinetic", cast(float, kinetic))
+        if rows:
+            check_curve(rows, at_rest)
+        if static is not None:
+            static = check("static", static)
+            check_static(static, at_rest)
+        object.__setattr__(self, "kinetic", at_rest)
+        object.__setattr__(self, "static", static)
+        object.__setattr__(self, "curve", rows)
+        object.__setattr__(
+            self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
+        )
 
     @property
     def static_friction(self) -> float:
@@ -103,9 +115,58 @@ def check_static(
         raise ValueError(refusal(label, required, given or f"{static!r} N", where))
 
 
-def _checked_curve(
-    curve: Iterable[tuple[float, float]], kinetic: float
-) -> tuple[tuple[float, float], ...]:
+def check_curve(
+    rows: Sequence[tuple[float, float]], kinetic: float, *, where: str = "", label: str = "curve"
+) -> None:
+    """Refuse rows (m/s, N) that do not start at speed 0 with the kinetic friction (N)."""
+    speed, force = rows[0]
+    if speed != 0.0:
+        raise ValueError(refusal(f"{label}[0] speed", "0 m/s", f"{speed!r} m/s", where))
+    if force != kinetic:
+        required = f"the kinetic friction, {kinetic!r} N"
+        raise ValueError(refusal(f"{label}[0] force", required, f"{force!r} N", where))
+
+
+def check_increasing(
+    values: Sequence[float], unit: str, *, where: str = "", label: str = "[{}]", why: str = ""
+) -> None:
+    """Refuse values of which one is not greater than the one before; `label` takes its index."""
+    for i in range(1, len(values)):
+        if not values[i - 1] < values[i]:
+            required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
+            raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}", where))
+
+
+def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
+    """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
+    if finger.regions and not finger.rigid:
+        required = "one row for a compliant finger, whose skin would lag behind it"
+        raise ValueError(refusal(label, required, f"{len(finger.curve or ())} rows", where))
+
+
+def check_load(
+    plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
+) -> None:
+    """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
+    if plate.regions and isinstance(load, Profile) and load.changes:
+        required = "constant for a plate with a friction curve"
+        raise ValueError(refusal(label, required, "a profile that changes", where))
+
+
+def check_stretch(
+    stretch: float, finger: Contact, *, where: str = "", label: str = "skin_stretch"
+) -> None:
+    """Refuse a stretch (m) that the finger's skin cannot have."""
+    given = f"{stretch!r} m"
+    if finger.rigid:
+        raise ValueError(refusal(label, "left out for a rigid finger", given, where))
+    largest = finger.static_friction / finger.stiffness
+    if abs(stretch) > largest:
+        required = f"at most static friction over stiffness, {largest!r} m, either way"
+        raise ValueError(refusal(label, required, given, where))
+
+
+def _checked_curve(curve: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
     try:
         rows = [(speed, force) for speed, force in curve]
     except (TypeError, ValueError):
@@ -118,20 +179,8 @@ def _checked_curve(
     forces = [
         check("curve.force", force, label=f"curve[{i}] force") for i, (_, force) in enumerate(rows)
     ]
-    _check_increasing(speeds, "curve[{}] speed", "m/s")
-    if speeds[0] != 0.0:
-        raise ValueError(refusal("curve[0] speed", "0 m/s", f"{speeds[0]!r} m/s"))
-    if forces[0] != kinetic:
-        required = f"the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal("curve[0] force", required, f"{forces[0]!r} N"))
+    check_increasing(speeds, "m/s", label="curve[{}] speed")
     return tuple(zip(speeds, forces, strict=True))
-
-
-def _check_increasing(values: Sequence[float], label: str, unit: str) -> None:
-    for i in range(1, len(values)):
-        if not values[i - 1] < values[i]:
-            required = f"greater than the one before, {values[i - 1]!r} {unit}"
-            raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,9 +271,19 @@ class Profile:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(times) != len(values):
             raise ValueError(refusal("values", f"as many as times, {len(times)}", len(values)))
-        _check_increasing(times, "times[{}]", "s")
+        check_increasing(times, "s", label="times[{}]")
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
+
+    @property
+    def changes(self) -> bool:
+        """Whether it takes more than one value."""
+        return any(value != self.values[0] for value in self.values)
+
+    @property
+    def rows(self) -> tuple[tuple[float, float], ...]:
+        """Its rows (time, value), SI."""
+        return tuple(zip(self.times, self.values, strict=True))
 
     @overload
     def __call__(self, t: float) -> float: ...

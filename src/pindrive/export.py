@@ -14,7 +14,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pindrive.quantities import QUANTITIES
+from pindrive.quantities import COLUMNS, QUANTITIES
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
@@ -32,19 +32,15 @@ def write_figure(motion: Motion, path: Path, format: str) -> None:
 
 def write_csv(motion: Motion, path: Path, samples: int) -> None:
     """Write the motion, SI, at even times and at its events (right-hand limits), a row each."""
+    from pindrive.dataset import Column, columns
+
     t = motion.sample_times(samples)
-    columns = {
-        "time_s": t,
-        "position_m": motion.position(t),
-        "velocity_m_per_s": motion.velocity(t),
-        "acceleration_m_per_s2": motion.acceleration(t),
-        "plate_force_N": motion.force("plate", t),
-        "finger_force_N": motion.force("finger", t),
-    }
+    found = {"time": Column(t, "s", "time since the release"), **columns(motion, t)}
+    names = [f"{name}_{column.unit.replace('/', '_per_')}" for name, column in found.items()]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        writer.writerow(names)
+        writer.writerows(zip(*(column.values.tolist() for column in found.values()), strict=True))
 
 
 def write_netcdf(motion: Motion, path: Path, samples: int) -> None:
@@ -59,7 +55,7 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
     """Write what was simulated and every number that came out; null where one does not exist."""
     from pindrive import __version__
 
-    numbers = motion.numbers()
+    inputs, numbers = motion.inputs(), motion.numbers()
     certificate = motion.certificate()
     document = {
         "pindrive": __version__,
@@ -70,16 +66,24 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
         },
         "config": device.values(),
         "status": motion.status,
-        "inputs": motion.inputs(),
+        "inputs": inputs,
         "ending": {"kind": motion.ending.kind, "cycle": motion.ending.cycle},
         "numbers": numbers,
-        "units": {name: QUANTITIES[name].unit for name in (*motion.inputs(), *numbers)},
+        "units": {name: _units(name, value) for name, value in (inputs | numbers).items()},
         "certificate": {**asdict(certificate), "worst": certificate.worst},
         "events": [asdict(event) for event in motion.events],
         "segments": [asdict(segment) for segment in motion.segments],
     }
     text = json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
+
+
+def _units(name: str, value: object) -> str | list[str]:
+    """The SI unit of a number, or of both columns of rows."""
+    unit = QUANTITIES[name].unit
+    if not isinstance(value, tuple):
+        return unit
+    return [QUANTITIES[COLUMNS[QUANTITIES[name].rows_of][0]].unit, unit]
 
 
 def _finite(value: Any) -> Any:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 
 from pindrive import _core
-from pindrive.drive import Contact, Drive, Profile
-from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
+from pindrive.quantities import check, refusal
 from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ class Motion:
         displacement: x(0), m.
         initial_velocity: x'(0), m/s.
         plate_load: factor on the plate's friction, constant or a `Profile`.
+        skin_stretch: stretch of a compliant finger that gripped at the start, m; None: not given.
         duration: s; the one asked for, or long enough to see the ending.
     """
 
@@ -87,6 +88,7 @@ class Motion:
         displacement: float,
         initial_velocity: float,
         plate_load: float | Profile,
+        skin_stretch: float | None,
     ) -> None:
         self._core = core
         self.drive = drive
@@ -94,6 +96,7 @@ class Motion:
         self.displacement = displacement
         self.initial_velocity = initial_velocity
         self.plate_load = plate_load
+        self.skin_stretch = skin_stretch
         self.duration: float = core.duration
 
     def __repr__(self) -> str:
@@ -307,93 +310,38 @@ class Motion:
             Variables over `time` (right-hand limits) and over `event`; one scalar for each number;
             the drive and the release in the attributes.
         """
-        import xarray as xr
-
-        from pindrive import __version__
+        from pindrive.dataset import dataset
 
         t = self.sample_times() if times is None else np.atleast_1d(_times(times))
         if t.ndim != 1:
             raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
-        series: dict[str, tuple[Any, str, str]] = {
-            "position": (self.position(t), "m", "deflection of the pin from the spring's rest"),
-            "velocity": (self.velocity(t), "m/s", "velocity of the pin in the housing"),
-            "acceleration": (
-                self.acceleration(t),
-                "m/s2",
-                "acceleration of the pin in the housing",
-            ),
-            "plate_force": (self.force("plate", t), "N", "friction force of the plate on the pin"),
-            "finger_force": (
-                self.force("finger", t),
-                "N",
-                "friction force of the finger on the pin",
-            ),
-        }
-        if not self.drive.finger.rigid:
-            series["stretch"] = (self.stretch(t), "m", "stretch of the finger's skin")
-            series["stretch_rate"] = (self.stretch_rate(t), "m/s", "stretch rate of the skin")
-        data: dict[str, Any] = {
-            name: ("time", values, {"units": unit, "long_name": meaning})
-            for name, (values, unit, meaning) in series.items()
-        }
-        for name, unit in (("time", "s"), ("position", "m"), ("velocity", "m/s")):
-            column = np.array([getattr(event, name) for event in self.events], dtype=np.float64)
-            data[f"event_{name}"] = ("event", column, {"units": unit})
-        for name in ("contact", "kind"):
-            data[f"event_{name}"] = ("event", [str(getattr(e, name)) for e in self.events])
-        for name, value in self.numbers().items():
-            quantity = QUANTITIES[name]
-            attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
-            data[name.replace(".", "_")] = (
-                (),
-                value,
-                {**attributes, "units": quantity.unit} if quantity.unit else attributes,
-            )
-        origin: dict[str, Any] = {
-            "title": "Motion of a tactile device's pin after release",
-            "source": f"pindrive {__version__}",
-            "status": self.status,
-            "ending": self.ending.kind,
-            "cycle": self.ending.cycle or "none",
-            **self.inputs(),
-        }
-        time = ("time", t, {"units": "s", "long_name": "time since the release"})
-        return xr.Dataset(data, coords={"time": time}, attrs=origin)
+        return dataset(self, t)
 
-    def inputs(self) -> dict[str, float | list[float]]:
+    def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:
         """What was simulated, SI, by the names of the table of quantities.
 
-        A curve and an input that changes are lists of their rows, one for each column.
+        A curve or an input that changes is its rows: (speed, force) or (time, value).
         """
         drive = self.drive
-        rows: dict[str, float | list[float]] = {}
-        for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
-            if contact.regions and contact.curve is not None:
-                rows[f"{name}.curve.speed"] = [speed for speed, _ in contact.curve]
-                rows[f"{name}.curve.force"] = [force for _, force in contact.curve]
-        if not drive.finger.rigid:
-            rows["finger.stiffness"] = drive.finger.stiffness
-        for name, given in (
-            ("mouse_velocity", self.mouse_velocity),
-            ("plate_load", self.plate_load),
-        ):
-            if isinstance(given, Profile):
-                rows[f"{name}.times"] = list(given.times)
-                rows[f"{name}.values"] = list(given.values)
-            else:
-                rows[name] = given
-        return rows | {
+        values: dict[str, float | tuple[tuple[float, float], ...]] = {
             "mass": drive.mass,
             "stiffness": drive.stiffness,
             "damping": drive.damping,
-            "plate.kinetic": drive.plate.kinetic,
-            "plate.static": drive.plate.static_friction,
-            "finger.kinetic": drive.finger.kinetic,
-            "finger.static": drive.finger.static_friction,
-            "displacement": self.displacement,
-            "velocity": self.initial_velocity,
-            "duration": self.duration,
         }
+        for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
+            values[f"{name}.kinetic"] = contact.kinetic
+            values[f"{name}.static"] = contact.static_friction
+            if contact.curve:
+                values[f"{name}.curve"] = contact.curve
+        if not drive.finger.rigid:
+            values["finger.stiffness"] = drive.finger.stiffness
+        for name in ("mouse_velocity", "plate_load"):
+            given = getattr(self, name)
+            values[name] = given.rows if isinstance(given, Profile) else given
+        values |= {"displacement": self.displacement, "velocity": self.initial_velocity}
+        if self.skin_stretch is not None:
+            values["skin_stretch"] = self.skin_stretch
+        return values | {"duration": self.duration}
 
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
@@ -463,13 +411,11 @@ def simulate(
     plate, finger = drive.plate, drive.finger
     if not plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
-    if finger.regions and not finger.rigid:
-        required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal("finger curve", required, f"{len(finger.curve or ())} rows"))
-    if plate.regions and len(load) > 1:
-        required = "constant for a plate with a friction curve"
-        raise ValueError(refusal("plate_load", required, "a profile that changes"))
-    stretch = nan if skin_stretch is None else _checked_stretch(skin_stretch, finger)
+    check_skin(finger)
+    check_load(plate, plate_load)
+    stretch = nan if skin_stretch is None else check("skin_stretch", skin_stretch)
+    if skin_stretch is not None:
+        check_stretch(stretch, finger)
     core = _core.simulate(
         drive.mass,
         drive.stiffness,
@@ -483,7 +429,7 @@ def simulate(
         stretch,
         end,
     )
-    return Motion(core, drive, mouse_velocity, x, v, plate_load)
+    return Motion(core, drive, mouse_velocity, x, v, plate_load, skin_stretch)
 
 
 Rows = list[tuple[float, float]]
@@ -494,7 +440,7 @@ def _rows(given: float | Profile, name: str) -> Rows:
     if not isinstance(given, Profile):
         return [(0.0, check(name, given))]
     values = [check(name, y, label=f"{name} values[{i}]") for i, y in enumerate(given.values)]
-    if all(y == values[0] for y in values):
+    if not given.changes:
         return [(0.0, values[0])]
     return list(zip(given.times, values, strict=True))
 
@@ -502,17 +448,6 @@ def _rows(given: float | Profile, name: str) -> Rows:
 def _value_at_start(rows: Rows) -> float:
     times, values = zip(*rows, strict=True)
     return float(np.interp(0.0, times, values))
-
-
-def _checked_stretch(given: float, finger: Contact) -> float:
-    if finger.rigid:
-        raise ValueError(refusal("skin_stretch", "None for a rigid finger", f"{given!r} m"))
-    stretch = check("skin_stretch", given)
-    largest = finger.static_friction / finger.stiffness
-    if abs(stretch) > largest:
-        required = f"at most static friction over stiffness, {largest!r} m, either way"
-        raise ValueError(refusal("skin_stretch", required, f"{stretch!r} m"))
-    return stretch
 
 
 def _mode(plate: int, finger: int, still: bool) -> ModeName:

@@ -6,118 +6,15 @@ Only the standard library is imported, so that a command starts fast.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import floor, inf, isfinite, isnan, log10
 from typing import Final, SupportsFloat
 
-DISPLAY: Final[dict[str, tuple[str, float]]] = {
-    "kg": ("g", 1e3),
-    "m": ("mm", 1e3),
-    "m/s": ("mm/s", 1e3),
-    "s": ("ms", 1e3),
-    "N": ("mN", 1e3),
-    "J": ("µJ", 1e6),
-}
-"""The unit in which a person reads each SI unit, and how many of it make one; others as is."""
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """An interval of allowed values. An open infinite end leaves infinity out."""
-
-    lower: float = -inf
-    upper: float = inf
-    lower_closed: bool = False
-    upper_closed: bool = False
-
-    def __contains__(self, value: float) -> bool:
-        """Whether `value` lies in the interval; NaN never does."""
-        return (self.lower < value or (self.lower_closed and value == self.lower)) and (
-            value < self.upper or (self.upper_closed and value == self.upper)
-        )
-
-    def words(self, unit: str = "") -> str:
-        """The interval as it reads in a sentence: "finite and greater than 0 kg"."""
-
-        def end(value: float) -> str:
-            return f"{value:g} {unit}".rstrip()
-
-        parts = [] if self.upper == inf and self.upper_closed else ["finite"]
-        if self.lower > -inf:
-            parts.append(f"{'at least' if self.lower_closed else 'greater than'} {end(self.lower)}")
-        if self.upper < inf:
-            parts.append(f"{'at most' if self.upper_closed else 'less than'} {end(self.upper)}")
-        return " and ".join(parts)
-
-
-FINITE: Final = Bounds()
-POSITIVE: Final = Bounds(lower=0.0)
-NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
-POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
-
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """One quantity: its name, its unit, the values it may take, its meaning and its source."""
-
-    name: str
-    """Inputs: their name in Python; outputs: the path of their attribute on a `Motion`."""
-    symbol: str
-    unit: str
-    """SI unit, "1" when dimensionless, "" for a count or a truth value."""
-    meaning: str
-    bounds: Bounds = FINITE
-    default: float | None = None
-    """SI value in the file that `pindrive init` writes."""
-    source: str = ""
-    section: str = ""
-    """The table of the device file that holds it; empty when the name says so or it is no input."""
-    optional: bool = False
-    """Whether a device file may leave it out."""
-    remark: str = ""
-    """What else its device file says about it: what holds where it is left out."""
-    example: float | None = None
-    """SI value in a comment of that file, where the file leaves it out."""
-
-    @property
-    def key(self) -> str:
-        """The full key in a device file: "drive.mass", "plate.kinetic"."""
-        return f"{self.section}.{self.name}" if self.section else self.name
-
-    @property
-    def display_unit(self) -> str:
-        """The unit a person reads it in: "mm" for "m"; empty when dimensionless."""
-        return "" if self.unit == "1" else DISPLAY.get(self.unit, (self.unit, 1.0))[0]
-
-    @property
-    def display_scale(self) -> float:
-        """How many display units make one SI unit."""
-        return DISPLAY.get(self.unit, (self.unit, 1.0))[1]
-
-    def written(self, value: float) -> str:
-        """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
-        return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
-
-    def digits(self, value: float) -> str:
-        """`value` (SI) in display units to four significant digits, without the unit."""
-        return significant(value * self.display_scale)
-
-    def text(self, value: float) -> str:
-        """`value` (SI) for a person to read: "1.500 mm"."""
-        return f"{self.digits(value)} {self.display_unit}".rstrip()
-
-
-def significant(value: float, digits: int = 4) -> str:
-    """`value` to so many significant digits, plain where that stays short; "-" for NaN."""
-    if isnan(value):
-        return "-"
-    if value == 0.0 or not isfinite(value):
-        return f"{value:g}".replace("-0", "0")
-    exponent = floor(log10(abs(value)))
-    if not -4 <= exponent < 7:
-        return f"{value:.{digits - 1}e}"
-    return f"{value:.{max(0, digits - 1 - exponent)}f}"
-
+from pindrive.quantity import (
+    FINITE,
+    NON_NEGATIVE,
+    POSITIVE,
+    POSITIVE_OR_RIGID,
+    Quantity,
+)
 
 PAPER: Final = '"Dynamics of tactile device drive"'
 STEEL: Final = (
@@ -192,6 +89,18 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="the kinetic one unless given",
     ),
     Quantity(
+        "plate.curve",
+        "F_p(|u|)",
+        "N",
+        "friction force of the plate over sliding speed, linear between rows",
+        NON_NEGATIVE,
+        source=STEEL.format("0.225 falling to 0.15 (the lowest)"),
+        optional=True,
+        remark="speeds from 0 m/s up; kinetic may then be left out",
+        rows_of="curve",
+        rows=((0.0, 0.022), (0.05, 0.015)),
+    ),
+    Quantity(
         "finger.kinetic",
         "F_f",
         "N",
@@ -212,6 +121,30 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="the kinetic one unless given",
     ),
     Quantity(
+        "finger.curve",
+        "F_f(|u|)",
+        "N",
+        "friction force of a rigid finger over sliding speed, linear between rows",
+        NON_NEGATIVE,
+        source="assumed: by a fifth less at 50 mm/s",
+        optional=True,
+        remark="speeds from 0 m/s up; kinetic may then be left out",
+        rows_of="curve",
+        rows=((0.0, 0.005), (0.05, 0.004)),
+    ),
+    Quantity(
+        "finger.stiffness",
+        "k_f",
+        "N/m",
+        "tangential stiffness of the finger's skin, which stretches before it slips",
+        POSITIVE,
+        None,
+        FINGER,
+        optional=True,
+        example=1000.0,
+        remark="rigid unless given",
+    ),
+    Quantity(
         "mouse_velocity",
         "v_p",
         "m/s",
@@ -220,7 +153,24 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
         "motion",
-        remark="its sign is the direction",
+        remark="its sign is the direction; one value, or rows over time",
+        rows_of="profile",
+        rows=((0.0, 0.060), (0.1, 0.0)),
+    ),
+    Quantity(
+        "plate_load",
+        "λ",
+        "1",
+        "factor on the plate's friction, as the magnet pulls or lets go",
+        NON_NEGATIVE,
+        None,
+        "assumed: a magnet that held the pin with four times its weight lets go in 5 ms",
+        "motion",
+        optional=True,
+        remark="1 unless given; one value, or rows over time",
+        example=1.0,
+        rows_of="profile",
+        rows=((0.0, 5.0), (0.005, 1.0)),
     ),
     Quantity(
         "displacement",
@@ -248,6 +198,19 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="the plate's velocity unless given",
     ),
     Quantity(
+        "skin_stretch",
+        "s_0",
+        "m",
+        "stretch of a compliant finger's skin that grips the pin at release",
+        FINITE,
+        None,
+        "assumed: half of what static friction holds, 7.5 mN / (1000 N/m)",
+        "motion",
+        optional=True,
+        example=3.75e-6,
+        remark="that of skin slid along, for a pin at rest none, unless given",
+    ),
+    Quantity(
         "duration",
         "T",
         "s",
@@ -264,7 +227,6 @@ INPUTS: Final[tuple[Quantity, ...]] = (
 """What a device file may give, in its order."""
 
 PARTS: Final[tuple[Quantity, ...]] = (
-    Quantity("skin_stretch", "s", "m", "stretch of a compliant finger's skin at release", FINITE),
     Quantity("kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE),
     Quantity("static", "F_s", "N", "largest friction force without sliding", NON_NEGATIVE),
     Quantity(
@@ -274,7 +236,6 @@ PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("curve.force", "F(|u|)", "N", "kinetic friction in a friction curve", NON_NEGATIVE),
     Quantity("profile.time", "t", "s", "time of a profile's row", FINITE),
     Quantity("profile.value", "y", "1", "value of a profile's row", FINITE),
-    Quantity("plate_load", "λ", "1", "factor on the plate's friction", NON_NEGATIVE),
     Quantity(
         "settling_band", "ε", "1", "band of the settling time, a part of |x(0) - x_end|", POSITIVE
     ),
@@ -283,6 +244,12 @@ PARTS: Final[tuple[Quantity, ...]] = (
     ),
 )
 """What the parts of a drive are made of in Python, and what follows from them."""
+
+COLUMNS: Final[dict[str, tuple[str, str]]] = {
+    "curve": ("curve.speed", "curve.force"),
+    "profile": ("profile.time", "profile.value"),
+}
+"""What stands in the rows of a curve and of a profile, by the names of the parts."""
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),

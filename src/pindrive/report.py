@@ -10,7 +10,8 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pindrive.quantities import QUANTITIES, TRANSIENT, significant
+from pindrive.quantities import COLUMNS, QUANTITIES, TRANSIENT
+from pindrive.quantity import Rows, significant
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
@@ -45,8 +46,10 @@ def device_report(device: DeviceFile) -> RenderableType:
     drive = device.drive
     table = _table("Device", "key", "symbol", ">value", "unit", "meaning")
     for key, value in device.values().items():
-        if value is not None:
-            name = key if key in QUANTITIES else key.partition(".")[2]
+        name = key if key in QUANTITIES else key.partition(".")[2]
+        if isinstance(value, tuple):
+            _add_rows(table, name, value, key)
+        elif value is not None:
             _add_number(table, name, value, key)
     _add_number(table, "natural_frequency", drive.natural_frequency, "")
     hertz = significant(drive.natural_frequency / tau)
@@ -105,13 +108,16 @@ def _numbers(motion: Motion) -> Table:
     followed = f"Transient, followed for {_TIME.text(motion.duration)}"
     table = _table(followed, "symbol", ">value", "unit", "meaning")
     values = motion.numbers()
+    unseen = {"transient.settled"}
+    if motion.drive.finger.rigid:
+        unseen |= {"transient.peak_stretch", "transient.peak_stretch_rate"}
     absent = tuple(
         f"transient.{name}."
         for name, contact in (("plate", motion.drive.plate), ("finger", motion.drive.finger))
         if contact.frictionless
     )
     for quantity in TRANSIENT:
-        if not quantity.name.startswith(absent) and quantity.name != "transient.settled":
+        if not quantity.name.startswith(absent) and quantity.name not in unseen:
             _add_number(table, quantity.name, values[quantity.name])
     return table
 
@@ -133,6 +139,21 @@ def _add_number(table: Table, name: str, value: float, *before: str) -> None:
     quantity = QUANTITIES[name]
     shown = f"{value:g}" if quantity.unit == "" else quantity.digits(value)
     table.add_row(*before, quantity.symbol, shown, quantity.display_unit, quantity.meaning)
+
+
+def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:
+    """A line for each row of a curve or a profile: its value, and where it holds."""
+    quantity = QUANTITIES[name]
+    across = QUANTITIES[COLUMNS[quantity.rows_of][0]]
+    for i, (place, value) in enumerate(rows):
+        at = f"at {across.written(place)}"
+        table.add_row(
+            "" if i else key,
+            "" if i else quantity.symbol,
+            quantity.digits(value),
+            quantity.display_unit,
+            at if i else f"{quantity.meaning}; {at}",
+        )
 
 
 def ending(motion: Motion) -> str:

@@ -1,0 +1,127 @@
+"""What a quantity is: a name, a unit, bounds, and how a value of it is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor, inf, isfinite, isnan, log10
+from typing import Final
+
+Rows = tuple[tuple[float, float], ...]
+"""A piecewise-linear function by its corners, SI: (speed, force) or (time, value)."""
+
+DISPLAY: Final[dict[str, tuple[str, float]]] = {
+    "kg": ("g", 1e3),
+    "m": ("mm", 1e3),
+    "m/s": ("mm/s", 1e3),
+    "s": ("ms", 1e3),
+    "N": ("mN", 1e3),
+    "J": ("µJ", 1e6),
+}
+"""The unit in which a person reads each SI unit, and how many of it make one; others as is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """An interval of allowed values. An open infinite end leaves infinity out."""
+
+    lower: float = -inf
+    upper: float = inf
+    lower_closed: bool = False
+    upper_closed: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        """Whether `value` lies in the interval; NaN never does."""
+        return (self.lower < value or (self.lower_closed and value == self.lower)) and (
+            value < self.upper or (self.upper_closed and value == self.upper)
+        )
+
+    def words(self, unit: str = "") -> str:
+        """The interval as it reads in a sentence: "finite and greater than 0 kg"."""
+
+        def end(value: float) -> str:
+            return f"{value:g} {unit}".rstrip()
+
+        parts = [] if self.upper == inf and self.upper_closed else ["finite"]
+        if self.lower > -inf:
+            parts.append(f"{'at least' if self.lower_closed else 'greater than'} {end(self.lower)}")
+        if self.upper < inf:
+            parts.append(f"{'at most' if self.upper_closed else 'less than'} {end(self.upper)}")
+        return " and ".join(parts)
+
+
+FINITE: Final = Bounds()
+POSITIVE: Final = Bounds(lower=0.0)
+NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
+POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One quantity: its name, its unit, the values it may take, its meaning and its source."""
+
+    name: str
+    """Inputs: their name in Python; outputs: the path of their attribute on a `Motion`."""
+    symbol: str
+    unit: str
+    """SI unit, "1" when dimensionless, "" for a count or a truth value."""
+    meaning: str
+    bounds: Bounds = FINITE
+    default: float | None = None
+    """SI value in the file that `pindrive init` writes."""
+    source: str = ""
+    section: str = ""
+    """The table of the device file that holds it; empty when the name says so or it is no input."""
+    optional: bool = False
+    """Whether a device file may leave it out."""
+    remark: str = ""
+    """What else its device file says about it: what holds where it is left out."""
+    example: float | None = None
+    """SI value in a comment of that file, where the file leaves it out."""
+    rows_of: str = ""
+    """What its rows make where it may change, a key of `COLUMNS`: "curve", "profile"."""
+    rows: Rows = ()
+    """Such rows, SI, in a comment of that file; given alone, it must be rows."""
+
+    @property
+    def key(self) -> str:
+        """The full key in a device file: "drive.mass", "plate.kinetic"."""
+        return f"{self.section}.{self.name}" if self.section else self.name
+
+    @property
+    def may_be_constant(self) -> bool:
+        """Whether one value may stand for it, or it must be rows."""
+        return not self.rows or self.default is not None or self.example is not None
+
+    @property
+    def display_unit(self) -> str:
+        """The unit a person reads it in: "mm" for "m"; empty when dimensionless."""
+        return "" if self.unit == "1" else DISPLAY.get(self.unit, (self.unit, 1.0))[0]
+
+    @property
+    def display_scale(self) -> float:
+        """How many display units make one SI unit."""
+        return DISPLAY.get(self.unit, (self.unit, 1.0))[1]
+
+    def written(self, value: float) -> str:
+        """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
+        return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
+
+    def digits(self, value: float) -> str:
+        """`value` (SI) in display units to four significant digits, without the unit."""
+        return significant(value * self.display_scale)
+
+    def text(self, value: float) -> str:
+        """`value` (SI) for a person to read: "1.500 mm"."""
+        return f"{self.digits(value)} {self.display_unit}".rstrip()
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """`value` to so many significant digits, plain where that stays short; "-" for NaN."""
+    if isnan(value):
+        return "-"
+    if value == 0.0 or not isfinite(value):
+        return f"{value:g}".replace("-0", "0")
+    exponent = floor(log10(abs(value)))
+    if not -4 <= exponent < 7:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:.{max(0, digits - 1 - exponent)}f}"
