@@ -1,5 +1,5 @@
 /// Checks a finished motion against the laws it must obey, without using the solver: no mode is
-/// chosen and no root is found here; the motion is evaluated and held against MODEL.md §2–§4.
+/// chosen here and no event looked for; the motion is evaluated and held against MODEL.md §2–§4.
 #pragma once
 
 #include <algorithm>

@@ -257,9 +257,11 @@ class Simulation {
       index += step;
       return sign(slide) * (step > 0 ? region.to : region.from);
     };
+    T v = v_;
     if (exit.plate)
-      v_ = now_.plate_velocity.value + border(drive_.plate, mode_.plate, mode_.plate_region);
-    if (exit.finger) v_ = border(drive_.finger, mode_.finger, mode_.finger_region);
+      v = now_.plate_velocity.value + border(drive_.plate, mode_.plate, mode_.plate_region);
+    if (exit.finger) v = border(drive_.finger, mode_.finger, mode_.finger_region);
+    if (exit.tau > 0) v_ = v;  // else it is at another level too, whose number it keeps
     if (exit.plate && step > 0) note_recurrence(false);
   }
 
