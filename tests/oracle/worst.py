@@ -1,4 +1,4 @@
-"""Print how far the core is, at the worst, from the stored answers of the thirty-digit oracle.
+"""Print how far the core is, at the worst, from the stored answers of the thirty-digit oracles.
 
 cd tests && ../.venv/bin/python -m oracle.worst
 """
@@ -7,24 +7,43 @@ from __future__ import annotations
 
 import numpy as np
 
-from test_oracle import CASES, release, scales, told_events
+import test_oracle
+import test_oracle_piecewise as piecewise
 
 
-def main() -> None:
+def constant() -> str:
     count, late, displaced = 0, [], []
-    for case in CASES:
-        motion, stored = release(case), case["events"]
-        told = told_events(motion)
+    for case in test_oracle.CASES:
+        motion, stored = test_oracle.release(case), case["events"]
+        told = test_oracle.told_events(motion)
         assert [event[1:3] for event in told] == [tuple(event[1:3]) for event in stored]
         count += len(stored)
         late += [abs(ours[0] - true[0]) for ours, true in zip(told, stored, strict=True)]
         off = np.abs(motion.position(np.array(case["times"])) - case["x"])
-        displaced.append(float(off.max()) / scales(case)[0])
-    print(
-        f"{len(CASES)} cases, {count} events, the same in the same order: times within "
+        displaced.append(float(off.max()) / test_oracle.scales(case)[0])
+    return (
+        f"{len(test_oracle.CASES)} cases, {count} events, the same in the same order: times within "
         f"{max(late):.1e} s, positions within {max(displaced):.1e} of the release displacement"
     )
 
 
+def changing() -> str:
+    count, late, displaced = 0, [], []
+    for case in piecewise.CASES:
+        motion = piecewise.release(case)
+        told = piecewise.instants(piecewise.told_events(motion))
+        stored = piecewise.instants(case["events"])
+        assert all(piecewise.alike(*pair) for pair in zip(told, stored, strict=True))
+        count += len(stored)
+        late += [abs(ours[0][0] - true[0][0]) for ours, true in zip(told, stored, strict=True)]
+        off = np.abs(motion.position(np.array(case["times"])) - case["x"])
+        displaced.append(float(off.max()) / piecewise.scales(case)["x"])
+    return (
+        f"{len(piecewise.CASES)} cases with inputs that change, friction curves and skin, {count} "
+        f"instants with events, the same: times within {max(late):.1e} s, positions within "
+        f"{max(displaced):.1e} of the largest"
+    )
+
+
 if __name__ == "__main__":
-    main()
+    print(constant(), changing(), sep="\n")
