@@ -239,6 +239,96 @@ def test_several_files_at_once_and_nothing_else() -> None:
     assert sorted(path.name for path in Path().iterdir()) == ["a.csv", "a.json"]
 
 
+# ---- friction curves, skin, inputs that change ---------------------------------------------------
+
+SKIN = Path(__file__).parents[1] / "examples" / "stribeck-skin.toml"
+
+
+def skin() -> pindrive.Motion:
+    """The motion of the second example, from Python."""
+    drive = pindrive.Drive.with_damping_ratio(
+        mass=0.010,
+        stiffness=100.0,
+        damping_ratio=0.16,
+        plate=pindrive.Contact(static=0.0265, curve=[(0, 0.022), (0.05, 0.015), (0.1, 0.015)]),
+        finger=pindrive.Contact(0.020, 0.030, stiffness=1000.0),
+    )
+    hand = pindrive.Profile([0.0, 0.1], [0.06, 0.0])
+    return pindrive.simulate(drive, mouse_velocity=hand, displacement=2e-3)
+
+
+def test_check_shows_a_line_for_each_row() -> None:
+    lines = [line.split() for line in run("check", SKIN).stdout.splitlines()]
+    first = next(i for i, line in enumerate(lines) if line[:1] == ["plate.curve"])
+    assert lines[first][:4] == ["plate.curve", "F_p(|u|)", "22.00", "mN"]
+    assert ["15.00", "mN", "at", "50", "mm/s"] in lines
+    assert ["0", "mm/s", "at", "100", "ms"] in lines
+    assert [line for line in lines if line[:1] == ["finger.curve"]] == []
+
+
+def test_skin_has_columns_and_rows_of_its_own() -> None:
+    output = run("simulate", SKIN, "--csv", "out.csv", "--netcdf", "out.nc", "--samples", "50")
+    assert "largest stretch of a compliant finger's skin" in output.stdout
+    assert "stretch" not in run("simulate", EXAMPLE).stdout
+    motion = skin()
+    with Path("out.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0])[-3:] == ["stretch_m", "stretch_rate_m_per_s", "plate_velocity_m_per_s"]
+    for row in rows:
+        t = float(row["time_s"])
+        assert float(row["stretch_m"]) == motion.stretch(t)
+        assert float(row["stretch_rate_m_per_s"]) == motion.stretch_rate(t)
+        assert float(row["plate_velocity_m_per_s"]) == motion.plate_velocity(t)
+    with xr.open_dataset("out.nc", engine="h5netcdf", decode_timedelta=False) as dataset:
+        assert dataset["stretch"].attrs["units"] == "m"
+        assert np.array_equal(dataset["plate_velocity"], motion.plate_velocity(dataset["time"]))
+        assert dataset.attrs["plate.curve.speed"].tolist() == [0.0, 0.05, 0.1]
+        assert dataset.attrs["plate.curve.force"].tolist() == [0.022, 0.015, 0.015]
+        assert dataset.attrs["mouse_velocity.time"].tolist() == [0.0, 0.1]
+        assert dataset.attrs["mouse_velocity.value"].tolist() == [0.06, 0.0]
+
+
+def test_json_holds_rows() -> None:
+    changes = ("plate_load=50 %", "skin_stretch=-20 µm")
+    assert run("simulate", SKIN, *(f"--set={c}" for c in changes), "--json", "a").exit_code == 0
+    document = json.loads(Path("a").read_text(encoding="utf-8"))
+    inputs, units = document["inputs"], document["units"]
+    assert inputs["plate.curve"] == [[0.0, 0.022], [0.05, 0.015], [0.1, 0.015]]
+    assert inputs["mouse_velocity"] == [[0.0, 0.06], [0.1, 0.0]]
+    assert (inputs["plate_load"], inputs["finger.stiffness"]) == (0.5, 1000.0)
+    assert inputs["skin_stretch"] == -2e-5
+    assert (units["plate.curve"], units["mouse_velocity"]) == (["m/s", "N"], ["s", "m/s"])
+    assert document["config"]["plate.curve"] == inputs["plate.curve"]
+
+
+def test_rows_are_set_as_toml() -> None:
+    """A magnet that lets go while the hand stops; and the example said so gives its own motion."""
+    changes = (
+        'mouse_velocity=[["0 ms", "60 mm/s"], ["40 ms", "0 mm/s"]]',
+        'plate_load=[["0 ms", 1], ["5 ms", 0.2]]',
+    )
+    assert run("simulate", EXAMPLE, *(f"--set={c}" for c in changes), "--json=a").exit_code == 0
+    document = json.loads(Path("a").read_text(encoding="utf-8"))
+    assert document["inputs"]["plate_load"] == [[0.0, 1.0], [0.005, 0.2]]
+    assert document["certificate"]["worst"] < 1e-12
+    constant = run("simulate", EXAMPLE, '--set=mouse_velocity=[["0 s", "60 mm/s"]]')
+    assert constant.stdout == run("simulate", EXAMPLE).stdout
+
+
+@pytest.mark.parametrize(
+    ("override", "problem"),
+    [
+        ('plate_load=[["0 s", 1], ["1 s", 2]]', "motion.plate_load must be constant for a plate"),
+        ('finger.curve=[["0 m/s", "20 mN"], ["1 m/s", "0 N"]]', "finger.curve must be one row"),
+        ("skin_stretch=31 µm", "motion.skin_stretch must be at most static friction over"),
+        ('mouse_velocity=[["0 s", "1 V"]]', "motion.mouse_velocity[0] value must be in m/s"),
+    ],
+)
+def test_what_no_closed_form_solves_is_refused(override: str, problem: str) -> None:
+    key = override.partition("=")[0]
+    assert refused("simulate", SKIN, "--set", override).startswith(f"--set {key}: {problem}")
+
+
 # ---- bad input -----------------------------------------------------------------------------------
 
 GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")

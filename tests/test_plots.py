@@ -3,6 +3,7 @@
 import io
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from subprocess import run
 
@@ -16,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from pindrive import Contact, Drive, Motion, simulate
+from pindrive import Contact, Drive, Motion, Profile, simulate
 from pindrive.plots import PALETTE, plot_motion, save
 
 Array = NDArray[np.float64]
@@ -40,6 +41,14 @@ def drive(
     )
 
 
+SKIN = Drive(
+    mass=0.010,
+    stiffness=100.0,
+    damping=0.32,
+    plate=Contact(static=0.0265, curve=[(0.0, 0.022), (0.05, 0.015), (0.1, 0.015)]),
+    finger=Contact(0.020, 0.030, stiffness=1000.0),
+)
+STOP = Profile([0.0, 0.1], [0.06, 0.0])
 NONE = (0.0, 0.0)
 MOTIONS: dict[str, Callable[[], Motion]] = {
     "example": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3),
@@ -60,6 +69,18 @@ MOTIONS: dict[str, Callable[[], Motion]] = {
     ),
     "cut": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=0.05),
     "long": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=20.0),
+    "skin": lambda: simulate(SKIN, mouse_velocity=STOP, displacement=2e-3),
+    "stiff skin": lambda: simulate(
+        replace(SKIN, finger=Contact(0.02, 0.03, stiffness=1e8)),
+        mouse_velocity=0.06,
+        displacement=2e-3,
+    ),
+    "magnet": lambda: simulate(
+        drive(),
+        mouse_velocity=STOP,
+        displacement=2e-3,
+        plate_load=Profile([0.0, 0.005], [1.0, 0.2]),
+    ),
     "many": lambda: simulate(
         drive(0.0, (1e-6, 1e-6), (1e-6, 1e-6)),
         mouse_velocity=0.0,
@@ -103,7 +124,10 @@ def test_axes_have_units(drawn: dict[str, tuple[Motion, Figure]]) -> None:
         assert panel(figure, "portrait").get_ylabel().endswith("(mm/s)")
 
 
-@pytest.mark.parametrize("name", ["example", "still plate", "backwards", "grazing", "cut", "creep"])
+@pytest.mark.parametrize(
+    "name",
+    ["example", "still plate", "backwards", "grazing", "cut", "creep", "skin", "magnet"],
+)
 def test_curves_are_the_motion(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
     motion, figure = drawn[name]
     ends = [s.begin for s in motion.segments[1:]]
@@ -195,7 +219,7 @@ def test_cycle_goes_on_round_after_round(drawn: dict[str, tuple[Motion, Figure]]
     assert len(shade.get_paths()) == len(times) + 1  # it starts carried
 
 
-@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("name", [name for name in MOTIONS if name not in ("skin", "magnet")])
 def test_plate_velocity_is_drawn_and_named(
     drawn: dict[str, tuple[Motion, Figure]], name: str
 ) -> None:
@@ -206,6 +230,51 @@ def test_plate_velocity_is_drawn_and_named(
         low, high = axes.get_ylim()
         assert low < level[0] < high
         assert any(text.get_text().startswith("plate") for text in axes.texts)
+
+
+def test_a_plate_velocity_that_changes_is_drawn(
+    drawn: dict[str, tuple[Motion, Figure]],
+) -> None:
+    motion, figure = drawn["skin"]
+    t, v = data(panel(figure, "v"), "plate")
+    assert t == pytest.approx([0.0, 100.0, 1e3 * motion.duration])
+    assert v == pytest.approx([60.0, 0.0, 0.0])
+    assert not lines(panel(figure, "portrait"), "plate")
+
+
+def test_skin_has_a_panel(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["skin"]
+    s = panel(figure, "s")
+    assert s.get_ylabel().endswith("(µm)")
+    assert s.get_xlabel() == "time after release (ms)"
+    assert not panel(figure, "a").get_xlabel()
+    t, stretch = data(s, "curve")
+    inside = np.min(np.abs(t[:, None] / 1e3 - [p.begin for p in motion.segments]), axis=1) > 1e-12
+    assert stretch[inside] == pytest.approx(1e6 * motion.stretch(t[inside] / 1e3), abs=1e-9)
+    assert stretch.max() == pytest.approx(30.0), "what static friction holds"
+    (shade,) = (c for c in s.collections if c.get_gid() == "gripping")
+    gripping = [p for p in motion.segments if p.finger == 0]
+    edges = [np.asarray(path.vertices)[:, 0] for path in shade.get_paths()]
+    assert [edge.min() for edge in edges] == pytest.approx([1e3 * p.begin for p in gripping])
+    legend = panel(figure, "key").get_legend()
+    assert legend is not None
+    assert "skin grips the pin" in [text.get_text() for text in legend.get_texts()]
+
+
+@pytest.mark.parametrize("name", ["example", "magnet"])
+def test_a_rigid_finger_has_no_panel(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    assert "s" not in [axes.get_label() for axes in drawn[name][1].axes]
+
+
+def test_title_says_what_changes(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    skin, magnet = (drawn[name][1].get_suptitle() for name in ("skin", "magnet"))
+    assert r"$F_\mathrm{p}$ = 22 → 15 mN (static 26.5 mN)" in skin
+    assert r"$k_\mathrm{f}$ = 1000 N/m" in skin
+    assert r"$v_\mathrm{p}$ = 60 → 0 mm/s" in skin
+    assert "$λ$ = 1 → 0.2" in magnet
+    assert "λ" not in skin
+    many = simulate(drive(), mouse_velocity=Profile(range(9), [0.01 * i for i in range(9)]))
+    assert "= 0 mm/s … 80 mm/s" in plot_motion(many).get_suptitle()
 
 
 def test_settling_is_marked(drawn: dict[str, tuple[Motion, Figure]]) -> None:

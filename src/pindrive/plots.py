@@ -6,8 +6,7 @@ corner and a jump is a jump. No global state of matplotlib is used or left behin
 
 from __future__ import annotations
 
-import re
-from math import inf, isfinite, isnan
+from math import inf, isnan
 from typing import IO, TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -17,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive._core import settling_band
+from pindrive.captions import NAME, duration, outcome, parameters, short, stuck_name
 from pindrive.drive import Profile
-from pindrive.quantities import QUANTITIES
 from pindrive.trace import MM, Trace
 
 if TYPE_CHECKING:
@@ -40,21 +39,14 @@ PALETTE: Final = {
     "plate": "#000000",
     "carried": "#56B4E9",  # sky blue
     "resting": "#E69F00",  # orange
+    "gripping": "#CC79A7",  # reddish purple
 }
 """Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
 
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
+_GRIP_TINT: Final = 0.3
 _MARKER: Final = {"stick": "s", "slip": "^", "cross": "x"}
-_NAME: Final = {
-    "stick": "sticks",
-    "slip": "breaks loose",
-    "cross": "reverses without sticking",
-    "carried": "carried by the plate",
-    "resting": "resting on the finger",
-}
 _GREY: Final = "0.45"
-_LINE: Final = 118
-"""Characters that fit side by side above the panels."""
 _SMALL: Final = 7.0
 
 _MOST_MARKERS = 100
@@ -87,6 +79,8 @@ _SAVING: Final[dict[str, dict[str, Any]]] = {
 def plot_motion(motion: Motion) -> Figure:
     """Draw a motion: x, v and a over time, and v over x, for a page 180 mm wide.
 
+    With a compliant finger also the stretch of its skin.
+
     Args:
         motion: any motion; of a very long one the first phases are drawn, and it says so.
 
@@ -95,21 +89,26 @@ def plot_motion(motion: Motion) -> Figure:
     """
     with matplotlib.style.context(_STYLE, after_reset=True):
         trace = Trace.of(motion)
-        figure = Figure(figsize=(180 / 25.4, 125 / 25.4), dpi=250, layout="constrained")
+        skin = not motion.drive.finger.rigid
+        height = 150 if skin else 125
+        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
         columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
-        rows = columns[0].subgridspec(3, 1)
+        rows = columns[0].subgridspec(3 + skin, 1)
         x = figure.add_subplot(rows[0], label="x")
         v = figure.add_subplot(rows[1], label="v", sharex=x)
         a = figure.add_subplot(rows[2], label="a", sharex=x)
+        s = figure.add_subplot(rows[3], label="s", sharex=x) if skin else None
         rows = columns[1].subgridspec(2, 1, height_ratios=(2.6, 1.0))
         portrait = figure.add_subplot(rows[0], label="portrait")
         key = figure.add_subplot(rows[1], label="key")
         _draw_over_time(motion, trace, x, v, a)
+        if s:
+            _draw_skin(trace, a, s)
         _draw_portrait(motion, trace, portrait)
         _draw_key(motion, trace, key)
-        figure.align_ylabels((x, v, a))
+        figure.align_ylabels((x, v, a, s) if s else (x, v, a))
         figure.suptitle(
-            f"{_outcome(motion)}\n{_parameters(motion)}", x=0.008, ha="left", fontsize=8.0
+            f"{outcome(motion)}\n{parameters(motion)}", x=0.008, ha="left", fontsize=8.0
         )
     return figure
 
@@ -137,16 +136,7 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     for axes, label in panels.items():
         axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
         for mode in ("carried", "resting"):
-            axes.broken_barh(
-                trace.stuck(mode),
-                (0.0, 1.0),
-                transform=axes.get_xaxis_transform(),
-                color=PALETTE[mode],
-                alpha=_TINT[mode],
-                lw=0.0,
-                zorder=0.5,
-                gid=mode,
-            )
+            _shade(axes, trace.stuck(mode), mode, _TINT[mode])
         axes.set_ylabel(label)
         axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5, labelbottom=axes is a)
     x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
@@ -164,6 +154,33 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     a.set_ylim(_room(trace.a, 0.0))
     a.set_xlabel(f"time after release ({trace.unit})")
     a.set_xlim(0.0, trace.end * trace.scale)
+
+
+def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
+    """The stretch of a compliant finger's skin, and where it grips the pin."""
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+    _shade(axes, trace.gripping(), "gripping", _GRIP_TINT)
+    axes.plot(trace.t, trace.s, color=PALETTE["curve"], gid="curve")
+    axes.set_ylim(_room(trace.s, 0.0))
+    axes.set_ylabel("skin stretch $s$ (µm)")
+    axes.set_xlabel(above.get_xlabel())
+    above.set_xlabel("")
+    above.tick_params(labelbottom=False)
+    axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5)
+
+
+def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
+    """Tint stretches of time (begin, length) over the height of a panel."""
+    axes.broken_barh(
+        spans,
+        (0.0, 1.0),
+        transform=axes.get_xaxis_transform(),
+        color=PALETTE[name],
+        alpha=tint,
+        lw=0.0,
+        zorder=0.5,
+        gid=name,
+    )
 
 
 def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -199,17 +216,20 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     kinds = {event.kind for event, _ in trace.events}
     if len(trace.events) <= _MOST_MARKERS:
         handles += [
-            Line2D([], [], **_marker(kind), label=_NAME[kind]) for kind in _MARKER if kind in kinds
+            Line2D([], [], **_marker(kind), label=NAME[kind]) for kind in _MARKER if kind in kinds
         ]
     else:
         notes.append(f"{len(trace.events)} events: too many to mark")
     if trace.end < motion.duration:
-        notes.append(f"drawn: the first {_time(trace.end)} of {_time(motion.duration)}")
+        notes.append(f"drawn: the first {duration(trace.end)} of {duration(motion.duration)}")
     handles += [
-        Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=_stuck_name(motion, mode))
+        Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=stuck_name(motion, mode))
         for mode in _TINT
         if trace.stuck(mode)
     ]
+    if not motion.drive.finger.rigid and trace.gripping():
+        colour = PALETTE["gripping"]
+        handles.append(Patch(color=colour, alpha=_GRIP_TINT, lw=0.0, label=NAME["gripping"]))
     if _band(motion) > 0.0:
         label = rf"$x_\mathrm{{end}}$ ± {100 * settling_band:g} % of $|x_0 - x_\mathrm{{end}}|$"
         handles.append(Line2D([], [], color=_GREY, lw=0.7, ls=":", label=label))
@@ -286,7 +306,7 @@ def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
     if motion.ending.kind in ("resting", "decaying"):
         ends[-1] = "end"
     elif motion.ending.kind == "moving":
-        ends[-1] = _time(trace.end)
+        ends[-1] = duration(trace.end)
     moving = trace.v[trace.v != 0.0]
     comes_from_below = len(moving) > 0 and moving[-1] < 0.0
     for i, text in ends.items():
@@ -320,7 +340,7 @@ def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
         axes.axvline(time * trace.scale, color=_GREY, lw=0.7, zorder=1, gid="settling")
         side = ("left", "center", "right")[(time > 0.2 * trace.end) + (time > 0.8 * trace.end)]
         axes.annotate(
-            f"{word} {_time(time)}",
+            f"{word} {duration(time)}",
             (time * trace.scale, 1.0),
             (0, 1),
             xycoords=axes.get_xaxis_transform(),
@@ -339,7 +359,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
             continue
         late = time > 0.65 * trace.end
         axes.annotate(
-            f"{name} {_short('displacement', place)}",
+            f"{name} {short('displacement', place)}",
             (time * trace.scale, place * MM),
             (-4 if late else 4, 1 if up else -2),
             textcoords="offset points",
@@ -352,77 +372,3 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
 def _outward(motion: Motion) -> bool:
     """Whether the peak is above the trough."""
     return not motion.transient.peak_displacement < motion.transient.trough_displacement
-
-
-# ---- the words -----------------------------------------------------------------------------------
-
-
-def _short(name: str, value: float) -> str:
-    """A value as a caption gives it: "26.5 mN"."""
-    quantity = QUANTITIES[name]
-    return f"{_digits(value * quantity.display_scale)} {quantity.display_unit}"
-
-
-def _time(value: float) -> str:
-    return _short("duration", value) if value < 2.0 else f"{_digits(value)} s"
-
-
-def _digits(value: float) -> str:
-    """Four digits, or all before the point where they are few more."""
-    text = f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
-    return text.replace("-", "\N{MINUS SIGN}")
-
-
-def _stuck_name(motion: Motion, mode: str) -> str:
-    if motion.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
-        return _NAME[mode]
-    on_finger = "" if motion.drive.finger.frictionless else "finger and "
-    return f"at rest on {on_finger}plate"
-
-
-def _outcome(motion: Motion) -> str:
-    """How it ends, how long the transient lasts and how far it swings."""
-    end, numbers = motion.ending, motion.transient
-    place = _short("displacement", end.position)
-    words = {
-        "resting": f"At rest at {place} since {_time(end.since)}",
-        "decaying": f"Decays towards {place}",
-        "steady": f"Steady {end.cycle} oscillation of ±{_short('displacement', end.amplitude)}",
-        "moving": f"Still moving after {_time(motion.duration)}",
-    }[end.kind]
-    if end.kind == "steady" and isfinite(end.period):
-        words += f", period {_time(end.period)}"
-    if numbers.settled:
-        words += f"; settling time {_time(numbers.settling_time)}"
-    if not isnan(numbers.swing):
-        words += f"; swing {_short('displacement', numbers.swing)}"
-    return words
-
-
-def _parameters(motion: Motion) -> str:
-    """The drive and its release."""
-    drive, v_plate = motion.drive, motion.mouse_velocity
-    words = [
-        f"$m$ = {_short('mass', drive.mass)}",
-        f"$k$ = {_short('stiffness', drive.stiffness)}",
-        f"$ζ$ = {drive.damping_ratio:.4g}",
-    ]
-    for contact, index in ((drive.plate, "p"), (drive.finger, "f")):
-        kinetic, static = contact.kinetic, contact.static_friction
-        more = "" if static == kinetic else f" (static {_short('plate.static', static)})"
-        words.append(rf"$F_\mathrm{{{index}}}$ = {_short('plate.kinetic', kinetic)}{more}")
-    if isinstance(v_plate, Profile):
-        words.append(r"$v_\mathrm{p}$ changes")
-    else:
-        words.append(rf"$v_\mathrm{{p}}$ = {_short('mouse_velocity', v_plate)}")
-    words.append(f"$x_0$ = {_short('displacement', motion.displacement)}")
-    if motion.initial_velocity != float(motion.plate_velocity(0.0)):
-        words.append(f"$v_0$ = {_short('velocity', motion.initial_velocity)}")
-    lines = [words[0]]
-    for word in words[1:]:
-        longer = f"{lines[-1]}, {word}"
-        if len(re.sub(r"[$\\{}_]|mathrm", "", longer)) <= _LINE:
-            lines[-1] = longer
-        else:
-            lines.append(word)
-    return ",\n".join(lines)

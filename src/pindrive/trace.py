@@ -11,7 +11,7 @@ import numpy as np
 from pindrive.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 MOST_PHASES, MOST_PERIODS = 5000, 2500
 """What is traced of a very long motion, from its start."""
 
+_MOST_CLOSER: Final = 30.0
+"""How much closer at most the grid is where skin grips, which is a stiffer spring."""
+
+MICRON: Final = 1e6  # of stretches
 MM: Final = QUANTITIES["displacement"].display_scale  # of lengths and velocities
 
 
@@ -37,6 +41,8 @@ class Trace:
     x: NDArray[np.float64]
     v: NDArray[np.float64]
     a: NDArray[np.float64]
+    s: NDArray[np.float64]
+    """Stretch of the skin, µm; 0 of a rigid finger."""
     events: tuple[tuple[Event, float], ...]
     """Events, and their delay."""
     unit: str
@@ -58,8 +64,15 @@ class Trace:
             min(200.0 / period, max(40.0 / period, 20_000 / end)) if oscillates else 2000 / end
         )
         fastest = frequency * (ratio + sqrt(max(0.0, ratio**2 - 1.0)))
+        skin, spring = motion.drive.finger, motion.drive.stiffness
+        gripped = 1.0 if skin.rigid else min(sqrt(1.0 + skin.stiffness / spring), _MOST_CLOSER)
         grids = [
-            _grid(phase.begin, min(phase.end, end - delay), density, fastest)
+            _grid(
+                phase.begin,
+                min(phase.end, end - delay),
+                density * (gripped if phase.finger == 0 else 1.0),
+                fastest,
+            )
             for phase, delay in phases
         ]
         sizes = np.array([len(grid) for grid in grids])
@@ -67,6 +80,8 @@ class Trace:
         t = np.concatenate(grids)
         x, v, a = motion.position(t), motion.velocity(t), motion.acceleration(t)
         a[lasts] = motion.acceleration(t[lasts], "left")
+        s = motion.stretch(t)
+        s[lasts] = motion.stretch(t[lasts], "left")
         delays = np.repeat([delay for _, delay in phases], sizes)
         unit, scale = ("ms", 1e3) if end < 2.0 else ("s", 1.0)
         return cls(
@@ -77,6 +92,7 @@ class Trace:
             x * MM,
             v * MM,
             a,
+            s * MICRON,
             tuple(_events(motion, end)),
             unit,
             scale,
@@ -84,10 +100,17 @@ class Trace:
 
     def stuck(self, mode: str) -> list[tuple[float, float]]:
         """Begin and length of each phase stuck in this way, in the unit of the time axis."""
+        return self._spans(lambda phase: phase.mode == mode)
+
+    def gripping(self) -> list[tuple[float, float]]:
+        """The same of the phases in which compliant skin grips the pin."""
+        return self._spans(lambda phase: phase.finger == 0)
+
+    def _spans(self, chosen: Callable[[Segment], bool]) -> list[tuple[float, float]]:
         return [
             (self.scale * (phase.begin + delay), self.scale * (end - phase.begin))
             for phase, delay in self.phases
-            if phase.mode == mode
+            if chosen(phase)
             for end in [min(phase.end, self.end - delay)]
         ]
 
