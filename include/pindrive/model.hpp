@@ -1,6 +1,7 @@
 /// What goes into the core and what comes out of it. SI units throughout.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -82,9 +83,7 @@ class Profile {
 
  private:
   std::size_t rows_until(T t) const {
-    std::size_t i = 0;
-    while (i < count_ && times_[i] <= t) ++i;
-    return i;
+    return static_cast<std::size_t>(std::upper_bound(times_, times_ + count_, t) - times_);
   }
 
   T constant_;
