@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pindrive.batch import simulate_batch
     from pindrive.drive import Contact, Drive, Profile
     from pindrive.motion import Motion, simulate
 
     __version__: str
 
-__all__ = ["Contact", "Drive", "Motion", "Profile", "__version__", "simulate"]
+__all__ = ["Contact", "Drive", "Motion", "Profile", "__version__", "simulate", "simulate_batch"]
 
 _HOME = {
     "Contact": "pindrive.drive",
@@ -18,6 +19,7 @@ _HOME = {
     "Profile": "pindrive.drive",
     "Motion": "pindrive.motion",
     "simulate": "pindrive.motion",
+    "simulate_batch": "pindrive.batch",
 }
 
 

@@ -260,6 +260,8 @@ nb::dict certificate(const CoreMotion& motion, double duration) {
 
 }  // namespace
 
+void bind_batch(nb::module_& m);  // _batch.cpp
+
 NB_MODULE(_core, m) {
   m.doc() = "The exact core. All quantities in SI units; nothing is checked here.";
 
@@ -291,6 +293,7 @@ NB_MODULE(_core, m) {
         "Simulates one pin from its release until its ending is known or the duration is over. "
         "Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, "
         "value).");
+  bind_batch(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
 }

@@ -62,6 +62,11 @@ def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, 
     Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, value).
     """
 
+def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int) -> dict:
+    """
+    Columns of numbers, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration). A point whose status is not 0 is left out: its numbers are NaN.
+    """
+
 settling_band: float = 0.05
 
 event_limit: int = 1000000

@@ -1,0 +1,43 @@
+/// One point of a study: a drive and its release in, its numbers out, and no way between them kept.
+#pragma once
+
+#include "pindrive/motion.hpp"
+#include "pindrive/simulate.hpp"
+#include "pindrive/transient.hpp"
+
+namespace pindrive {
+
+/// Everything asked of a motion (MODEL.md §6), over [0, duration].
+template <class T>
+struct Summary {
+  Transient<T> transient;
+  Outcome<T> outcome;
+  T duration;           ///< that was asked for, or long enough to see the ending, s
+  long long events{0};  ///< changes at a contact; of a cycle, those of one round
+};
+
+/// How many events end a segment: one for each contact, or one that both share.
+template <class T>
+int events_at_end(const Segment<T>& segment) {
+  const Event event = segment.event;
+  if (event.plate == event.finger) return event.plate == Kind::none ? 0 : 1;
+  return (event.plate == Kind::none ? 0 : 1) + (event.finger == Kind::none ? 0 : 1);
+}
+
+/// Follows one pin and measures its motion. `segments` is a container that the caller lends for the
+/// meantime: what it held is lost, and once it has grown large enough nothing is allocated.
+template <class T, class Segments>
+Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments) {
+  Summary<T> summary;
+  segments.clear();
+  summary.outcome = simulate(drive, inputs, [&](const Segment<T>& segment) {
+    segments.push_back(segment);
+    summary.events += events_at_end(segment);
+  });
+  const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
+  summary.duration = duration_of(motion);
+  summary.transient = Measurement<T>(motion, summary.duration).transient(band);
+  return summary;
+}
+
+}  // namespace pindrive

@@ -1,0 +1,250 @@
+// Many points at once: arrays in and out of the core, shared out among threads. No physics here.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <future>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "pindrive/batch.hpp"
+
+namespace nb = nanobind;
+namespace pd = pindrive;
+using nb::literals::operator""_a;
+
+namespace {
+
+using Summary = pd::Summary<double>;
+
+constexpr std::size_t share = 32;           // points that a thread takes at a time
+constexpr std::size_t patience = 1U << 16;  // segments followed between two looks for Ctrl-C
+constexpr std::size_t keep = 1U << 12;      // segments that a thread keeps room for
+
+// ---- in ------------------------------------------------------------------------------------------
+
+/// The arguments of a point, in the order of `inputs` below.
+enum : std::size_t {
+  mass,
+  stiffness,
+  damping,
+  plate_kinetic,
+  plate_static,
+  finger_kinetic,
+  finger_static,
+  finger_stiffness,
+  mouse_velocity,
+  displacement,
+  velocity,
+  duration,
+  input_count
+};
+using Input = nb::ndarray<const double, nb::device::cpu>;
+using Inputs = std::array<Input, input_count>;
+using Statuses = nb::ndarray<const std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Point = std::array<double, input_count>;
+
+/// Point i, in C order, of arrays that have one shape; along an axis an array may stand still.
+Point point(const Inputs& inputs, std::size_t i) {
+  std::array<std::int64_t, input_count> offset{};
+  for (std::size_t axis = inputs[0].ndim(); axis-- > 0;) {
+    const auto length = inputs[0].shape(axis);
+    const auto index = static_cast<std::int64_t>(i % length);
+    i /= length;
+    for (std::size_t k = 0; k < input_count; ++k) offset[k] += index * inputs[k].stride(axis);
+  }
+  Point found;
+  for (std::size_t k = 0; k < input_count; ++k) found[k] = inputs[k].data()[offset[k]];
+  return found;
+}
+
+Summary summarise(const Point& p, std::vector<pd::Segment<double>>& segments) {
+  const pd::Drive<double> drive{p[mass],
+                                p[stiffness],
+                                p[damping],
+                                {p[plate_kinetic], p[plate_static]},
+                                {p[finger_kinetic], p[finger_static], p[finger_stiffness]}};
+  const pd::Inputs<double> inputs{p[mouse_velocity], p[displacement], p[velocity], p[duration]};
+  return pd::summarise(drive, inputs, pd::settling_band, segments);
+}
+
+// ---- out -----------------------------------------------------------------------------------------
+
+struct Number {
+  const char* name;  ///< in the table of quantities
+  double (*of)(const Summary&);
+};
+
+constexpr Number numbers[] = {
+    {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; }},
+    {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; }},
+    {"transient.trough_displacement",
+     [](const Summary& s) { return s.transient.trough_displacement; }},
+    {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; }},
+    {"transient.swing", [](const Summary& s) { return s.transient.swing; }},
+    {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; }},
+    {"transient.return_velocity_time",
+     [](const Summary& s) { return s.transient.return_velocity_time; }},
+    {"transient.first_reversal_time",
+     [](const Summary& s) { return s.transient.first_reversal_time; }},
+    {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; }},
+    {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
+    {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
+    {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; }},
+    {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; }},
+    {"transient.plate.distance_slid",
+     [](const Summary& s) { return s.transient.plate.distance_slid; }},
+    {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; }},
+    {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; }},
+    {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; }},
+    {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; }},
+    {"transient.finger.distance_slid",
+     [](const Summary& s) { return s.transient.finger.distance_slid; }},
+    {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; }},
+    {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; }},
+    {"ending.position", [](const Summary& s) { return s.transient.end_position; }},
+    {"ending.since", [](const Summary& s) { return s.outcome.since; }},
+    {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
+    {"ending.period", [](const Summary& s) { return s.outcome.period; }},
+    {"duration", [](const Summary& s) { return s.duration; }},
+};
+constexpr std::size_t number_count = std::size(numbers);
+
+/// One column over all points, each of which is written once.
+template <class T>
+class Column {
+ public:
+  explicit Column(std::size_t size) : values_(new T[size]), size_(size) {}
+  T& operator[](std::size_t i) { return values_[i]; }
+  nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig> array() {
+    T* values = values_.release();
+    const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return {values, {size_}, owner};
+  }
+
+ private:
+  std::unique_ptr<T[]> values_;
+  std::size_t size_;
+};
+
+// ---- between -------------------------------------------------------------------------------------
+
+class Batch {
+ public:
+  /// A point whose status is not 0 is bad: it is left out, and marked.
+  Batch(const Inputs& inputs, const Statuses& given)
+      : inputs_(inputs), given_(given), status_(size()), ending_(size()), events_(size()) {
+    for (std::size_t k = 0; k < number_count; ++k) columns_.emplace_back(size());
+  }
+
+  std::size_t size() const { return given_.size(); }
+
+  /// Works all points off with so many threads, of which the caller's is one. `look` is called by
+  /// the caller's now and then; when it returns false all of them stop.
+  template <class Look>
+  void run(std::size_t threads, Look&& look) {
+    const auto watch = [&] {
+      if (!stopped_ && !look()) stopped_ = true;
+    };
+    std::vector<std::future<void>> others;
+    try {
+      while (others.size() + 1 < std::min(threads, size() / share + 1))
+        others.push_back(std::async(std::launch::async, [this] { work([] {}); }));
+      work(watch);
+    } catch (...) {
+      stopped_ = true;
+      throw;
+    }
+    for (auto& other : others) {
+      while (other.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) watch();
+      other.get();
+    }
+  }
+
+  nb::dict table() {
+    nb::dict columns;
+    for (std::size_t k = 0; k < number_count; ++k) columns[numbers[k].name] = columns_[k].array();
+    columns["status"] = status_.array();
+    columns["ending"] = ending_.array();
+    columns["events"] = events_.array();
+    return columns;
+  }
+
+ private:
+  template <class Watch>
+  void work(Watch&& watch) {
+    std::vector<pd::Segment<double>> segments;
+    std::size_t followed = 0;
+    for (;;) {
+      const std::size_t first = next_.fetch_add(share);
+      if (first >= size()) return;
+      for (std::size_t i = first; i < std::min(first + share, size()); ++i) {
+        if (stopped_) return;
+        settle(i, segments);
+        followed += segments.size();
+        if (followed < patience) continue;
+        followed = 0;
+        if (segments.capacity() > keep) std::vector<pd::Segment<double>>().swap(segments);
+        watch();
+      }
+    }
+  }
+
+  void settle(std::size_t i, std::vector<pd::Segment<double>>& segments) {
+    if (given_.data()[i] != 0) {
+      status_[i] = given_.data()[i];
+      ending_[i] = -1;
+      events_[i] = 0;
+      for (auto& column : columns_) column[i] = std::numeric_limits<double>::quiet_NaN();
+      return;
+    }
+    const Summary summary = summarise(point(inputs_, i), segments);
+    status_[i] = static_cast<std::int8_t>(summary.outcome.status);
+    ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
+    events_[i] = static_cast<std::int32_t>(summary.events);
+    for (std::size_t k = 0; k < number_count; ++k) columns_[k][i] = numbers[k].of(summary);
+  }
+
+  const Inputs& inputs_;
+  const Statuses& given_;
+  std::vector<Column<double>> columns_;
+  Column<std::int8_t> status_, ending_;
+  Column<std::int32_t> events_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads) {
+  Batch batch(inputs, status);
+  bool interrupted = false;
+  {
+    const nb::gil_scoped_release unlocked;
+    batch.run(threads, [&] {
+      const nb::gil_scoped_acquire locked;
+      interrupted = PyErr_CheckSignals() != 0;
+      return !interrupted;
+    });
+  }
+  if (interrupted) throw nb::python_error();
+  return batch.table();
+}
+
+}  // namespace
+
+void bind_batch(nb::module_& m);  // called in _core.cpp
+
+void bind_batch(nb::module_& m) {
+  m.def("simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a,
+        "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
+        "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
+        "stiffness, mouse velocity, displacement, velocity, duration). A point whose status is "
+        "not 0 is left out: its numbers are NaN.");
+}
