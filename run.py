@@ -6,7 +6,7 @@
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
-    python3 run.py bench [ARG...]     time the simulation beside SciPy
+    python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when
 they change, the project when its sources do.
@@ -251,7 +251,7 @@ def run(*command: str | Path) -> int:
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include/pindrive", "src/pindrive", "tests")
+    folders = ("include/pindrive", "src/pindrive", "tests", "benchmarks")
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 
@@ -322,9 +322,14 @@ def test(arguments: list[str]) -> int:
 
 
 def bench(arguments: list[str]) -> int:
-    """The timings."""
-    install({"test"})
-    return run("python", Path("benchmarks", "simulate.py"), *arguments)
+    """The timings: those of `simulate`, or those named first in the arguments."""
+    named = arguments[:1] if arguments and not arguments[0].startswith("-") else []
+    program = Path("benchmarks", f"{named[0] if named else 'simulate'}.py")
+    if not (ROOT / program).exists():
+        names = sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py"))
+        stop(f"no benchmark {program.stem!r}; there are {', '.join(names)}")
+    install({"bench"})
+    return run("python", program, *arguments[len(named) :])
 
 
 def layout() -> int:
