@@ -1,0 +1,120 @@
+"""A drive and how it is released, as the paper's analysis sees it: arrays that broadcast."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive.quantities import QUANTITIES, refusal
+from pindrive.quantity import NON_NEGATIVE
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.motion import Motion
+
+__all__ = ["Release"]
+
+_QUANTITY = {"friction": "plate.kinetic"}
+"""Where a field's bounds stand in the table of quantities, if not under its own name."""
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Release:
+    """The release that equations (2) to (26) describe: of a pin that the plate carried.
+
+    One contact, the plate, with kinetic = static friction; the finger is frictionless. Each
+    argument is a number or an array of numbers, SI; they broadcast against each other.
+
+    Args:
+        mass: m, kg, above 0.
+        stiffness: k, N/m, above 0.
+        damping: b, N·s/m, at least 0.
+        friction: friction force of the plate, N, at least 0: F_2 in the paper's x_d = F_2 / k.
+        mouse_velocity: v_p, m/s, at least 0; for a negative one mirror the release. It is also the
+            pin's velocity at the release.
+        displacement: x_0, m.
+
+    Raises:
+        ValueError: a value is no number or out of its range, or the shapes do not broadcast.
+    """
+
+    mass: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    friction: NDArray[np.float64]
+    mouse_velocity: NDArray[np.float64]
+    displacement: NDArray[np.float64]
+
+    def __init__(
+        self,
+        *,
+        mass: ArrayLike,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        friction: ArrayLike,
+        mouse_velocity: ArrayLike,
+        displacement: ArrayLike,
+    ) -> None:
+        given = (mass, stiffness, damping, friction, mouse_velocity, displacement)
+        names = [field.name for field in fields(self)]
+        checked = [_checked(name, values) for name, values in zip(names, given, strict=True)]
+        try:
+            arrays = np.broadcast_arrays(*checked)
+        except ValueError:
+            shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, checked, strict=True))
+            raise ValueError(refusal("release", "of shapes that broadcast", shapes)) from None
+        for name, array in zip(names, arrays, strict=True):
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of every field, and of every answer."""
+        return self.mass.shape
+
+    def motion(
+        self,
+        index: tuple[int, ...] | int = (),
+        *,
+        finger: float = 0.0,
+        duration: float | None = None,
+    ) -> Motion:
+        """The exact motion of one of these releases.
+
+        Args:
+            index: which, in the arrays.
+            finger: friction force of the finger, N, kinetic = static; the analysis has none.
+            duration: as for `pindrive.simulate`.
+        """
+        from pindrive import Contact, Drive, simulate
+
+        drive = Drive(
+            mass=float(self.mass[index]),
+            stiffness=float(self.stiffness[index]),
+            damping=float(self.damping[index]),
+            plate=Contact(float(self.friction[index])),
+            finger=Contact(finger),
+        )
+        return simulate(
+            drive,
+            mouse_velocity=float(self.mouse_velocity[index]),
+            displacement=float(self.displacement[index]),
+            duration=duration,
+        )
+
+
+def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    quantity = QUANTITIES[_QUANTITY.get(name, name)]
+    bounds = NON_NEGATIVE if name == "mouse_velocity" else quantity.bounds
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(refusal(name, f"numbers in {quantity.unit}", repr(values))) from None
+    bad = [value for value in array.flat if float(value) not in bounds]
+    if bad:
+        shown = f"{float(bad[0])!r} {quantity.unit}"
+        raise ValueError(refusal(name, bounds.words(quantity.unit), shown))
+    return array
