@@ -9,6 +9,7 @@ from pindrive import Contact, Drive, simulate
 from pindrive._core import settling_band
 from pindrive.quantities import (
     CERTIFICATE,
+    DEVICE,
     INPUTS,
     OUTPUTS,
     PARTS,
@@ -19,7 +20,7 @@ from pindrive.quantity import Bounds, Quantity, significant
 
 
 def test_names_are_unique() -> None:
-    assert len(QUANTITIES) == len(INPUTS) + len(PARTS) + len(OUTPUTS)
+    assert len(QUANTITIES) == len(INPUTS) + len(PARTS) + len(OUTPUTS) + len(DEVICE)
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=lambda q: q.name)

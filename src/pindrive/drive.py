@@ -5,8 +5,9 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import inf, isinf, sqrt
+from itertools import islice, pairwise
+from math import inf, isfinite, isinf, sqrt
+from operator import lt
 from typing import TYPE_CHECKING, cast, overload
 
 from pindrive.quantities import check, refusal
@@ -131,6 +132,8 @@ def check_increasing(
     values: Sequence[float], unit: str, *, where: str = "", label: str = "[{}]", why: str = ""
 ) -> None:
     """Refuse values of which one is not greater than the one before; `label` takes its index."""
+    if all(map(lt, values, islice(values, 1, None))):
+        return
     for i in range(1, len(values)):
         if not values[i - 1] < values[i]:
             required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
@@ -263,10 +266,8 @@ class Profile:
 
     def __post_init__(self) -> None:
         """Validate, and keep tuples of plain floats."""
-        times = tuple(check("profile.time", t, label=f"times[{i}]") for i, t in _rows(self.times))
-        values = tuple(
-            check("profile.value", y, label=f"values[{i}]") for i, y in _rows(self.values)
-        )
+        times = _column(self.times, "profile.time", "times")
+        values = _column(self.values, "profile.value", "values")
         if not times:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(times) != len(values):
@@ -302,8 +303,12 @@ class Profile:
         return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
 
 
-def _rows(values: Iterable[float]) -> Iterable[tuple[int, float]]:
+def _column(values: Iterable[float], name: str, label: str) -> tuple[float, ...]:
+    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
     try:
-        return enumerate(values)
+        listed = values.tolist() if hasattr(values, "tolist") else list(values)
+        if set(map(type, listed)) == {float} and all(map(isfinite, listed)):
+            return tuple(listed)
+        return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(listed))
     except TypeError:
         raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None

@@ -11,7 +11,7 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
-from pindrive.quantities import check, refusal
+from pindrive.quantities import QUANTITIES, check, refusal
 from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
@@ -439,10 +439,13 @@ def _rows(given: float | Profile, name: str) -> Rows:
     """An input as rows (time, value): one row is a constant."""
     if not isinstance(given, Profile):
         return [(0.0, check(name, given))]
-    values = [check(name, y, label=f"{name} values[{i}]") for i, y in enumerate(given.values)]
+    bounds = QUANTITIES[name].bounds
+    if not (min(given.values) in bounds and max(given.values) in bounds):
+        for i, y in enumerate(given.values):
+            check(name, y, label=f"{name} values[{i}]")
     if not given.changes:
-        return [(0.0, values[0])]
-    return list(zip(given.times, values, strict=True))
+        return [(0.0, given.values[0])]
+    return list(given.rows)
 
 
 def _value_at_start(rows: Rows) -> float:

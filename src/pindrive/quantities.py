@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final, SupportsFloat
 
+from pindrive.quantities_device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantity import (
     FINITE,
     NON_NEGATIVE,
@@ -248,8 +249,9 @@ PARTS: Final[tuple[Quantity, ...]] = (
 COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "curve": ("curve.speed", "curve.force"),
     "profile": ("profile.time", "profile.value"),
+    "places": ("place.x", "places"),
 }
-"""What stands in the rows of a curve and of a profile, by the names of the parts."""
+"""What stands in the rows of a curve, of a profile and of places, by the names of the parts."""
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
@@ -385,7 +387,10 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
 
 OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE
 
-QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS}
+DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN
+"""What the whole device adds."""
+
+QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
 
 
 def refusal(label: str, required: str, given: object, where: str = "") -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, inf, isfinite, isnan, log10
+from math import degrees, floor, inf, isfinite, isnan, log10
 from typing import Final
 
 Rows = tuple[tuple[float, float], ...]
@@ -16,6 +16,10 @@ DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "s": ("ms", 1e3),
     "N": ("mN", 1e3),
     "J": ("µJ", 1e6),
+    "m^2": ("mm^2", 1e6),
+    "rad": ("deg", degrees(1.0)),
+    "A": ("mA", 1e3),
+    "H": ("mH", 1e3),
 }
 """The unit in which a person reads each SI unit, and how many of it make one; others as is."""
 

@@ -31,6 +31,17 @@ newton = kilogram * meter / second ** 2 = N
 gram_force = 0.00980665 * newton = gf
 pound_force = 4.4482216152605 * newton = lbf
 percent = 0.01
+radian = [] = rad
+degree = 0.0174532925199432957692 * radian = deg = °
+hertz = 1 / second = Hz
+joule = newton * meter = J
+watt = joule / second = W
+ampere = [current] = A
+volt = watt / ampere = V
+ohm = volt / ampere = Ω = Ω
+henry = ohm * second = H
+tesla = volt * second / meter ** 2 = T
+kelvin = [temperature] = K
 """
 
 _NUMBER_AND_UNIT = re.compile(

@@ -1,0 +1,140 @@
+"""How an electromagnet is made: its pull, resistance, inductance, power and warming."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from math import pi
+from typing import Final
+
+from pindrive.quantities import QUANTITIES, check, refusal
+
+MAGNETIC_CONSTANT: Final = 1.25663706127e-6
+"""N/A², CODATA 2022."""
+COPPER: Final = 1 / 58e6
+"""Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coil:
+    """An electromagnet with two poles on a steel plate, by how it is made.
+
+    Its iron carries any flux without effort up to the saturation field, and no flux leaks: the two
+    gaps in series hold the whole magnetomotive force, 2 g B / μ0 = N I.
+
+    Args:
+        turns: N, at least 1.
+        pole_area: A of one pole, m², greater than 0.
+        gap: g under each pole, m, greater than 0.
+        wire_diameter: d of the copper, m, greater than 0.
+        turn_length: mean length of a turn, m, greater than 0.
+        supply_voltage: U while it is on, V, greater than 0.
+        release_resistance: what the current dies away through beside its own, ohm, at least 0.
+        saturation_field: B_s, T, greater than 0.
+        thermal_resistance: R_th, K/W, greater than 0.
+        temperature_rise: ΔT allowed, K, greater than 0.
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+
+    The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric
+    Machinery", chapters 1 and 3.
+    """
+
+    turns: float
+    pole_area: float
+    gap: float
+    wire_diameter: float
+    turn_length: float
+    supply_voltage: float
+    release_resistance: float = 0.0
+    saturation_field: float = 1.6
+    thermal_resistance: float = 100.0
+    temperature_rise: float = 20.0
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        for field in fields(self):
+            object.__setattr__(self, field.name, check(field.name, getattr(self, field.name)))
+        for name in ("resistance", "inductance", "current", "field", "power"):
+            check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
+
+    @property
+    def resistance(self) -> float:
+        """R = ρ N l / (π d²/4), ohm, at 20 °C."""
+        return COPPER * self.turns * self.turn_length / (pi / 4.0 * self.wire_diameter**2)
+
+    @property
+    def inductance(self) -> float:
+        """L = N B A / I = μ0 N² A / 2g, H, clamped to the plate."""
+        return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
+
+    @property
+    def current(self) -> float:
+        """Full current I = U / R, A."""
+        return self.supply_voltage / self.resistance
+
+    @property
+    def field(self) -> float:
+        """B = μ0 N I / 2g at full current if the iron did not saturate, T."""
+        return MAGNETIC_CONSTANT * self.turns * self.current / (2.0 * self.gap)
+
+    @property
+    def saturation(self) -> float:
+        """The part of the full current at which the iron saturates, at most 1."""
+        return min(1.0, self.saturation_field / self.field)
+
+    @property
+    def pull(self) -> float:
+        """Two poles' B² A / 2μ0 at full current or saturation, N."""
+        return min(self.field, self.saturation_field) ** 2 * self.pole_area / MAGNETIC_CONSTANT
+
+    @property
+    def power(self) -> float:
+        """U I while it is on, W."""
+        return self.supply_voltage * self.current
+
+    @property
+    def duty(self) -> float:
+        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
+        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
+
+
+COIL_NEEDS: Final = (
+    "turns",
+    "pole_area",
+    "gap",
+    "wire_diameter",
+    "turn_length",
+    "supply_voltage",
+)
+"""What a coil must say."""
+COIL_MAY: Final = (
+    "release_resistance",
+    "saturation_field",
+    "thermal_resistance",
+    "temperature_rise",
+)
+"""What it may say besides."""
+DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
+"""What is said instead of a coil."""
+
+
+def check_one_way(
+    given: set[str], *, where: Callable[..., str] = lambda *_: "", table: str = ""
+) -> None:
+    """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
+    made = [name for name in (*COIL_NEEDS, *COIL_MAY) if name in given]
+    if not made:
+        return
+    direct = [name for name in DIRECT if name in given]
+    key = f"{table}.{(direct or made)[0]}".removeprefix(".")
+    if direct:
+        required = f"left out where {made[0]} describes the coil"
+        raise ValueError(refusal(key, required, f"both, {direct[0]} and {made[0]}", where(key)))
+    missing = [name for name in COIL_NEEDS if name not in given]
+    if missing:
+        units = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
+        raise ValueError(
+            refusal(key, f"given with {units}", f"{', '.join(made)} alone", where(key))
+        )

@@ -1,0 +1,204 @@
+"""A scan as an xarray Dataset, and what each pin did in numbers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from math import nan, pi, sqrt
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from pindrive.device.scanning import PinScan, Scan
+    from pindrive.motion import Motion
+
+HALVINGS: Final = 60
+
+
+def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
+    """Variables over (pin, time), and tables of events and switchings with the pin of each row.
+
+    Args:
+        scan: the scan.
+        t: s, shape (n,), on the path's clock.
+    """
+    import xarray as xr
+
+    from pindrive import __version__
+
+    device, path, pins = scan.device, scan.path, scan.pins
+    hand_x, hand_y = path.position(t)
+    data: dict[str, Any] = {
+        "hand_x": _over("time", hand_x, "m", "place of the hand across the page"),
+        "hand_y": _over("time", hand_y, "m", "place of the hand down the page"),
+        "plate_velocity": _over(
+            "time",
+            path.plate_velocity(device.array.axis)(t - path.begin),
+            "m/s",
+            "velocity of the plate in the housing, along the drive axis",
+        ),
+    }
+    columns: dict[str, tuple[Callable[[PinScan], NDArray[Any]], str, str]] = {
+        "position": (lambda p: p.position(t), "m", "deflection of the pin from the spring's rest"),
+        "velocity": (lambda p: p.velocity(t), "m/s", "velocity of the pin in the housing"),
+        "skin_force": (lambda p: p.skin_force(t), "N", "force of the pin on the skin"),
+        "stretch": (lambda p: p.stretch(t), "m", "stretch of the skin"),
+        "command": (lambda p: p.commands.on(t), "", "whether the magnet is switched on"),
+        "current": (lambda p: p.current(t), "1", "current in the coil, a part of the full one"),
+        "pull": (lambda p: device.magnet.pull(p.current(t)), "N", "pull of the magnet"),
+    }
+    if device.drive.finger.rigid:
+        del columns["stretch"]
+    for name, (column, unit, meaning) in columns.items():
+        values = np.stack([column(pin) for pin in pins])
+        data[name] = _over(("pin", "time"), values, unit, meaning)
+    spots = scan.spots(t)
+    luminance = scan.scene.at(spots[..., 0], spots[..., 1])
+    data["luminance"] = _over(("pin", "time"), luminance, "1", "luminance under the pin's spot")
+    data |= _events(pins) | _switchings(pins) | _numbers(pins)
+    data["scene"] = _over(("row", "column"), scan.scene.luminance, "1", "luminance of the scene")
+    places, shown = np.array(device.array.places), np.array(device.array.spots)
+    coords = {
+        "time": _over("time", t, "s", "time of the path"),
+        "pin": ("pin", np.arange(len(pins))),
+        "pin_x": _over("pin", places[:, 0], "m", "place in the mouse along the drive axis"),
+        "pin_y": _over("pin", places[:, 1], "m", "place in the mouse across the drive axis"),
+        "spot_x": _over("pin", shown[:, 0], "m", "place of the spot along the drive axis"),
+        "spot_y": _over("pin", shown[:, 1], "m", "place of the spot across the drive axis"),
+        "row": _over("row", _middles(scan, 0), "m", "down the page"),
+        "column": _over("column", _middles(scan, 1), "m", "across the page"),
+    }
+    attributes = {
+        "title": f"Scan of {scan.scene.title}",
+        "source": f"pindrive {__version__}",
+        "warnings": "\n".join(scan.warnings),
+        **inputs(scan),
+    }
+    return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def inputs(scan: Scan) -> dict[str, float]:
+    """What was simulated, SI, by names of the table of quantities."""
+    device = scan.device
+    drive, magnet = device.drive, device.magnet
+    values = {
+        "mass": drive.mass,
+        "stiffness": drive.stiffness,
+        "damping": drive.damping,
+        "plate.kinetic": drive.plate.kinetic,
+        "plate.static": drive.plate.static_friction,
+        "finger.kinetic": drive.finger.kinetic,
+        "finger.static": drive.finger.static_friction,
+        **({} if drive.finger.rigid else {"finger.stiffness": drive.finger.stiffness}),
+        **{k: v for k, v in asdict(magnet).items() if isinstance(v, float)},
+        "pressing": device.pressing,
+        **asdict(device.control),
+        **({} if magnet.coil is None else asdict(magnet.coil)),
+        "axis": device.array.axis,
+        "pixel": scan.scene.pixel,
+    }
+    angles = scan.path.angles(device.array.axis)
+    return values | dict(zip(("angle.largest", "angle.mean"), angles, strict=True))
+
+
+def numbers(pin: PinScan) -> dict[str, float]:
+    """What one pin did, SI, by the names of the table of quantities; exact, not from samples."""
+    motion = pin.motion
+    used = motion.transient
+    at_plate = [e for e in pin.events if e.contact in ("plate", "both")]
+    slips = np.array([e.time for e in at_plate if e.kind == "slip"])
+    on = pin.commands.on(slips) if len(slips) else slips
+    return {
+        "pin.energised": sum(end - begin for begin, end in pin.energised),
+        "pin.switchings": float(len(pin.energised)),
+        "pin.slips": float(np.count_nonzero(on)),
+        "pin.captures": float(sum(e.kind == "stick" for e in at_plate)),
+        "pin.carried": used.plate.time_stuck,
+        "pin.peak_displacement": peak_displacement(motion),
+        "pin.peak_skin_force": used.finger.peak_force,
+        "pin.peak_stretch": used.peak_stretch if not motion.drive.finger.rigid else nan,
+    }
+
+
+def peak_displacement(motion: Motion) -> float:
+    """The largest |x| over the motion's duration, m, at its ends or where its velocity is zero.
+
+    Turning points closer together than a thirtieth of the fastest period may count as none: x does
+    not change between them.
+    """
+    drive = motion.drive
+    skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
+    period = 2.0 * pi / sqrt((drive.stiffness + skin) / drive.mass)
+    ends = np.array([s.end for s in motion.segments])
+    even = np.linspace(0.0, motion.duration, int(30.0 * motion.duration / period) + 2)
+    t = np.union1d(even, ends[ends <= motion.duration])
+    right, left = motion.velocity(t[:-1]), motion.velocity(t[1:], "left")
+    turns = right * left < 0.0
+    low, high, sign = t[:-1][turns], t[1:][turns], np.sign(right[turns])
+    for _ in range(HALVINGS):
+        middle: NDArray[np.float64] = 0.5 * (low + high)
+        before = sign * motion.velocity(middle) > 0.0
+        low[before], high[~before] = middle[before], middle[~before]
+    return float(np.abs(motion.position(np.concatenate([t, low]))).max())
+
+
+def _over(
+    dimension: str | tuple[str, ...], values: Any, unit: str, meaning: str
+) -> tuple[Any, Any, dict[str, str]]:
+    return dimension, values, {"long_name": meaning} | ({"units": unit} if unit else {})
+
+
+def _middles(scan: Scan, axis: int) -> NDArray[np.float64]:
+    """Where the middles of the scene's rows (0) or columns (1) are on the page, m."""
+    scene = scan.scene
+    count, begin = scene.luminance.shape[axis], scene.origin[1 - axis]
+    return np.asarray(begin + (np.arange(count) + 0.5) * scene.pixel, np.float64)
+
+
+def _events(pins: tuple[PinScan, ...]) -> dict[str, Any]:
+    """A row for each event of each pin, pin after pin."""
+    rows = [(pin.number, event) for pin in pins for event in pin.events]
+    table: dict[str, Any] = {
+        "event_pin": ("event", np.array([number for number, _ in rows], np.int64))
+    }
+    for name, unit in (("time", "s"), ("position", "m"), ("velocity", "m/s")):
+        values = np.array([getattr(event, name) for _, event in rows], np.float64)
+        table[f"event_{name}"] = ("event", values, {"units": unit})
+    for name in ("contact", "kind"):
+        table[f"event_{name}"] = ("event", [str(getattr(event, name)) for _, event in rows])
+    return table
+
+
+def _switchings(pins: tuple[PinScan, ...]) -> dict[str, Any]:
+    """A row for each switching of each coil, pin after pin."""
+    times = [pin.commands.times for pin in pins]
+    sizes = [len(column) for column in times]
+    return {
+        "switching_pin": ("switching", np.repeat([pin.number for pin in pins], sizes)),
+        "switching_time": ("switching", np.concatenate(times), {"units": "s"}),
+        "switching_on": (
+            "switching",
+            np.concatenate([pin.commands.on(pin.commands.times) for pin in pins]),
+        ),
+    }
+
+
+def _numbers(pins: tuple[PinScan, ...]) -> dict[str, Any]:
+    rows = [numbers(pin) for pin in pins]
+    table = {}
+    for name in rows[0]:
+        quantity = QUANTITIES[name]
+        attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
+        table[name.replace(".", "_")] = (
+            "pin",
+            np.array([row[name] for row in rows]),
+            attributes | ({"units": quantity.unit} if quantity.unit else {}),
+        )
+    return table

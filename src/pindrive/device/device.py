@@ -1,0 +1,85 @@
+"""The whole device as data: a pin drive, its electromagnet, the control block, the pin array."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, overload
+
+from pindrive.device.array import PinArray
+from pindrive.device.control import ControlBlock
+from pindrive.device.magnet import Electromagnet
+from pindrive.drive import Contact, Drive
+from pindrive.quantities import refusal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Device:
+    """A tactile device: pins that are all alike, each with its own magnet and spot.
+
+    Args:
+        drive: of each pin; its plate's friction is that with the magnet off.
+        magnet: of each pin.
+        control: the control block.
+        array: where the pins are.
+
+    Raises:
+        ValueError: a plate without friction, by which no magnet could hold, or with a friction
+            curve, under which a changing pull is not piecewise linear.
+    """
+
+    drive: Drive
+    magnet: Electromagnet = field(default_factory=Electromagnet)
+    control: ControlBlock = field(default_factory=ControlBlock)
+    array: PinArray = field(default_factory=PinArray)
+
+    def __post_init__(self) -> None:
+        """Validate what fits together."""
+        check_plate(self.drive.plate)
+
+    @property
+    def pressing(self) -> float:
+        """Force that presses an electromagnet on the plate while it is off, N."""
+        return self.magnet.pressed(self.drive.mass)
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Kinetic friction of the plate over the force that presses: μ = F / W."""
+        return self.drive.plate.kinetic / self.pressing
+
+    @property
+    def reach(self) -> float:
+        """How far a magnet carries a pin at most before the spring overcomes it, m, slowly."""
+        held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
+        return max(0.0, held - self.drive.finger.kinetic) / self.drive.stiffness
+
+    @property
+    def drag(self) -> float:
+        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it."""
+        plate = self.drive.plate.kinetic * self.load(self.magnet.residual)
+        if plate <= self.drive.finger.static_friction:
+            return 0.0
+        return (plate - self.drive.finger.kinetic) / self.drive.stiffness
+
+    @overload
+    def load(self, pull: float) -> float: ...
+    @overload
+    def load(self, pull: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def load(self, pull: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
+        """The factor on the plate's friction at a pull (N), any shape: (W + P) / W."""
+        return 1.0 + pull / self.pressing
+
+
+def check_plate(plate: Contact, *, where: str = "", label: str = "plate") -> None:
+    """Refuse a plate that no magnet can hold by."""
+    if plate.regions:
+        required = "without a friction curve where a magnet changes its load"
+        raise ValueError(
+            refusal(label, required, f"a curve of {len(plate.curve or ())} rows", where)
+        )
+    if plate.kinetic == 0.0:
+        required = "greater than 0 N where a magnet holds by friction"
+        raise ValueError(refusal(f"{label}.kinetic", required, "0.0 N", where))

@@ -1,0 +1,317 @@
+"""The hand's way over the page: strokes of minimum jerk, or a recorded table.
+
+Its velocity is piecewise linear and continuous, its place the exact integral of that, so that the
+page under the pins and the plate under the mouse move as one. Page coordinates: x to the right, y
+down, both from where the scene has its origin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, cos, hypot, sin, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.drive import Profile
+from pindrive.quantities import check, refusal
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+PEAK: Final = 1.875
+"""Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""
+SLOW: Final = 0.1
+"""Below this part of the peak speed the direction of motion says nothing."""
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandPath:
+    """Where the hand is over time. Made by `through`, `strokes`, `lines` or `read_csv`.
+
+    Args:
+        times: s, shape (n,), n >= 2, increasing.
+        vx, vy: velocity on the page at these times, m/s, shape (n,); linear between them.
+        start: place on the page at the first, m.
+
+    Raises:
+        ValueError: times do not increase, shapes differ, or a number is not finite.
+    """
+
+    times: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    vy: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+
+    def __init__(self, times: ArrayLike, vx: ArrayLike, vy: ArrayLike, start: Point) -> None:
+        """Validate, and integrate."""
+        columns = {
+            name: np.array(column, np.float64)
+            for name, column in (("times", times), ("vx", vx), ("vy", vy))
+        }
+        t = columns["times"]
+        for name, column in columns.items():
+            if column.ndim != 1 or len(column) < 2 or column.shape != t.shape:
+                required = "of one dimension and one length, at least 2"
+                raise ValueError(refusal(name, required, f"shape {column.shape}"))
+            if not np.isfinite(column).all():
+                raise ValueError(refusal(name, "finite", f"{column[~np.isfinite(column)][0]!r}"))
+        _check_increasing(t)
+        x0, y0 = (check("hand.place", place, label="start") for place in start)
+        lasts = np.diff(t)
+        for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
+            ways = np.concatenate([[at], 0.5 * (v[1:] + v[:-1]) * lasts])
+            columns[name] = np.cumsum(ways)
+        for name, column in columns.items():
+            column.flags.writeable = False
+            object.__setattr__(self, name, column)
+
+    @property
+    def begin(self) -> float:
+        """When it begins, s."""
+        return float(self.times[0])
+
+    @property
+    def end(self) -> float:
+        """When it ends, s."""
+        return float(self.times[-1])
+
+    @property
+    def peak_speed(self) -> float:
+        """The largest speed, m/s."""
+        return float(np.hypot(self.vx, self.vy).max())
+
+    def position(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Place (x, y) on the page at times t (s, any shape) from begin to end, m."""
+        times = np.asarray(t, np.float64)
+        i, since, part = self._locate(times)
+        places = []
+        for place, v in ((self.x, self.vx), (self.y, self.vy)):
+            slope = (v[i + 1] - v[i]) * part
+            places.append(place[i] + since * (v[i] + 0.5 * slope))
+        return places[0], places[1]
+
+    def velocity(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Velocity (x, y) on the page at times t (s, any shape) from begin to end, m/s."""
+        i, _, part = self._locate(np.asarray(t, np.float64))
+        vx, vy = ((v[i] + (v[i + 1] - v[i]) * part) for v in (self.vx, self.vy))
+        return vx, vy
+
+    def _locate(
+        self, t: NDArray[np.float64]
+    ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
+        """The stretch that holds each time, the time since it began, and the part of it past."""
+        if not ((t >= self.times[0]) & (t <= self.times[-1])).all():
+            required = f"from {self.begin!r} s to {self.end!r} s"
+            raise ValueError(refusal("t", required, f"{float(t.min())!r} to {float(t.max())!r} s"))
+        i = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.times) - 2)
+        since = t - self.times[i]
+        return i, since, since / (self.times[i + 1] - self.times[i])
+
+    def plate_velocity(self, axis: float = 0.0) -> Profile:
+        """The velocity at which the plate passes under the mouse, over the time since `begin`.
+
+        Args:
+            axis: direction of the drive axis on the page, rad.
+
+        Returns:
+            The hand's velocity along that axis. Its sign is that of the hand: x, the pin's
+            deflection, is positive against the mouse's own motion along the axis (MODEL.md, 2).
+        """
+        along = self.vx * cos(axis) + self.vy * sin(axis)
+        return Profile((self.times - self.times[0]).tolist(), along.tolist())
+
+    def angles(self, axis: float = 0.0) -> tuple[float, float]:
+        """The angle between motion and drive axis, rad: the largest, and the mean over the way.
+
+        From 0 to a right angle; where the hand moves at less than a tenth of its peak speed it is
+        left out, and 0 for a hand that never moves.
+        """
+        vx, vy = (0.5 * (v[1:] + v[:-1]) for v in (self.vx, self.vy))
+        speed = np.hypot(vx, vy)
+        moving = speed > SLOW * speed.max()
+        if not moving.any():
+            return 0.0, 0.0
+        along = np.abs(vx * cos(axis) + vy * sin(axis))
+        across = np.abs(vy * cos(axis) - vx * sin(axis))
+        angle = np.arctan2(across, along)[moving]
+        way = (speed * np.diff(self.times))[moving]
+        return float(angle.max()), float((angle * way).sum() / way.sum())
+
+    def between(self, begin: float, end: float) -> HandPath:
+        """The part of it from one time to another, s, at the same times."""
+        if not self.begin <= begin < end <= self.end:
+            required = f"increasing and within {self.begin!r} s to {self.end!r} s"
+            raise ValueError(refusal("begin and end", required, f"{begin!r} s and {end!r} s"))
+        inner = self.times[(self.times > begin) & (self.times < end)]
+        times = np.concatenate([[begin], inner, [end]])
+        vx, vy = self.velocity(times)
+        x, y = self.position(begin)
+        return HandPath(times, vx, vy, (float(x), float(y)))
+
+
+# ---- strokes -------------------------------------------------------------------------------------
+
+
+def strokes(
+    stops: Sequence[Point],
+    speeds: float | Sequence[float],
+    *,
+    pause: float = 0.0,
+    deviation: float = 1e-3,
+) -> HandPath:
+    """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
+
+    Args:
+        stops: places on the page, m, at least two, each another than the one before.
+        speeds: peak speed of each stroke, m/s, greater than 0; one for all of them, or one each.
+        pause: rest after each stroke, s, at least 0.
+        deviation: of the piecewise-linear speed from minimum jerk, a part of its peak, in (0, 0.1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+
+    A stroke of length D in time T has the speed (D/T) 30 s² (1 − s)² at t = s T (Flash & Hogan
+    1985). Its curvature is at most 60 D/T³, so that n even rows are within 60/(8 n²) D/T of it,
+    which is 4/n² of the peak. They carry the whole length D.
+    """
+    if len(stops) < 2:
+        raise ValueError(refusal("stops", "at least two places", str(len(stops))))
+    peaks = [speeds] * (len(stops) - 1) if isinstance(speeds, (int, float)) else list(speeds)
+    if len(peaks) != len(stops) - 1:
+        raise ValueError(refusal("speeds", f"one or {len(stops) - 1}", str(len(peaks))))
+    rest = check("pause", pause)
+    count = ceil(2.0 / sqrt(check("path_deviation", deviation, label="deviation")))
+    s = np.arange(count + 1) / count
+    shape = (s * s[::-1]) ** 2  # alike both ways, to the bit
+    shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
+    times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
+    for (x0, y0), (x1, y1), speed in zip(stops[:-1], stops[1:], peaks, strict=True):
+        dx, dy = (check("hand.place", way, label="stroke") for way in (x1 - x0, y1 - y0))
+        length = check("stroke.length", hypot(dx, dy))
+        lasts = PEAK * length / check("hand_speed", speed, label="speeds")
+        begin = times[-1][-1]
+        times.append(begin + lasts * s[1:])
+        vx.append(dx / lasts * shape[1:])
+        vy.append(dy / lasts * shape[1:])
+        if rest > 0.0:
+            times.append(np.array([begin + lasts + rest]))
+            vx.append(np.zeros(1))
+            vy.append(np.zeros(1))
+    return HandPath(np.concatenate(times), np.concatenate(vx), np.concatenate(vy), stops[0])
+
+
+def lines(
+    rows: Sequence[float],
+    left: float,
+    right: float,
+    *,
+    speed: float,
+    return_speed: float,
+    pause: float = 0.0,
+    deviation: float = 1e-3,
+) -> HandPath:
+    """Line by line over a page: along each row from left to right, then back to the next.
+
+    Args:
+        rows: y of each line on the page, m, at least one.
+        left: x where the hand begins to read, m.
+        right: x where it ends, m.
+        speed: peak speed while it reads, m/s.
+        return_speed: peak speed on the way back, m/s.
+        pause: rest after each stroke, s.
+        deviation: as for `strokes`.
+
+    Raises:
+        ValueError: a value is no number or out of its range; no way between left and right.
+    """
+    if not rows:
+        raise ValueError(refusal("rows", "at least one line", "none"))
+    stops = [place for y in rows for place in ((left, y), (right, y))]
+    speeds = [return_speed if i % 2 else speed for i in range(len(stops) - 1)]
+    return strokes(stops, speeds, pause=pause, deviation=deviation)
+
+
+# ---- recorded ------------------------------------------------------------------------------------
+
+
+def through(
+    t: ArrayLike,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    acceleration: float = 30.0,
+    where: str = "",
+    rows: Sequence[int] | None = None,
+) -> HandPath:
+    """A path along recorded places, with a velocity that does not jump.
+
+    Half-way in time between two places the hand has their mean velocity and is half-way between
+    them, exactly; at a place its velocity is the mean over both its neighbours. So it follows the
+    record without drift, and rounds its corners.
+
+    Args:
+        t: s, shape (n,), n >= 2, increasing.
+        x: m, shape (n,).
+        y: m, shape (n,).
+        acceleration: of the hand, m/s²; more is taken for a jump of its speed, and refused.
+        where: what the message names, a file.
+        rows: number of each row in that file.
+
+    Raises:
+        ValueError: too few places, times that do not increase, or a speed that jumps.
+    """
+    time, px, py = (np.array(column, np.float64) for column in (t, x, y))
+    if time.ndim != 1 or len(time) < 2 or not time.shape == px.shape == py.shape:
+        required = "columns of one length, at least 2"
+        given = f"{time.shape}, {px.shape} and {py.shape}"
+        raise ValueError(refusal("t, x and y", required, given, where))
+    at = [f"t[{i}]" for i in range(len(time))] if rows is None else [f"row {i}: t" for i in rows]
+    _check_increasing(time, at, where)
+    lasts = np.diff(time)
+    middles = time[:-1] + 0.5 * lasts
+    speeds = [np.diff(place) / lasts for place in (px, py)]
+    jump = np.hypot(*(np.diff(v) for v in speeds)) / np.diff(middles)
+    most = check("hand_acceleration", acceleration, label="acceleration")
+    if (jump > most).any():
+        i = int(np.argmax(jump))
+        before, after = (float(np.hypot(*(v[j] for v in speeds))) for j in (i, i + 1))
+        raise ValueError(
+            refusal(
+                at[i + 1].removesuffix(": t"),
+                f"without a jump of the hand's speed, a change of at most {most:g} m/s^2",
+                f"{jump[i]:.4g} m/s^2 at {time[i + 1]:g} s, where it moves at {1e3 * before:.4g} "
+                f"mm/s before and {1e3 * after:.4g} mm/s after",
+                where,
+            )
+        )
+    nodes = np.empty(2 * len(time) - 1)
+    nodes[::2], nodes[1::2] = time, middles
+    columns = []
+    for v in speeds:
+        column = np.empty_like(nodes)
+        column[1::2] = v
+        column[0], column[-1] = v[0], v[-1]
+        column[2:-1:2] = (lasts[:-1] * v[:-1] + lasts[1:] * v[1:]) / (lasts[:-1] + lasts[1:])
+        columns.append(column)
+    keep = np.append(True, np.diff(nodes) > 0.0)  # places too close in time for one between them
+    start = float(px[0]), float(py[0])
+    return HandPath(nodes[keep], columns[0][keep], columns[1][keep], start)
+
+
+def _check_increasing(
+    times: NDArray[np.float64], labels: Sequence[str] | None = None, where: str = ""
+) -> None:
+    """Refuse times that are not finite and increasing."""
+    wrong = ~np.isfinite(times)
+    wrong[1:] |= ~(times[1:] > times[:-1])
+    if not wrong.any():
+        return
+    i = int(np.argmax(wrong))
+    label = f"times[{i}]" if labels is None else labels[i]
+    required = f"greater than the one before, {float(times[i - 1])!r} s" if i else "finite"
+    raise ValueError(refusal(label, required, f"{float(times[i])!r} s", where))

@@ -1,0 +1,374 @@
+"""A scan: the hand moves the device over a scene, and each pin's motion is followed exactly.
+
+Each pin is looked after from the scan's begin to its end in one motion: dragged a little while its
+magnet is off, carried while it is on, slipping where the spring overcomes the magnet, released,
+swinging, caught again in mid-swing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from math import degrees
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.control import Commands, Decision
+from pindrive.device.device import Device
+from pindrive.device.hand import HandPath
+from pindrive.device.magnet import CoilState, Current
+from pindrive.device.scene import Scene
+from pindrive.drive import Profile
+from pindrive.motion import Event, Motion, simulate
+from pindrive.quantities import QUANTITIES, refusal
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import ArrayLike, NDArray
+
+MAX_ANGLE: Final = QUANTITIES["max_angle"].default or 0.0
+
+Progress = Callable[[int, int], None]
+"""Told after each pin: how many are done, of how many."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PinState:
+    """All there is to know of a pin and its magnet at one time: a scan can go on from it."""
+
+    position: float = 0.0
+    """Deflection from the spring's rest, m."""
+    velocity: float | None = 0.0
+    """In the housing, m/s; None: carried by the plate."""
+    skin_stretch: float | None = None
+    """Of a compliant finger that grips, m; None: it slides, or is rigid, or unstretched."""
+    coil: CoilState | None = None
+    """The coil's last switching; None: it is off, without current."""
+    decision: Decision = field(default_factory=Decision)
+    """Where the control block stands."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PinScan:
+    """What happened to one pin in a scan. Times are those of the hand's path."""
+
+    number: int
+    """Its place in the array, from 0."""
+    begin: float
+    end: float
+    """Of the scan, s."""
+    looks: NDArray[np.float64]
+    """When the control block looked, s, shape (n,)."""
+    luminance: NDArray[np.float64]
+    """What it saw at the pin's spot, shape (n,)."""
+    commands: Commands
+    """What it made of it: when the coil was switched."""
+    current: Current
+    """The current in the coil, a part of the full one, over time."""
+    load: float | Profile
+    """Factor on the plate's friction, over the time since `begin`."""
+    motion: Motion
+    """The pin's motion, over the time since `begin`."""
+    coil: CoilState
+    """The coil's last switching."""
+    decision: Decision
+    """Where the control block stands at the end."""
+
+    def position(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Deflection of the pin in the housing at times t (s, any shape), m.
+
+        It is positive against the hand's motion along the drive axis.
+        """
+        return np.asarray(self.motion.position(self.since(t)))
+
+    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Velocity of the pin in the housing, and so over a resting finger, m/s."""
+        return np.asarray(self.motion.velocity(self.since(t)))
+
+    def skin_force(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Force on the skin along the drive axis, N, positive the way of x."""
+        return -np.asarray(self.motion.force("finger", self.since(t)))
+
+    def stretch(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Stretch of a compliant finger's skin, m, the way of x; 0 of a rigid one."""
+        return np.asarray(self.motion.stretch(self.since(t)))
+
+    def since(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Times on the path's clock as times of the motion, s."""
+        times = np.asarray(t, np.float64)
+        if not ((times >= self.begin) & (times <= self.end)).all():
+            required = f"from {self.begin!r} s to {self.end!r} s"
+            raise ValueError(refusal("t", required, f"{times.min()!s} to {times.max()!s} s"))
+        return times - self.begin
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happened at its contacts, in order, on the path's clock."""
+        return tuple(
+            Event(self.begin + e.time, e.contact, e.kind, e.position, e.velocity)
+            for e in self.motion.events
+        )
+
+    @property
+    def energised(self) -> list[tuple[float, float]]:
+        """From when to when its coil was switched on, s."""
+        return self.commands.spans(self.begin, self.end)
+
+    @property
+    def state(self) -> PinState:
+        """Where it stands at the end."""
+        last, lasts = self.motion.segments[-1], self.end - self.begin
+        grips = last.finger == 0 and not self.motion.drive.finger.rigid
+        return PinState(
+            position=self.motion.position(lasts, "left"),
+            velocity=None if last.plate == 0 else self.motion.velocity(lasts, "left"),
+            skin_stretch=self.motion.stretch(lasts, "left") if grips else None,
+            coil=self.coil,
+            decision=self.decision,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Scan:
+    """What a device did while a hand moved it over a scene."""
+
+    device: Device
+    scene: Scene
+    path: HandPath
+    pins: tuple[PinScan, ...]
+    warnings: tuple[str, ...]
+    """What is doubtful about it, in words with numbers."""
+
+    @property
+    def state(self) -> tuple[PinState, ...]:
+        """Where each pin stands at the end."""
+        return tuple(pin.state for pin in self.pins)
+
+    def spots(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Where each pin's spot is on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
+        return _spots(self.device, self.path, np.asarray(t, np.float64))
+
+    def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
+        """All pins over time, their events and commands, the hand and the scene, with units.
+
+        Args:
+            times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
+        """
+        from pindrive.device.dataset import dataset
+
+        if times is None:
+            times = np.append(np.arange(self.path.begin, self.path.end, 1e-3), self.path.end)
+        return dataset(self, np.atleast_1d(np.asarray(times, np.float64)))
+
+
+def scan(
+    device: Device,
+    scene: Scene,
+    path: HandPath,
+    *,
+    start: Sequence[PinState] | None = None,
+    max_angle: float = MAX_ANGLE,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Scan:
+    """Move a device over a scene along a path.
+
+    Args:
+        device: the device.
+        scene: what is on the page.
+        path: where the hand is; where its axis crosses the array's middle.
+        start: where each pin stands at the path's begin, as `Scan.state` of a scan that ended
+            there; None: at the springs' rest, all magnets off.
+        max_angle: between motion and drive axis beyond which a warning is given, rad.
+        threads: how many pins are followed at once; None: as many as the machine has processors.
+        progress: told after each pin.
+
+    Returns:
+        The scan, with its warnings.
+
+    Raises:
+        ValueError: a spot leaves the scene, a state is missing or cannot be, or a simulation had
+            to be given up.
+    """
+    if start is not None and len(start) != len(device.array):
+        required = f"one state for each pin, {len(device.array)}"
+        raise ValueError(refusal("start", required, str(len(start))))
+    prepared = prepare(device, scene, path, start)
+    pins: list[PinScan] = []
+    workers = threads or os.cpu_count() or 1
+    with ThreadPoolExecutor(max_workers=min(workers, len(prepared))) as pool:
+        for pin in pool.map(PreparedPin.follow, prepared):
+            pins.append(pin)
+            if progress:
+                progress(len(pins), len(prepared))
+    return Scan(
+        device=device,
+        scene=scene,
+        path=path,
+        pins=tuple(pins),
+        warnings=tuple(_warnings(device, scene, path, pins, max_angle)),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PreparedPin:
+    """A pin's inputs, known before anything moves: the scene is read, the coil is switched."""
+
+    number: int
+    device: Device
+    begin: float
+    end: float
+    looks: NDArray[np.float64]
+    luminance: NDArray[np.float64]
+    commands: Commands
+    current: Current
+    load: float | Profile
+    plate_velocity: Profile
+    start: PinState
+    coil: CoilState
+    decision: Decision
+
+    def follow(self) -> PinScan:
+        """The motion that they lead to."""
+        motion = simulate(
+            self.device.drive,
+            mouse_velocity=self.plate_velocity,
+            displacement=self.start.position,
+            velocity=self.start.velocity,
+            plate_load=self.load,
+            skin_stretch=self.start.skin_stretch,
+            duration=self.end - self.begin,
+        )
+        if motion.status != "ok":
+            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        return PinScan(
+            number=self.number,
+            begin=self.begin,
+            end=self.end,
+            looks=self.looks,
+            luminance=self.luminance,
+            commands=self.commands,
+            current=self.current,
+            load=self.load,
+            motion=motion,
+            coil=self.coil,
+            decision=self.decision,
+        )
+
+
+def prepare(
+    device: Device, scene: Scene, path: HandPath, start: Sequence[PinState] | None = None
+) -> list[PreparedPin]:
+    """Read the scene under each spot and switch the coils; arguments and errors as for `scan`."""
+    looks = device.control.looks(path.begin, path.end)
+    spots = _spots(device, path, looks)
+    _check_on_page(scene, spots, looks)
+    plate_velocity = path.plate_velocity(device.array.axis)
+    states = [PinState()] * len(device.array) if start is None else start
+    prepared = []
+    for number, (spot, state) in enumerate(zip(spots, states, strict=True)):
+        luminance = scene.at(spot[:, 0], spot[:, 1])
+        commands, decision = device.control.decide(luminance, looks, path.end, state.decision)
+        before = CoilState(path.begin) if state.coil is None else state.coil
+        current = device.magnet.current(commands, before)
+        load, coil = _load(device, current, before, path)
+        prepared.append(
+            PreparedPin(
+                number=number,
+                device=device,
+                begin=path.begin,
+                end=path.end,
+                looks=looks,
+                luminance=luminance,
+                commands=commands,
+                current=current,
+                load=load,
+                plate_velocity=plate_velocity,
+                start=state,
+                coil=coil,
+                decision=decision,
+            )
+        )
+    return prepared
+
+
+def _load(
+    device: Device, current: Current, before: CoilState, path: HandPath
+) -> tuple[float | Profile, CoilState]:
+    """The load on the plate's friction over the time since the path's begin, and how it ends."""
+    if not current.on.any() and before.current == 0.0:
+        return device.load(device.magnet.residual), before
+    times, pull = device.magnet.pull_rows(current, path.end, before.pull)
+    since = float(current.begins[-1])
+    after = CoilState(
+        since,
+        bool(current.on[-1]),
+        float(current.starts[-1]),
+        float(pull[np.searchsorted(times, since)]),
+    )
+    gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)
+    load = device.load(pull[gone:])
+    if len(load) == 1:
+        return float(load[0]), after
+    return Profile((times[gone:] - path.begin).tolist(), load.tolist()), after
+
+
+def _spots(device: Device, path: HandPath, t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where each spot is at the times t, m, shape (pins, n, 2)."""
+    hand = np.stack(path.position(t), axis=-1)
+    return hand[np.newaxis] + device.array.on_page(device.array.spots)[:, np.newaxis]
+
+
+def _check_on_page(scene: Scene, spots: NDArray[np.float64], t: NDArray[np.float64]) -> None:
+    inside = scene.contains(spots[..., 0], spots[..., 1])
+    if inside.all():
+        return
+    pin, look = (int(i) for i in np.argwhere(~inside)[0])
+    left, right, top, bottom = (1e3 * edge for edge in scene.extent)
+    x, y = (1e3 * spots[pin, look]).tolist()
+    required = (
+        f"within {scene.title}, {left:g} to {right:g} mm across and {top:g} to {bottom:g} mm down"
+    )
+    raise ValueError(
+        refusal(f"the path of pin {pin}", required, f"({x:g} mm, {y:g} mm) at {t[look]:g} s")
+    )
+
+
+def _warnings(
+    device: Device, scene: Scene, path: HandPath, pins: Sequence[PinScan], max_angle: float
+) -> list[str]:
+    """What is doubtful about a scan."""
+    found = []
+    control, speed = device.control, path.peak_speed
+    enough = control.enough_rate(speed, scene.pixel)
+    if control.sample_rate < enough:
+        found.append(
+            f"control.sample_rate = {control.sample_rate:g} Hz looks every "
+            f"{1e3 * speed / control.sample_rate:.3g} mm at {1e3 * speed:.4g} mm/s, past pixels of "
+            f"{1e3 * scene.pixel:.3g} mm: thin lines may be missed; {enough:.4g} Hz sees each"
+        )
+    largest, mean = path.angles(device.array.axis)
+    if largest > max_angle:
+        found.append(
+            f"the hand moves up to {degrees(largest):.3g} deg (mean {degrees(mean):.3g} deg) off "
+            f"the drive axis, more than scan.max_angle, {degrees(max_angle):.3g} deg: the pins "
+            f"feel {np.cos(largest):.0%} of the speed, and the plate's friction pulls askew"
+        )
+    if not any(len(pin.commands.times) or pin.commands.at_first for pin in pins):
+        found.append(
+            f"no pin met information: nothing under their spots is darker than "
+            f"{control.threshold - 0.5 * control.hysteresis:g}"
+        )
+    coil = device.magnet.coil
+    if coil is not None:
+        lasts = path.end - path.begin
+        most = max(sum(end - begin for begin, end in pin.energised) for pin in pins) / lasts
+        if most > coil.duty:
+            found.append(
+                f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
+                f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
+            )
+    return found

@@ -1,0 +1,271 @@
+"""The scene: what is printed on the page, dark on light, with a scale.
+
+Page coordinates: x to the right, y down, in metres. The luminance is that of the image as stored
+(gamma-encoded): 0 black, 1 white. Whatever an image leaves transparent is white.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.quantities import check, refusal
+from pindrive.units import quoted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike, NDArray
+    from PIL import Image
+
+LUMA: Final = (0.299, 0.587, 0.114)
+"""Weights of red, green and blue (ITU-R BT.601-7)."""
+MOST_PIXELS: Final = 100_000_000
+"""More are refused: 800 MB of luminance."""
+INCH: Final = 0.0254
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A page. Made by `from_image`, `from_text`, `from_grating`, or from an array.
+
+    Args:
+        luminance: in [0, 1], shape (rows, columns), the first row on top.
+        pixel: size of a pixel, m, greater than 0.
+        origin: place of its top left corner on the page, m.
+        lines: y of the middle of each line of text, m, where it has lines.
+        title: what it shows, in words.
+
+    Raises:
+        ValueError: no pixels, a luminance out of [0, 1], or a number out of its range.
+    """
+
+    luminance: NDArray[np.float64]
+    pixel: float
+    origin: tuple[float, float] = (0.0, 0.0)
+    lines: tuple[float, ...] = ()
+    title: str = field(default="a scene", kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Validate, and keep an array that nobody writes to."""
+        values = np.array(self.luminance, np.float64)
+        if values.ndim != 2 or values.size == 0:
+            raise ValueError(refusal("luminance", "rows and columns of pixels", values.shape))
+        if not ((values >= 0.0) & (values <= 1.0)).all():
+            wrong = values[~((values >= 0.0) & (values <= 1.0))][0]
+            check("scene.luminance", wrong, label="luminance")
+        values.flags.writeable = False
+        x, y = self.origin
+        object.__setattr__(self, "luminance", values)
+        object.__setattr__(self, "pixel", check("pixel", self.pixel))
+        object.__setattr__(self, "origin", (check("scene.origin", x), check("scene.origin", y)))
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, top and bottom of the page, m."""
+        (rows, columns), (x, y) = self.luminance.shape, self.origin
+        return x, x + columns * self.pixel, y, y + rows * self.pixel
+
+    def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
+        """Whether places (m, any shape) are on the page, its border included."""
+        left, right, top, bottom = self.extent
+        px, py = np.asarray(x, np.float64), np.asarray(y, np.float64)
+        return (left <= px) & (px <= right) & (top <= py) & (py <= bottom)
+
+    def at(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
+        """Luminance at places (m, any shape) on the page, linear between the middles of pixels.
+
+        In the outer half of the outermost pixels it is theirs.
+
+        Raises:
+            ValueError: a place is not on the page.
+        """
+        px, py = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+        inside = self.contains(px, py)
+        if not inside.all():
+            left, right, top, bottom = (1e3 * edge for edge in self.extent)
+            required = f"within {left:g} to {right:g} mm across, {top:g} to {bottom:g} mm down"
+            given = f"{1e3 * px[~inside].flat[0]:g} mm, {1e3 * py[~inside].flat[0]:g} mm"
+            raise ValueError(refusal("a place", required, given))
+        (rows, columns), (x0, y0) = self.luminance.shape, self.origin
+        i, u = _between((px - x0) / self.pixel, columns)
+        j, w = _between((py - y0) / self.pixel, rows)
+        i1, j1 = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
+        above = self.luminance[j, i] * (1.0 - u) + self.luminance[j, i1] * u
+        below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
+        return np.asarray(above * (1.0 - w) + below * w)
+
+    def dark(self, threshold: float = 0.5) -> NDArray[np.bool_]:
+        """Which pixels hold information: darker than the threshold, in [0, 1]."""
+        return self.luminance < check("threshold", threshold)
+
+    # ---- where scenes come from ------------------------------------------------------------------
+
+    @classmethod
+    def from_image(cls, path: str | PathLike[str], pixel: float | None = None) -> Scene:
+        """An image file of any kind that Pillow reads, turned as its EXIF data says.
+
+        Args:
+            path: the file; of one with several pictures the first.
+            pixel: size of a pixel, m; None: what the file says of its resolution.
+
+        Raises:
+            ValueError: the file cannot be read, or says nothing of its resolution.
+        """
+        from PIL import Image, ImageOps
+
+        file = fspath(path)
+        try:
+            with Image.open(file) as image:
+                resolution = image.info.get("dpi")
+                shown = ImageOps.exif_transpose(image)
+                values = _luminance(shown, file)
+        except Image.DecompressionBombError as error:
+            raise ValueError(f"{file}: is too large: {error}") from None
+        except OSError as error:
+            reason = error.strerror or "it is no image, or a damaged one"
+            raise ValueError(f"{file}: cannot be read: {reason}") from None
+        except (SyntaxError, EOFError, IndexError, OverflowError) as error:  # damaged PNG, GIF ...
+            raise ValueError(f"{file}: cannot be read: {error}") from None
+        if pixel is None:
+            pixel = _pixel_of(resolution, file)
+        return cls(values, pixel, title=file)
+
+    @classmethod
+    def from_text(
+        cls,
+        text: str,
+        *,
+        height: float = 0.010,
+        pixel: float = 1e-4,
+        margin: float = 0.005,
+        line_pitch: float | None = None,
+        font: str | PathLike[str] | None = None,
+    ) -> Scene:
+        """Text, black on white.
+
+        Args:
+            text: one or more lines, apart by newlines.
+            height: of capital letters, m.
+            pixel: m.
+            margin: white around it, m, at least; a tall accent may ask for more.
+            line_pitch: from line to line, m; None: twice the height.
+            font: a file FreeType reads; None: DejaVu Sans, which comes with Matplotlib.
+
+        Raises:
+            ValueError: nothing to show, a character that the font lacks, a font that cannot be
+                read, or a number out of its range.
+        """
+        from pindrive.device.lettering import draw
+
+        size, step = check("text_height", height), check("pixel", pixel)
+        pitch = 2.0 * size if line_pitch is None else check("line_pitch", line_pitch)
+        values, middles = draw(text, size / step, pitch / step, margin / step, font)
+        lines = tuple(middle * step for middle in middles)
+        return cls(values, step, (0.0, 0.0), lines, title=f"text {quoted(text)}")
+
+    @classmethod
+    def from_grating(
+        cls,
+        pitches: Iterable[float],
+        *,
+        count: int = 4,
+        height: float = 0.010,
+        pixel: float = 1e-4,
+        margin: float = 0.005,
+    ) -> Scene:
+        """Groups of upright black lines, each half as wide as its pitch.
+
+        Args:
+            pitches: from line to line in each group, m, greater than 0.
+            count: lines in each group, at least 1.
+            height: m.
+            pixel: m; a border between pixels is as dark as the part of the pixel it covers.
+            margin: white around the groups, m, and with the pitch between them.
+
+        Raises:
+            ValueError: no pitch, or a number out of its range.
+        """
+        steps = [check("pitch", pitch) for pitch in pitches]
+        if not steps:
+            raise ValueError(refusal("pitches", "at least one", "none"))
+        size = check("pixel", pixel)
+        begins, ends, x = [], [], margin
+        for pitch in steps:
+            begins += [x + i * pitch for i in range(count)]
+            ends += [x + (i + 0.5) * pitch for i in range(count)]
+            x = ends[-1] + margin
+        columns = _in_bounds(x / size)
+        borders = size * np.arange(columns + 1)
+        covered = sum(
+            np.clip(borders, begin, end) - begin for begin, end in zip(begins, ends, strict=True)
+        )
+        row = 1.0 - np.clip(np.diff(covered) / size, 0.0, 1.0)
+        rows = _in_bounds((check("text_height", height) + 2.0 * margin) / size)
+        page = np.ones((rows, columns))
+        top = round(margin / size)
+        page[top : rows - top] = row
+        words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)
+        return cls(page, size, lines=(0.5 * rows * size,), title=f"lines every {words} mm")
+
+
+def _between(
+    place: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """The pixel before a place (in pixels) and how far on to the next one it is, 0 to 1."""
+    middle = np.clip(place - 0.5, 0.0, count - 1.0)
+    i = np.minimum(middle.astype(np.intp), max(count - 2, 0))
+    return i, middle - i
+
+
+def _in_bounds(pixels: float) -> int:
+    """A number of pixels along one side, whole and not too many."""
+    if not pixels <= MOST_PIXELS:
+        raise ValueError(refusal("a scene", f"at most {MOST_PIXELS} pixels long", f"{pixels:g}"))
+    return max(1, round(pixels))
+
+
+def _luminance(image: Image.Image, file: str) -> NDArray[np.float64]:
+    """The luminance of an image of any mode, on white."""
+    from PIL import Image
+
+    if image.width * image.height > MOST_PIXELS:
+        given = f"{image.width} by {image.height}"
+        raise ValueError(refusal("an image", f"at most {MOST_PIXELS} pixels", given, file))
+    if image.mode == "F" or image.mode.startswith("I"):
+        values = np.asarray(image, np.float64)
+        whole = 1.0 if image.mode == "F" else 65535.0
+        low, high = float(values.min()), float(values.max())
+        if not (low >= 0.0 and high <= whole):
+            given = f"{low:g} to {high:g}"
+            raise ValueError(
+                refusal(f"grey of mode {image.mode}", f"in 0 to {whole:g}", given, file)
+            )
+        return values / whole
+    if image.has_transparency_data:
+        paper = Image.new("RGBA", image.size, "white")
+        image = Image.alpha_composite(paper, image.convert("RGBA"))
+    if image.mode in ("1", "L"):
+        return np.asarray(image.convert("L"), np.float64) / 255.0
+    red, green, blue = np.moveaxis(np.asarray(image.convert("RGB"), np.float64), 2, 0)
+    grey: NDArray[np.float64] = (LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue) / 255.0
+    return np.minimum(grey, 1.0)
+
+
+def _pixel_of(resolution: Any, file: str) -> float:
+    """The size of a pixel from dots per inch, alike in both directions."""
+    try:
+        across, down = (float(dots) for dots in resolution)
+    except (TypeError, ValueError):
+        across = down = 0.0
+    if not across > 1.0:
+        raise ValueError(
+            f'{file}: says nothing of its resolution; give scan.pixel, like pixel = "0.1 mm"'
+        )
+    if abs(across - down) > 0.01 * across:
+        given = f"{across:g} by {down:g}"
+        raise ValueError(refusal("dots per inch", "the same across and down", given, file))
+    return INCH / across

@@ -1,0 +1,214 @@
+"""The electromagnet: its current against its equation, its rows against their bound."""
+
+from __future__ import annotations
+
+from math import exp, isclose, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from pindrive.device import Coil, CoilState, Commands, Electromagnet
+from pindrive.device.coil import check_one_way
+
+COIL = Coil(
+    turns=300,
+    pole_area=6e-6,
+    gap=6e-5,
+    wire_diameter=1e-4,
+    turn_length=0.016,
+    supply_voltage=3.0,
+)
+
+
+def commands(*times: float) -> Commands:
+    return Commands(np.array(times))
+
+
+def test_current_obeys_its_differential_equation() -> None:
+    magnet = Electromagnet(rise_constant=0.001, fall_constant=0.004)
+    told = commands(0.01, 0.013, 0.0135, 0.03)
+    current = magnet.current(told, CoilState())
+
+    def slope(t: float, c: float, on: bool) -> float:
+        return (1.0 - c) / magnet.rise_constant if on else -c / magnet.fall_constant
+
+    value, begin = 0.0, 0.0
+    for end in (*told.times.tolist(), 0.05):
+        on = bool(told.on(0.5 * (begin + end)))
+        out = solve_ivp(slope, (begin, end), [value], args=(on,), rtol=1e-11, atol=1e-13)
+        value, begin = float(out.y[0, -1]), end
+        assert current(end) == pytest.approx(value, abs=1e-9)
+
+
+def test_rise_and_fall_times_are_what_they_say() -> None:
+    for sigma in (1.0, 0.7, 0.3):
+        magnet = Electromagnet.from_times(
+            hold_force=2.0, rise_time=0.003, fall_time=0.005, saturation=sigma, residual=0.1
+        )
+        rising = magnet.current(commands(0.0), CoilState(-1.0))
+        falling = magnet.current(
+            Commands(np.array([0.0]), at_first=True), CoilState(-1.0, True, 1.0)
+        )
+        assert magnet.pull(rising(0.003)) == pytest.approx(0.1 + 0.9 * 1.9, rel=1e-12)
+        assert magnet.pull(falling(0.005)) == pytest.approx(0.1 + 0.1 * 1.9, rel=1e-12)
+        assert isclose(magnet.rise_time, 0.003, rel_tol=1e-12)
+        assert isclose(magnet.fall_time, 0.005, rel_tol=1e-12)
+
+
+def test_pull_grows_with_the_square_and_saturates() -> None:
+    magnet = Electromagnet(hold_force=3.0, saturation=0.5, residual=0.2)
+    assert magnet.pull(0.0) == 0.2
+    assert magnet.pull(0.25) == pytest.approx(0.2 + 2.8 * 0.25)
+    assert magnet.pull(0.5) == magnet.pull(0.8) == magnet.pull(1.0) == 3.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    lasts=st.lists(st.floats(1e-5, 0.05), min_size=1, max_size=8),
+    sigma=st.floats(0.05, 1.0),
+    residual=st.floats(0.0, 0.9),
+    deviation=st.sampled_from([1e-2, 1e-3, 1e-4]),
+    start=st.floats(0.0, 1.0),
+    constants=st.tuples(st.floats(1e-4, 1e-2), st.floats(1e-4, 1e-2)),
+)
+def test_rows_keep_their_bound(
+    lasts: list[float],
+    sigma: float,
+    residual: float,
+    deviation: float,
+    start: float,
+    constants: tuple[float, float],
+) -> None:
+    rise, fall = constants
+    magnet = Electromagnet(
+        hold_force=1.0,
+        rise_constant=rise,
+        fall_constant=fall,
+        saturation=sigma,
+        residual=residual,
+        deviation=deviation,
+    )
+    times = np.cumsum(lasts)
+    end = float(times[-1])
+    current = magnet.current(Commands(times[:-1]), CoilState(0.0, False, start))
+    rows, pull = magnet.pull_rows(current, end)
+    assert rows[0] == 0.0
+    assert rows[-1] >= end or pull[-1] == magnet.pull(float(current.on[-1]))
+    assert (np.diff(rows) > 0.0).all()
+    assert (pull >= residual).all()
+    dense = np.append(np.linspace(rows[:-1], rows[1:], 20), np.linspace(0.0, end, 99))
+    exact = magnet.pull(current(dense))
+    assert np.abs(np.interp(dense, rows, pull) - exact).max() <= deviation * (1.0 + 1e-6)
+
+
+def test_rows_are_no_more_than_the_bound_asks_for() -> None:
+    """Rows follow from the curvature: the deviation is used up, and they go with its root."""
+    counts = []
+    for deviation in (1e-3, 1e-4, 1e-5):
+        magnet = Electromagnet(hold_force=1.0, deviation=deviation)
+        current = magnet.current(commands(0.0, 0.05), CoilState(-1e-3))
+        rows, pull = magnet.pull_rows(current, 0.2)
+        dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
+        worst = np.abs(np.interp(dense, rows, pull) - magnet.pull(current(dense))).max()
+        assert worst > 0.8 * deviation
+        counts.append(len(rows))
+    assert counts[1] / counts[0] == pytest.approx(sqrt(10.0), rel=0.2)
+    assert counts[2] / counts[1] == pytest.approx(sqrt(10.0), rel=0.2)
+
+
+def test_coil_by_hand() -> None:
+    """Each number worked out on paper from the formulas of a magnetic circuit with two gaps."""
+    assert COIL.resistance == pytest.approx(10.53716, rel=1e-5)  # 4.8 m of 7.854e-9 m2 copper
+    assert COIL.current == pytest.approx(0.284707, rel=1e-5)
+    assert COIL.field == pytest.approx(0.894432, rel=1e-5)  # 85.412 A over 120 µm
+    assert COIL.pull == pytest.approx(3.81976, rel=1e-5)
+    assert COIL.inductance == pytest.approx(5.65487e-3, rel=1e-5)
+    assert COIL.power == pytest.approx(0.854120, rel=1e-5)
+    assert COIL.duty == pytest.approx(20.0 / 85.4120, rel=1e-5)
+    magnet = Electromagnet.from_coil(COIL)
+    assert magnet.hold_force == COIL.pull
+    assert magnet.rise_constant == pytest.approx(5.65487e-3 / 10.53716, rel=1e-5)
+    assert magnet.fall_constant == magnet.rise_constant
+
+
+def test_pull_is_the_energy_that_the_gap_would_give() -> None:
+    """F = -dW/dg of the field energy L I²/2 at constant flux, by a difference quotient."""
+
+    def coil_of(gap: float) -> Coil:
+        return Coil(
+            turns=300,
+            pole_area=6e-6,
+            gap=gap,
+            wire_diameter=1e-4,
+            turn_length=0.016,
+            supply_voltage=3.0,
+        )
+
+    flux = COIL.inductance * COIL.current
+    step = 1e-9
+    low, high = (0.5 * flux**2 / coil_of(6e-5 + h).inductance for h in (-step, step))
+    assert (high - low) / (2.0 * step) == pytest.approx(COIL.pull, rel=1e-6)
+
+
+def test_a_strong_coil_saturates() -> None:
+    strong = Coil(
+        turns=300,
+        pole_area=6e-6,
+        gap=6e-5,
+        wire_diameter=1e-4,
+        turn_length=0.016,
+        supply_voltage=9.0,
+    )
+    assert strong.saturation == pytest.approx(1.6 / (3 * COIL.field))
+    assert strong.pull == pytest.approx(1.6**2 * 6e-6 / 1.25663706127e-6)
+    slow = Coil(
+        turns=300,
+        pole_area=6e-6,
+        gap=6e-5,
+        wire_diameter=1e-4,
+        turn_length=0.016,
+        supply_voltage=9.0,
+        release_resistance=strong.resistance,
+    )
+    magnet = Electromagnet.from_coil(slow)
+    assert magnet.fall_constant == pytest.approx(0.5 * magnet.rise_constant)
+    assert magnet.current(commands(0.0), CoilState(-1.0))(magnet.rise_constant) == pytest.approx(
+        1 - exp(-1)
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"hold_force": 0.0}, "hold_force must be finite and greater than 0 N, got 0.0 N"),
+        (
+            {"saturation": 1.5},
+            "saturation must be finite and greater than 0 and at most 1, got 1.5",
+        ),
+        (
+            {"deviation": 0.5},
+            "deviation must be finite and greater than 0 and at most 0.1, got 0.5",
+        ),
+        (
+            {"hold_force": 1.0, "residual": 1.0},
+            "residual must be less than the hold force, 1.0 N, got 1.0 N",
+        ),
+        ({"pressing": -1.0}, "pressing must be finite and greater than 0 N, got -1.0 N"),
+    ],
+)
+def test_bad_magnets_are_refused(given: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError) as refused:
+        Electromagnet(**given)  # type: ignore[arg-type]
+    assert str(refused.value) == message
+
+
+def test_a_magnet_is_told_one_way() -> None:
+    check_one_way({"hold_force", "rise_time"})
+    check_one_way({"residual"})
+    with pytest.raises(ValueError, match="hold_force must be left out where turns describes"):
+        check_one_way({"hold_force", "turns"})
+    with pytest.raises(ValueError, match=r"turns must be given with pole_area \(area of one"):
+        check_one_way({"turns", "gap"})
