@@ -25,6 +25,30 @@ struct Region {
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
+/// The regions between the rows (speed, force) of a friction curve, at most count + 1; none for the
+/// one row of Coulomb friction. The last slope goes on; where it falls, until the force is zero:
+/// friction never pushes.
+template <class T>
+int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) {
+  if (count < 2) return 0;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const int last = count - 1;
+  for (int i = 0; i < last; ++i) {
+    const T slope = (forces[i + 1] - forces[i]) / (speeds[i + 1] - speeds[i]);
+    regions[i] = {speeds[i], speeds[i + 1], forces[i], slope};
+  }
+  const T slope = regions[last - 1].slope;
+  regions[last] = {speeds[last], never, forces[last], slope};
+  if (!(slope < 0)) return count;
+  if (!(forces[last] > 0)) {
+    regions[last] = {speeds[last], never, T(0), T(0)};
+    return count;
+  }
+  regions[last].to = speeds[last] - forces[last] / slope;
+  regions[count] = {regions[last].to, never, T(0), T(0)};
+  return count + 1;
+}
+
 /// Dry friction at one surface. Without friction the contact is absent.
 template <class T>
 struct Contact {

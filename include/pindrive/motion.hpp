@@ -78,7 +78,8 @@ class Motion {
   void stretches(T until, Visitor&& visit) const {
     stretch(T(0), std::min(until, outcome_.until), T(1), visit);
     if (!outcome_.cycles() || until <= outcome_.until) return;
-    const T repeats = std::floor((until - outcome_.until) / outcome_.period);
+    using std::floor;
+    const T repeats = floor((until - outcome_.until) / outcome_.period);
     const T rest = until - outcome_.until - repeats * outcome_.period;
     if (repeats > 0) stretch(outcome_.cycle_begin, outcome_.until, repeats, visit);
     stretch(outcome_.cycle_begin, outcome_.cycle_begin + rest, T(1), visit);
@@ -88,7 +89,8 @@ class Motion {
   /// Time in a cycle is brought back to the cycle that was simulated.
   T folded(T t, Side side) const {
     if (!outcome_.cycles() || t < outcome_.until) return t;
-    const T cycles = std::floor((t - outcome_.until) / outcome_.period);
+    using std::floor;
+    const T cycles = floor((t - outcome_.until) / outcome_.period);
     const T rest = t - outcome_.until - cycles * outcome_.period;
     return rest > 0 || side == Side::right ? outcome_.cycle_begin + rest : outcome_.until;
   }

@@ -13,6 +13,12 @@
 
 namespace pindrive {
 
+/// How a root depends on what the path depends on; of plain numbers there is nothing to say.
+template <class T>
+struct Rooted {
+  static T at(const Oscillator<T>&, const Path<T>&, T root) { return root; }
+};
+
 /// The one root in a bracket where the path is monotone, of sign `side` at `low`, not at `high`.
 template <class T>
 T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T high, int side) {
@@ -82,7 +88,8 @@ class Roots {
       const T right = end_of_bracket();
       if (!(left_ < right)) break;
       const T value = path_.at(oscillator_, right);
-      if (!std::isfinite(value)) break;  // grown beyond all numbers on its side
+      using std::isfinite;
+      if (!isfinite(value)) break;  // grown beyond all numbers on its side
       const T low = left_;
       const bool turned = right == extremum_;
       left_ = right;
@@ -199,7 +206,8 @@ void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T
   const auto all = [&](auto roots) {
     for (;;) {
       const T root = roots.next();
-      if (!(root < std::numeric_limits<T>::infinity()) || !visit(root)) return;
+      if (!(root < std::numeric_limits<T>::infinity())) return;
+      if (!visit(Rooted<T>::at(oscillator, path, root))) return;
     }
   };
   if (!path.oscillates()) {

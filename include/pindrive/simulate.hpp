@@ -23,7 +23,8 @@ class Simulation {
         x_(inputs.displacement),
         v_(inputs.velocity) {
     look_ahead();
-    const bool given = !std::isnan(inputs.skin_stretch);
+    using std::isnan;
+    const bool given = !isnan(inputs.skin_stretch);
     if (given) skin_ = drive.finger.stiffness * inputs.skin_stretch;
     mode_ = friction_.starting(now_, x_, v_, skin_, given);
   }

@@ -119,6 +119,7 @@ class Measurement {
 
   /// Peak, trough, swing and the extreme velocity between them.
   void swing(Transient<T>& result) const {
+    using std::isnan;
     const Inputs<T>& inputs = motion_.inputs();
     int outward = sign_of(inputs.displacement);
     if (outward == 0) outward = sign_of(inputs.velocity);
@@ -128,7 +129,7 @@ class Measurement {
       result.peak_displacement = inputs.displacement;
     }
     turning_points([&](T time, T position) {
-      if (std::isnan(result.peak_time)) {
+      if (isnan(result.peak_time)) {
         result.peak_time = time;
         result.peak_displacement = position;
         return true;
@@ -137,8 +138,8 @@ class Measurement {
       result.trough_displacement = position;
       return false;
     });
-    if (std::isnan(result.peak_time)) return;
-    if (std::isnan(result.trough_time) && motion_.outcome().end == End::decaying) {
+    if (isnan(result.peak_time)) return;
+    if (isnan(result.trough_time) && motion_.outcome().end == End::decaying) {
       result.trough_time = never;
       result.trough_displacement = std::prev(motion_.end())->flow.position.centre();
     }
@@ -148,8 +149,8 @@ class Measurement {
   }
 
   void return_velocity(Transient<T>& result, int outward) const {
-    const T until =
-        std::min(std::isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
+    using std::isnan;
+    const T until = std::min(isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > until) break;
       const T from = std::max(result.peak_time - segment.begin, T(0));
@@ -222,6 +223,7 @@ class Measurement {
   /// Follows |x − x_end| against the width through one segment, from extremum to extremum.
   void follow_band(const Segment<T>& segment, T x_end, T width, T& since) const {
     using std::abs;
+    using std::isfinite;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     T low{0}, before = x.start - x_end;
@@ -233,13 +235,14 @@ class Measurement {
         const int side = sign_of(before);
         Path<T> distance = x;
         distance.start -= x_end + side * width;
-        since = segment.begin + root_between(oscillator, distance, low, high, side);
+        const T root = root_between(oscillator, distance, low, high, side);
+        since = segment.begin + Rooted<T>::at(oscillator, distance, root);
       }
       low = high;
       before = after;
     };
     if (abs(before) > width) since = never;
-    if (std::isfinite(segment.end)) {
+    if (isfinite(segment.end)) {
       extrema(oscillator, x, T(0), segment.end - segment.begin, follow_to);
       return;
     }
@@ -252,8 +255,9 @@ class Measurement {
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
+      using std::floor;
       using std::log;
-      const T count = std::floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
+      const T count = floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
       before = x.at(oscillator, low) - x_end;
       while (abs(before) > width)
@@ -345,9 +349,10 @@ class Measurement {
 /// slowest mode to a thousandth and until settled, or a few periods of what lasts.
 template <class T>
 T duration_of(const Motion<T>& motion) {
+  using std::isfinite;
   using std::log;
   using std::sqrt;
-  if (std::isfinite(motion.inputs().duration)) return motion.inputs().duration;
+  if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
   constexpr T never = std::numeric_limits<T>::infinity();
   const Outcome<T>& outcome = motion.outcome();
   const T period = T(6.283185307179586) / sqrt(motion.drive().stiffness / motion.drive().mass);
@@ -357,7 +362,8 @@ T duration_of(const Motion<T>& motion) {
     case End::decaying: {
       const T rate = -std::prev(motion.end())->flow.oscillator.slowest_rate();
       const T settled = Measurement<T>(motion, never).settling_time(T(settling_band));
-      return std::fmax(outcome.since + period + log(T(1000)) / rate, settled * T(1.25));
+      const T decayed = outcome.since + period + log(T(1000)) / rate;
+      return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
     }
     case End::free:
     case End::grazing:

@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <memory>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "pindrive/certify.hpp"
+#include "pindrive/dual.hpp"
 #include "pindrive/energy.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/simulate.hpp"
@@ -36,89 +38,112 @@ Array<T> to_array(std::vector<T>&& values) {
   return Array<T>(owned->data(), {owned->size()}, owner);
 }
 
+// ---- what Python hands over ----------------------------------------------------------------------
+
 using Rows = std::vector<std::pair<double, double>>;
-using Regions = std::vector<std::tuple<double, double, double, double>>;
+/// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
+using ContactNumbers = std::tuple<double, double, double, Rows>;
+/// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
+/// row for a constant; displacement, velocity, skin stretch, duration.
+using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
+                           double, double, double, double>;
+using Dual = pd::Dual<double>;
 
-/// One contact as it comes from Python: kinetic, static, stiffness, and the regions of a curve.
-struct ContactRows {
-  double kinetic, static_limit, stiffness;
-  std::vector<pd::Region<double>> regions;
+/// A number of the core from the one in Python and its derivative along a parameter.
+template <class T>
+T number(double value, double slope) {
+  if constexpr (std::is_same_v<T, Dual>)
+    return {value, slope};
+  else
+    return value;
+}
+/// What goes back to Python: of a number with its derivative, the derivative.
+double result(double value) { return value; }
+double result(Dual value) { return value.slope; }
 
-  ContactRows(double kinetic, double static_limit, double stiffness, const Regions& curve)
-      : kinetic(kinetic), static_limit(static_limit), stiffness(stiffness) {
-    for (const auto& [from, to, force, slope] : curve) regions.push_back({from, to, force, slope});
-  }
-  pd::Contact<double> view() const {
-    return {kinetic, static_limit, stiffness, regions.data(), static_cast<int>(regions.size())};
-  }
-};
+template <class T>
+struct Columns {
+  std::vector<T> first, second;
 
-/// An input as it comes from Python: one row is a constant.
-struct ProfileRows {
-  std::vector<double> times, values;
-
-  explicit ProfileRows(const Rows& rows) {
-    for (const auto& [time, value] : rows) {
-      times.push_back(time);
-      values.push_back(value);
+  Columns(const Rows& rows, const Rows& along) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      first.push_back(number<T>(rows[i].first, along[i].first));
+      second.push_back(number<T>(rows[i].second, along[i].second));
     }
   }
-  pd::Profile<double> view() const {
-    if (times.size() == 1) return {values[0]};
-    return {times.data(), values.data(), times.size()};
+  pd::Profile<T> profile() const {
+    if (first.size() == 1) return {second[0]};
+    return {first.data(), second.data(), first.size()};
   }
 };
 
-/// A motion that owns its inputs and its segments.
+template <class T>
+struct OwnedContact {
+  pd::Contact<T> contact;
+  std::vector<pd::Region<T>> regions;
+
+  OwnedContact(const ContactNumbers& at, const ContactNumbers& along)
+      : contact{number<T>(std::get<0>(at), std::get<0>(along)),
+                number<T>(std::get<1>(at), std::get<1>(along)),
+                number<T>(std::get<2>(at), std::get<2>(along))} {
+    const Columns<T> rows(std::get<3>(at), std::get<3>(along));
+    regions.resize(rows.first.size() + 1);
+    contact.regions = pd::regions_of(rows.first.data(), rows.second.data(),
+                                     static_cast<int>(rows.first.size()), regions.data());
+    contact.curve = regions.data();
+  }
+};
+
+/// A motion that owns its inputs and its segments. As dual numbers, all that it is asked for are
+/// derivatives along the direction in which its inputs change.
+template <class T>
 class CoreMotion {
  public:
-  CoreMotion(double mass, double stiffness, double damping, ContactRows plate, ContactRows finger,
-             ProfileRows mouse_velocity, ProfileRows plate_load, double displacement,
-             double velocity, double skin_stretch, double duration)
-      : plate_(std::move(plate)),
-        finger_(std::move(finger)),
-        mouse_velocity_(std::move(mouse_velocity)),
-        plate_load_(std::move(plate_load)),
-        drive_{mass, stiffness, damping, plate_.view(), finger_.view()},
-        inputs_{mouse_velocity_.view(), displacement, velocity, duration,
-                plate_load_.view(),     skin_stretch},
-        outcome_(pd::simulate(drive_, inputs_, [this](const pd::Segment<double>& segment) {
+  CoreMotion(const Numbers& at, const Numbers& along)
+      : plate_(std::get<3>(at), std::get<3>(along)),
+        finger_(std::get<4>(at), std::get<4>(along)),
+        mouse_velocity_(std::get<5>(at), std::get<5>(along)),
+        plate_load_(std::get<6>(at), std::get<6>(along)),
+        drive_{entry<0>(at, along), entry<1>(at, along), entry<2>(at, along), plate_.contact,
+               finger_.contact},
+        inputs_{mouse_velocity_.profile(), entry<7>(at, along),   entry<8>(at, along),
+                entry<10>(at, along),      plate_load_.profile(), entry<9>(at, along)},
+        outcome_(pd::simulate(drive_, inputs_, [this](const pd::Segment<T>& segment) {
           segments_.push_back(segment);
         })) {}
 
-  pd::Motion<double> view() const {
+  pd::Motion<T> view() const {
     return {drive_, inputs_, segments_.data(), segments_.size(), outcome_};
   }
-  const std::vector<pd::Segment<double>>& segments() const { return segments_; }
-  const pd::Outcome<double>& outcome() const { return outcome_; }
-  const pd::Drive<double>& drive() const { return drive_; }
+  const std::vector<pd::Segment<T>>& segments() const { return segments_; }
+  const pd::Outcome<T>& outcome() const { return outcome_; }
+  const pd::Drive<T>& drive() const { return drive_; }
 
  private:
-  ContactRows plate_, finger_;
-  ProfileRows mouse_velocity_, plate_load_;
-  pd::Drive<double> drive_;
-  pd::Inputs<double> inputs_;
-  std::vector<pd::Segment<double>> segments_;
-  pd::Outcome<double> outcome_;
+  template <std::size_t i>
+  static T entry(const Numbers& at, const Numbers& along) {
+    return number<T>(std::get<i>(at), std::get<i>(along));
+  }
+
+  OwnedContact<T> plate_, finger_;
+  Columns<T> mouse_velocity_, plate_load_;
+  pd::Drive<T> drive_;
+  pd::Inputs<T> inputs_;
+  std::vector<pd::Segment<T>> segments_;
+  pd::Outcome<T> outcome_;
 };
 
-using ContactNumbers = std::tuple<double, double, double, Regions>;
-
-std::unique_ptr<CoreMotion> simulate(double mass, double stiffness, double damping,
-                                     const ContactNumbers& plate, const ContactNumbers& finger,
-                                     const Rows& mouse_velocity, const Rows& plate_load,
-                                     double displacement, double velocity, double skin_stretch,
-                                     double duration) {
+template <class T>
+std::unique_ptr<CoreMotion<T>> run(const Numbers& at, const Numbers& along) {
   const nb::gil_scoped_release unlocked;
-  return std::make_unique<CoreMotion>(
-      mass, stiffness, damping, std::make_from_tuple<ContactRows>(plate),
-      std::make_from_tuple<ContactRows>(finger), ProfileRows(mouse_velocity),
-      ProfileRows(plate_load), displacement, velocity, skin_stretch, duration);
+  return std::make_unique<CoreMotion<T>>(at, along);
 }
 
+// ---- what Python asks for ------------------------------------------------------------------------
+
 /// f(segment, τ) at each time.
-template <class Function>
-Array<double> at_times(const CoreMotion& motion, const Times& times, bool right, Function&& f) {
+template <class T, class Function>
+Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool right, Function&& f) {
   std::vector<double> values(times.size());
   {
     const nb::gil_scoped_release unlocked;
@@ -126,36 +151,32 @@ Array<double> at_times(const CoreMotion& motion, const Times& times, bool right,
     const auto side = right ? pd::Side::right : pd::Side::left;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto [segment, tau] = view.locate(times.data()[i], side);
-      values[i] = f(*segment, tau);
+      values[i] = result(f(*segment, tau));
     }
   }
   return to_array(std::move(values));
 }
 
-using FlowPath = pd::Path<double> pd::Flow<double>::*;
-
-template <FlowPath path>
-Array<double> evaluate(const CoreMotion& motion, const Times& times, bool right) {
-  return at_times(motion, times, right, [](const pd::Segment<double>& segment, double tau) {
+template <class T, pd::Path<T> pd::Flow<T>::* path>
+Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
+  return at_times(motion, times, right, [](const pd::Segment<T>& segment, T tau) {
     return (segment.flow.*path).at(segment.flow.oscillator, tau);
   });
 }
 
-using MotionView = pd::Motion<double>;
-
-template <double MotionView::Friction::* contact>
-Array<double> force(const CoreMotion& motion, const Times& times, bool right) {
+template <class T, T pd::Motion<T>::Friction::* contact>
+Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right) {
   const auto view = motion.view();
-  return at_times(motion, times, right, [&](const pd::Segment<double>& segment, double tau) {
+  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
     return view.friction(segment, tau).*contact;
   });
 }
 
 /// Stretch of a compliant finger's skin, or how fast it grows.
-template <bool rate>
-Array<double> stretch(const CoreMotion& motion, const Times& times, bool right) {
-  const double stiffness = motion.drive().finger.stiffness;
-  return at_times(motion, times, right, [=](const pd::Segment<double>& segment, double tau) {
+template <class T, bool rate>
+Array<double> stretch(const CoreMotion<T>& motion, const Times& times, bool right) {
+  const T stiffness = motion.drive().finger.stiffness;
+  return at_times(motion, times, right, [=](const pd::Segment<T>& segment, T tau) {
     const auto& oscillator = segment.flow.oscillator;
     const auto& force = segment.finger_force;
     return -(rate ? force.derivative(oscillator) : force).at(oscillator, tau) / stiffness;
@@ -163,27 +184,32 @@ Array<double> stretch(const CoreMotion& motion, const Times& times, bool right) 
 }
 
 /// One column of the list of segments.
-template <class T, class Function>
-Array<T> column(const CoreMotion& motion, Function&& f) {
-  std::vector<T> values;
+template <class N, class T, class Function>
+Array<N> column(const CoreMotion<T>& motion, Function&& f) {
+  std::vector<N> values;
   values.reserve(motion.segments().size());
-  for (const auto& segment : motion.segments()) values.push_back(static_cast<T>(f(segment)));
+  for (const auto& segment : motion.segments()) values.push_back(static_cast<N>(f(segment)));
   return to_array(std::move(values));
 }
 
-nb::dict segments(const CoreMotion& motion) {
-  using Segment = pd::Segment<double>;
+template <class T>
+nb::dict segments(const CoreMotion<T>& motion) {
+  using Segment = pd::Segment<T>;
   nb::dict table;
-  table["begin"] = column<double>(motion, [](const Segment& s) { return s.begin; });
-  table["end"] = column<double>(motion, [](const Segment& s) { return s.end; });
+  table["begin"] = column<double>(motion, [](const Segment& s) { return result(s.begin); });
+  table["end"] = column<double>(motion, [](const Segment& s) { return result(s.end); });
   table["position"] =
-      column<double>(motion, [](const Segment& s) { return s.flow.position.start; });
+      column<double>(motion, [](const Segment& s) { return result(s.flow.position.start); });
   table["velocity"] =
-      column<double>(motion, [](const Segment& s) { return s.flow.velocity.start; });
+      column<double>(motion, [](const Segment& s) { return result(s.flow.velocity.start); });
   table["acceleration"] =
-      column<double>(motion, [](const Segment& s) { return s.flow.acceleration.start; });
+      column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration.start); });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
+  table["plate_region"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.plate_region; });
+  table["finger_region"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.finger_region; });
   table["plate_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
   table["finger_event"] =
@@ -191,57 +217,60 @@ nb::dict segments(const CoreMotion& motion) {
   return table;
 }
 
-nb::dict contact_use(const pd::ContactUse<double>& use) {
+template <class T>
+nb::dict contact_use(const pd::ContactUse<T>& use) {
   nb::dict d;
-  d["reversals"] = static_cast<long long>(use.reversals);
-  d["time_stuck"] = use.time_stuck;
-  d["distance_slid"] = use.distance_slid;
-  d["dissipated"] = use.dissipated;
-  d["peak_force"] = use.peak_force;
+  d["reversals"] = static_cast<long long>(result(use.reversals));
+  d["time_stuck"] = result(use.time_stuck);
+  d["distance_slid"] = result(use.distance_slid);
+  d["dissipated"] = result(use.dissipated);
+  d["peak_force"] = result(use.peak_force);
   return d;
 }
 
-nb::dict transient(const CoreMotion& motion, double duration, double band) {
+template <class T>
+nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
   const auto view = motion.view();
-  const auto t = pd::Measurement<double>(view, duration).transient(band);
+  const auto t = pd::Measurement<T>(view, duration).transient(band);
   nb::dict d;
-  d["peak_displacement"] = t.peak_displacement;
-  d["peak_time"] = t.peak_time;
-  d["trough_displacement"] = t.trough_displacement;
-  d["trough_time"] = t.trough_time;
-  d["swing"] = t.swing;
-  d["return_velocity"] = t.return_velocity;
-  d["return_velocity_time"] = t.return_velocity_time;
-  d["first_reversal_time"] = t.first_reversal_time;
-  d["settling_time"] = t.settling_time;
-  d["peak_stretch"] = t.peak_stretch;
-  d["peak_stretch_rate"] = t.peak_stretch_rate;
-  d["end_position"] = t.end_position;
-  d["amplitude"] = t.amplitude;
+  d["peak_displacement"] = result(t.peak_displacement);
+  d["peak_time"] = result(t.peak_time);
+  d["trough_displacement"] = result(t.trough_displacement);
+  d["trough_time"] = result(t.trough_time);
+  d["swing"] = result(t.swing);
+  d["return_velocity"] = result(t.return_velocity);
+  d["return_velocity_time"] = result(t.return_velocity_time);
+  d["first_reversal_time"] = result(t.first_reversal_time);
+  d["settling_time"] = result(t.settling_time);
+  d["peak_stretch"] = result(t.peak_stretch);
+  d["peak_stretch_rate"] = result(t.peak_stretch_rate);
+  d["end_position"] = result(t.end_position);
+  d["amplitude"] = result(t.amplitude);
   d["plate"] = contact_use(t.plate);
   d["finger"] = contact_use(t.finger);
   return d;
 }
 
-nb::dict ledger(const CoreMotion& motion, double duration) {
-  const auto l = pd::energy_ledger(motion.view(), duration);
+template <class T>
+nb::dict ledger(const CoreMotion<T>& motion, double duration) {
+  const auto l = pd::energy_ledger(motion.view(), T(duration));
   nb::dict d;
-  d["kinetic_start"] = l.kinetic_start;
-  d["kinetic_end"] = l.kinetic_end;
-  d["spring_start"] = l.spring_start;
-  d["spring_end"] = l.spring_end;
-  d["skin_start"] = l.skin_start;
-  d["skin_end"] = l.skin_end;
-  d["plate_work"] = l.plate_work;
-  d["inertia_work"] = l.inertia_work;
-  d["damper_dissipated"] = l.damper_dissipated;
-  d["plate_dissipated"] = l.plate_dissipated;
-  d["finger_dissipated"] = l.finger_dissipated;
-  d["residual"] = l.residual();
+  d["kinetic_start"] = result(l.kinetic_start);
+  d["kinetic_end"] = result(l.kinetic_end);
+  d["spring_start"] = result(l.spring_start);
+  d["spring_end"] = result(l.spring_end);
+  d["skin_start"] = result(l.skin_start);
+  d["skin_end"] = result(l.skin_end);
+  d["plate_work"] = result(l.plate_work);
+  d["inertia_work"] = result(l.inertia_work);
+  d["damper_dissipated"] = result(l.damper_dissipated);
+  d["plate_dissipated"] = result(l.plate_dissipated);
+  d["finger_dissipated"] = result(l.finger_dissipated);
+  d["residual"] = result(l.residual());
   return d;
 }
 
-nb::dict certificate(const CoreMotion& motion, double duration) {
+nb::dict certificate(const CoreMotion<double>& motion, double duration) {
   const auto view = motion.view();
   const auto c = pd::Certifier<double>(view, duration).certify();
   nb::dict d;
@@ -258,6 +287,26 @@ nb::dict certificate(const CoreMotion& motion, double duration) {
   return d;
 }
 
+/// What a motion and its derivatives have in common.
+template <class T>
+nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* meaning) {
+  using Flow = pd::Flow<T>;
+  using Friction = typename pd::Motion<T>::Friction;
+  return nb::class_<CoreMotion<T>>(m, name, meaning)
+      .def("position", &evaluate<T, &Flow::position>, "times"_a, "right"_a)
+      .def("velocity", &evaluate<T, &Flow::velocity>, "times"_a, "right"_a)
+      .def("acceleration", &evaluate<T, &Flow::acceleration>, "times"_a, "right"_a)
+      .def("plate_force", &force<T, &Friction::plate>, "times"_a, "right"_a)
+      .def("finger_force", &force<T, &Friction::finger>, "times"_a, "right"_a)
+      .def("stretch", &stretch<T, false>, "times"_a, "right"_a)
+      .def("stretch_rate", &stretch<T, true>, "times"_a, "right"_a)
+      .def("segments", &segments<T>, "Columns, one row a segment.")
+      .def("transient", &transient<T>, "duration"_a, "band"_a)
+      .def("ledger", &ledger<T>, "duration"_a)
+      .def_prop_ro("since", [](const CoreMotion<T>& c) { return result(c.outcome().since); })
+      .def_prop_ro("period", [](const CoreMotion<T>& c) { return result(c.outcome().period); });
+}
+
 }  // namespace
 
 void bind_batch(nb::module_& m);  // _batch.cpp
@@ -265,34 +314,33 @@ void bind_batch(nb::module_& m);  // _batch.cpp
 NB_MODULE(_core, m) {
   m.doc() = "The exact core. All quantities in SI units; nothing is checked here.";
 
-  nb::class_<CoreMotion>(m, "Motion", "A simulated motion and its segments.")
-      .def("position", &evaluate<&pd::Flow<double>::position>, "times"_a, "right"_a)
-      .def("velocity", &evaluate<&pd::Flow<double>::velocity>, "times"_a, "right"_a)
-      .def("acceleration", &evaluate<&pd::Flow<double>::acceleration>, "times"_a, "right"_a)
-      .def("plate_force", &force<&MotionView::Friction::plate>, "times"_a, "right"_a)
-      .def("finger_force", &force<&MotionView::Friction::finger>, "times"_a, "right"_a)
-      .def("stretch", &stretch<false>, "times"_a, "right"_a)
-      .def("stretch_rate", &stretch<true>, "times"_a, "right"_a)
-      .def("segments", &segments, "Columns, one row a segment.")
-      .def("transient", &transient, "duration"_a, "band"_a)
-      .def("ledger", &ledger, "duration"_a)
+  using Motion = CoreMotion<double>;
+  bind<double>(m, "Motion", "A simulated motion and its segments.")
       .def("certificate", &certificate, "duration"_a)
-      .def_prop_ro("duration", [](const CoreMotion& c) { return pd::duration_of(c.view()); })
-      .def_prop_ro("known_until", [](const CoreMotion& c) { return c.view().known_until(); })
-      .def_prop_ro("status",
-                   [](const CoreMotion& c) { return static_cast<int>(c.outcome().status); })
-      .def_prop_ro("end", [](const CoreMotion& c) { return static_cast<int>(c.outcome().end); })
-      .def_prop_ro("since", [](const CoreMotion& c) { return c.outcome().since; })
-      .def_prop_ro("period", [](const CoreMotion& c) { return c.outcome().period; })
-      .def_prop_ro("cycle_begin", [](const CoreMotion& c) { return c.outcome().cycle_begin; })
-      .def_prop_ro("until", [](const CoreMotion& c) { return c.outcome().until; });
+      .def_prop_ro("duration", [](const Motion& c) { return pd::duration_of(c.view()); })
+      .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
+      .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
+      .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })
+      .def_prop_ro("cycle_begin", [](const Motion& c) { return c.outcome().cycle_begin; })
+      .def_prop_ro("until", [](const Motion& c) { return c.outcome().until; });
+  bind<Dual>(m, "Derivative", "The derivatives of a motion along a direction of its inputs.");
 
-  m.def("simulate", &simulate, "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a,
-        "mouse_velocity"_a, "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a,
-        "duration"_a,
-        "Simulates one pin from its release until its ending is known or the duration is over. "
-        "Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, "
-        "value).");
+  m.def(
+      "simulate",
+      [](double mass, double stiffness, double damping, const ContactNumbers& plate,
+         const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
+         double displacement, double velocity, double skin_stretch, double duration) {
+        const Numbers numbers(mass, stiffness, damping, plate, finger, mouse_velocity, plate_load,
+                              displacement, velocity, skin_stretch, duration);
+        return run<double>(numbers, numbers);
+      },
+      "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
+      "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "duration"_a,
+      "Simulates one pin from its release until its ending is known or the duration is over. "
+      "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
+      "(time, value), one row for a constant.");
+  m.def("differentiate", &run<Dual>, "numbers"_a, "along"_a,
+        "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;

@@ -31,6 +31,12 @@ class Motion:
 
     def ledger(self, duration: float) -> dict: ...
 
+    @property
+    def since(self) -> float: ...
+
+    @property
+    def period(self) -> float: ...
+
     def certificate(self, duration: float) -> dict: ...
 
     @property
@@ -46,20 +52,49 @@ class Motion:
     def end(self) -> int: ...
 
     @property
-    def since(self) -> float: ...
-
-    @property
-    def period(self) -> float: ...
-
-    @property
     def cycle_begin(self) -> float: ...
 
     @property
     def until(self) -> float: ...
 
-def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float, float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float, float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, duration: float) -> Motion:
+class Derivative:
+    """The derivatives of a motion along a direction of its inputs."""
+
+    def position(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def velocity(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def acceleration(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def plate_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def finger_force(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def stretch(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def stretch_rate(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    def segments(self) -> dict:
+        """Columns, one row a segment."""
+
+    def transient(self, duration: float, band: float) -> dict: ...
+
+    def ledger(self, duration: float) -> dict: ...
+
+    @property
+    def since(self) -> float: ...
+
+    @property
+    def period(self) -> float: ...
+
+def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, duration: float) -> Motion:
     """
-    Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, regions of the curve), inputs rows (time, value).
+    Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows (time, value), one row for a constant.
+    """
+
+def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, float]) -> Derivative:
+    """
+    The derivatives of a motion along a direction; both as the arguments of simulate.
     """
 
 def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int) -> dict:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import islice
 from math import inf, isfinite, isinf, sqrt
 from operator import lt
 from typing import TYPE_CHECKING, cast, overload
@@ -79,27 +79,9 @@ class Contact:
         )
 
     @property
-    def regions(self) -> tuple[tuple[float, float, float, float], ...]:
-        """The curve as (from speed, to speed, force at from, slope), empty if Coulomb.
-
-        The last slope goes on; where it falls, until the force is zero: friction never pushes.
-        """
-        if self.curve is None or len(self.curve) == 1:
-            return ()
-        rows = list(self.curve)
-        slopes = [(f1 - f0) / (u1 - u0) for (u0, f0), (u1, f1) in pairwise(rows)]
-        speed, force = rows[-1]
-        if slopes[-1] < 0.0:
-            if force > 0.0:
-                slopes.append(slopes[-1])
-                rows.append((speed - force / slopes[-1], 0.0))
-            slopes.append(0.0)
-        else:
-            slopes.append(slopes[-1])
-        ends = [u for u, _ in rows[1:]] + [inf]
-        return tuple(
-            (u, end, f, slope) for (u, f), end, slope in zip(rows, ends, slopes, strict=True)
-        )
+    def curved(self) -> bool:
+        """Whether friction depends on the sliding speed."""
+        return self.curve is not None and len(self.curve) > 1
 
     @property
     def rigid(self) -> bool:
@@ -142,7 +124,7 @@ def check_increasing(
 
 def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
     """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
-    if finger.regions and not finger.rigid:
+    if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
         raise ValueError(refusal(label, required, f"{len(finger.curve or ())} rows", where))
 
@@ -151,7 +133,7 @@ def check_load(
     plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
 ) -> None:
     """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
-    if plate.regions and isinstance(load, Profile) and load.changes:
+    if plate.curved and isinstance(load, Profile) and load.changes:
         required = "constant for a plate with a friction curve"
         raise ValueError(refusal(label, required, "a profile that changes", where))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import inf, nan
@@ -20,9 +21,17 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.sensitivity import Sensitivity
+
 __all__ = ["Event", "Motion", "Segment", "simulate"]
 
 Side = Literal["left", "right"]
+Rows = Sequence[tuple[float, float]]
+ContactNumbers = tuple[float, float, float, Rows]
+CoreNumbers = tuple[
+    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
+]
+"""In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
 EventKind = Literal["stick", "slip", "cross"]
 ModeName = Literal["slip", "carried", "resting"]
@@ -77,27 +86,38 @@ class Motion:
         initial_velocity: x'(0), m/s.
         plate_load: factor on the plate's friction, constant or a `Profile`.
         skin_stretch: stretch of a compliant finger that gripped at the start, m; None: not given.
+        starts_with_plate: whether x'(0) is the plate's velocity because no other was given.
+        core_numbers: the same as the core takes them.
         duration: s; the one asked for, or long enough to see the ending.
     """
 
     def __init__(
         self,
-        core: _core.Motion,
+        numbers: CoreNumbers,
         drive: Drive,
         mouse_velocity: float | Profile,
         displacement: float,
         initial_velocity: float,
         plate_load: float | Profile,
         skin_stretch: float | None,
+        starts_with_plate: bool,
     ) -> None:
-        self._core = core
+        self.core_numbers = numbers
+        self._core = core = _core.simulate(*numbers)
         self.drive = drive
         self.mouse_velocity = mouse_velocity
         self.displacement = displacement
         self.initial_velocity = initial_velocity
         self.plate_load = plate_load
         self.skin_stretch = skin_stretch
+        self.starts_with_plate = starts_with_plate
         self.duration: float = core.duration
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what was simulated: the rest follows from it."""
+        given = (self.mouse_velocity, self.displacement, self.initial_velocity, self.plate_load)
+        start = (self.skin_stretch, self.starts_with_plate)
+        return Motion, (self.core_numbers, self.drive, *given, *start)
 
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""
@@ -343,6 +363,30 @@ class Motion:
             values["skin_stretch"] = self.skin_stretch
         return values | {"duration": self.duration}
 
+    def sensitivity(self, parameters: Sequence[str]) -> Sensitivity:
+        """Exact derivatives of the motion with respect to some of its parameters.
+
+        The motion is followed once more for each, in numbers that carry their derivative through
+        every event; nothing is differenced.
+
+        Args:
+            parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
+                `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
+                `plate_load` (all rows of a profile together), `displacement`, `velocity`,
+                `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
+                `mouse_velocity[2].value`, `plate_load[2].time`.
+
+        Returns:
+            The derivatives of position, velocity, events and all numbers, with NaN and the reason
+            where one does not exist.
+
+        Raises:
+            ValueError: a parameter is unknown, or this motion does not have it.
+        """
+        from pindrive.sensitivity import Sensitivity
+
+        return Sensitivity(self, parameters)
+
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
         groups = {
@@ -350,7 +394,7 @@ class Motion:
             "ending": {k: v for k, v in asdict(self.ending).items() if k not in ("kind", "cycle")},
             "energy": asdict(self.energy),
         }
-        return dict(_flattened(groups))
+        return dict(flattened(groups))
 
 
 def _times(t: ArrayLike) -> NDArray[np.float64]:
@@ -360,11 +404,12 @@ def _times(t: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None
 
 
-def _flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]:
+def flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]:
+    """The numbers of nested dictionaries, with dotted names."""
     rows = []
     for name, value in tree.items():
         if isinstance(value, dict):
-            rows += _flattened(value, f"{prefix}{name}.")
+            rows += flattened(value, f"{prefix}{name}.")
         else:
             rows.append((prefix + name, value))
     return rows
@@ -416,12 +461,12 @@ def simulate(
     stretch = nan if skin_stretch is None else check("skin_stretch", skin_stretch)
     if skin_stretch is not None:
         check_stretch(stretch, finger)
-    core = _core.simulate(
+    numbers = (
         drive.mass,
         drive.stiffness,
         drive.damping,
-        (plate.kinetic, plate.static_friction, plate.stiffness, plate.regions),
-        (finger.kinetic, finger.static_friction, finger.stiffness, finger.regions),
+        (plate.kinetic, plate.static_friction, plate.stiffness, plate.curve or ()),
+        (finger.kinetic, finger.static_friction, finger.stiffness, finger.curve or ()),
         v_plate,
         load,
         x,
@@ -429,10 +474,7 @@ def simulate(
         stretch,
         end,
     )
-    return Motion(core, drive, mouse_velocity, x, v, plate_load, skin_stretch)
-
-
-Rows = list[tuple[float, float]]
+    return Motion(numbers, drive, mouse_velocity, x, v, plate_load, skin_stretch, velocity is None)
 
 
 def _rows(given: float | Profile, name: str) -> Rows:
