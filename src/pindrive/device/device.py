@@ -75,7 +75,7 @@ class Device:
 
 def check_plate(plate: Contact, *, where: str = "", label: str = "plate") -> None:
     """Refuse a plate that no magnet can hold by."""
-    if plate.regions:
+    if plate.curved:
         required = "without a friction curve where a magnet changes its load"
         raise ValueError(
             refusal(label, required, f"a curve of {len(plate.curve or ())} rows", where)
