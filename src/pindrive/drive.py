@@ -254,7 +254,9 @@ class Profile:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(times) != len(values):
             raise ValueError(refusal("values", f"as many as times, {len(times)}", len(values)))
-        check_increasing(times, "s", label="times[{}]")
+        check_increasing(
+            times, "s", label="times[{}]", why=" (a jump in velocity would take an infinite force)"
+        )
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
 

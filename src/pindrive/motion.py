@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cached_property
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -12,6 +12,7 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
+from pindrive.events import Event, Segment, Table, events_of, segments_of
 from pindrive.quantities import QUANTITIES, check, refusal
 from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
 
@@ -33,47 +34,6 @@ CoreNumbers = tuple[
 ]
 """In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
-EventKind = Literal["stick", "slip", "cross"]
-ModeName = Literal["slip", "carried", "resting"]
-
-# In the order of `Kind` and `Slide` in model.hpp.
-_KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
-_EACH: tuple[Literal["plate", "finger", "both"], ...] = ("plate", "finger")
-_BOTH: tuple[Literal["plate", "finger", "both"], ...] = ("both",)
-_SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0}
-
-
-@dataclass(frozen=True, slots=True)
-class Event:
-    """A change of mode."""
-
-    time: float
-    """s"""
-    contact: Literal["plate", "finger", "both"]
-    """Where; `both` when plate and finger, at one velocity, do the same."""
-    kind: EventKind
-    """`stick`: sliding stopped and the contact holds; `slip`: it breaks loose; `cross`: sliding
-    reversed without sticking."""
-    position: float
-    """m"""
-    velocity: float
-    """m/s"""
-
-
-@dataclass(frozen=True, slots=True)
-class Segment:
-    """A stretch of time in one mode, where the motion is one closed form."""
-
-    begin: float
-    """s"""
-    end: float
-    """s; infinite for a mode that lasts for ever."""
-    mode: ModeName
-    """`slip`; `carried` (stuck to the moving plate); `resting` (stuck to what does not move)."""
-    plate: int | None
-    """Sign of the sliding velocity, 0 while stuck, None for a frictionless contact."""
-    finger: int | None
-    """The same; 0 also while compliant skin grips."""
 
 
 class Motion:
@@ -222,46 +182,18 @@ class Motion:
     # ---- what happened ---------------------------------------------------------------------------
 
     @cached_property
-    def _table(self) -> dict[str, NDArray[Any]]:
+    def _table(self) -> Table:
         return self._core.segments()
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
         """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
-        table = {name: column.tolist() for name, column in self._table.items()}
-        events = []
-        for i, kinds in enumerate(zip(table["plate_event"], table["finger_event"], strict=True)):
-            if any(kinds):
-                state = self._state_after(table, i)
-                causes = _BOTH if kinds[0] == kinds[1] else _EACH
-                events += [
-                    Event(table["end"][i], contact, _KINDS[kind - 1], *state)
-                    for contact, kind in zip(causes, kinds, strict=False)
-                    if kind
-                ]
-        return tuple(events)
-
-    def _state_after(self, table: dict[str, list[Any]], i: int) -> tuple[float, float]:
-        """Position and velocity at the end of segment i: where the next one starts."""
-        if i + 1 < len(table["end"]):
-            return table["position"][i + 1], table["velocity"][i + 1]
-        return self.position(table["end"][i]), self.velocity(table["end"][i])
+        return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
-        columns = ("begin", "end", "plate", "finger", "velocity", "acceleration")
-        rows = zip(*(self._table[name].tolist() for name in columns), strict=True)
-        return tuple(
-            Segment(
-                begin,
-                end,
-                _mode(plate, finger, velocity == acceleration == 0.0),
-                _SLIDING[plate],
-                _SLIDING[finger],
-            )
-            for begin, end, plate, finger, velocity, acceleration in rows
-        )
+        return segments_of(self._table)
 
     @cached_property
     def status(self) -> str:
@@ -493,9 +425,3 @@ def _rows(given: float | Profile, name: str) -> Rows:
 def _value_at_start(rows: Rows) -> float:
     times, values = zip(*rows, strict=True)
     return float(np.interp(0.0, times, values))
-
-
-def _mode(plate: int, finger: int, still: bool) -> ModeName:
-    if 0 not in (plate, finger):
-        return "slip"
-    return "resting" if still or finger == 0 else "carried"
