@@ -124,7 +124,8 @@ def test_a_curve_alone_says_the_kinetic_friction() -> None:
         (lambda: Profile([0, 1], [0]), "values must be as many as times, 2, got 1"),
         (
             lambda: Profile([0, 0], [0, 1]),
-            "one before, 0.0 s (a jump in velocity would take an infinite force)",
+            "times[1] must be greater than the one before, 0.0 s (a jump in velocity would take an "
+            "infinite force)",
         ),
         (lambda: Profile([0, math.nan], [0, 1]), "times[1] must be finite, got nan s"),
         (lambda: Profile([0, 1], [0, math.inf]), "values[1] must be finite, got inf"),
