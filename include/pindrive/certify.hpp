@@ -1,11 +1,16 @@
 /// Checks a finished motion against the laws it must obey, without using the solver: no mode is
 /// chosen here and no event looked for; the motion is evaluated and held against MODEL.md §2–§4.
+///
+/// Each segment is walked once. At Gauss nodes the laws are held against the state, and sums over
+/// the nodes give the integrals; between the nodes a bound proves that no guard dips unseen.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
-#include "pindrive/energy.hpp"
+#include "pindrive/guard.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/quadrature.hpp"
 
@@ -23,7 +28,7 @@ struct Certificate {
   T sticking{0};      ///< a stuck contact does not slide
   T continuity{0};    ///< x and x' do not jump, nor the skin but where its grip breaks
   T transitions{0};   ///< a contact breaks loose or crosses only where it cannot hold
-  T energy{0};        ///< the ledger adds up
+  T energy{0};        ///< what goes in, is stored and is dissipated adds up
   T dissipation{0};   ///< friction and damper take energy, never give
 
   T worst() const {
@@ -39,40 +44,123 @@ class Certifier {
       : motion_(motion), drive_(motion.drive()), duration_(duration) {}
 
   Certificate<T> certify() {
-    for (const Segment<T>& segment : motion_) scales(segment);
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_) break;
-      if (segment.end > segment.begin) laws(segment);
-      derivatives(segment);
-      if (&segment + 1 != motion_.end()) junction(segment, *(&segment + 1));
+      scales(segment);
     }
-    const Ledger<T> ledger = energy_ledger(motion_, duration_);
-    const T energy = ledger.scale();
-    worst(result_.energy, ledger.residual(), energy);
-    for (const T part :
-         {ledger.damper_dissipated, ledger.plate_dissipated, ledger.finger_dissipated})
-      worst(result_.dissipation, std::min(part, T(0)), energy);
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin > duration_) break;
+      const Stage stage = stage_of(segment);
+      if (segment.end > segment.begin) walk(stage);
+      if (segment.end > duration_) break;
+      const Segment<T>* next = &segment + 1;
+      if (next != motion_.end())
+        worst(result_.continuity, segment.end - next->begin, segment.end);
+      else if (motion_.outcome().cycles())
+        next = motion_.locate(motion_.outcome().cycle_begin, Side::right).segment;
+      else
+        break;
+      junction(stage, stage_of(*next));
+    }
+    const T energy = std::max({stored_, input_, dissipated_});
+    worst(result_.energy, unaccounted_, energy);
+    worst(result_.dissipation, gained_, energy);
     return result_;
   }
 
  private:
-  /// The motion at an instant, and the inputs as they were given.
-  struct State {
-    T x, v, a, plate_force, finger_force;
-    Line<T> plate_velocity;
-    T load;
+  /// How deep, as a part of the largest, a guard may dip between two nodes unseen; and how many
+  /// panels are walked at each end of a segment before what lies between is leapt over.
+  static constexpr T unseen = T(1e-10);
+  static constexpr int walked = 2048;
+
+  /// A guard, and the law that it breaks where it is negative.
+  struct Watch {
+    Guard<T> guard;
+    T Certificate<T>::* law;
+    T scale;
   };
-  State state(const Segment<T>& segment, T tau) const {
-    const Transition<T> moved = segment.flow.oscillator.after(tau);
-    const Line<T> v_plate = motion_.inputs().mouse_velocity.from(segment.begin);
-    const auto friction = motion_.friction(segment, tau);
-    return {segment.flow.position.at(moved, tau),
-            segment.flow.velocity.at(moved, tau),
-            segment.flow.acceleration.at(moved, tau),
-            friction.plate,
-            friction.finger,
-            {v_plate.at(tau), v_plate.rate},
-            motion_.inputs().plate_load.from(segment.begin).at(tau)};
+
+  /// A segment with the inputs as they were given, and its guards.
+  struct Stage {
+    const Segment<T>& segment;
+    Line<T> plate_velocity, load;
+    T span;
+    bool waves;
+    Path<T> x_rate, v_rate, finger_rate;
+    std::array<Watch, 4> watches;
+    int count{0};
+  };
+
+  /// The motion at an instant.
+  struct State {
+    T tau;
+    Transition<T> moved;
+    T x, v, a, plate_force, finger_force;
+  };
+
+  Stage stage_of(const Segment<T>& segment) const {
+    const Flow<T>& flow = segment.flow;
+    Stage stage{segment,
+                motion_.inputs().mouse_velocity.from(segment.begin),
+                motion_.inputs().plate_load.from(segment.begin),
+                std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
+                flow.position.oscillates() || flow.velocity.oscillates() ||
+                    flow.acceleration.oscillates() || segment.plate_force.oscillates() ||
+                    segment.finger_force.oscillates(),
+                flow.position.derivative(flow.oscillator),
+                flow.velocity.derivative(flow.oscillator),
+                segment.finger_force.derivative(flow.oscillator),
+                {}};
+    const Mode mode = segment.mode;
+    const Line<T> at_plate{drive_.plate.static_limit * stage.load.value,
+                           drive_.plate.static_limit * stage.load.rate};
+    const Line<T> at_finger{drive_.finger.static_limit, T(0)};
+    const auto watch = [&](const Path<T>& path, T Certificate<T>::* law, T scale) {
+      stage.watches[stage.count++] = {{flow.oscillator, path}, law, scale};
+    };
+    const auto sliding = [&](const Contact<T>& contact, Slide slide, int index, Line<T> surface) {
+      if (!slides(slide)) return;
+      const Region<T> region =
+          contact.region(std::clamp(index, 0, std::max(contact.regions - 1, 0)));
+      const Path<T> level = surface;
+      Path<T> above = T(sign(slide)) * (flow.velocity + T(-1) * level), below = T(-1) * above;
+      above.start -= region.from;
+      below.start += region.to;
+      watch(above, &Certificate<T>::sliding_sign, v_scale_);
+      if (region.to < never) watch(below, &Certificate<T>::sliding_sign, v_scale_);
+    };
+    const auto holding = [&](const Path<T>& force, const Path<T>& limit) {
+      watch(limit + force, &Certificate<T>::force_bound, force_scale_);
+      watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
+    };
+    sliding(drive_.plate, mode.plate, mode.plate_region, stage.plate_velocity);
+    sliding(drive_.finger, mode.finger, mode.finger_region, {});
+    if (both_stuck(mode)) {
+      holding(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
+    } else {
+      if (mode.plate == Slide::stuck) holding(segment.plate_force, at_plate);
+      if (mode.finger == Slide::stuck || mode.finger == Slide::gripping)
+        holding(segment.finger_force, at_finger);
+    }
+    return stage;
+  }
+
+  static bool both_stuck(Mode mode) {
+    return mode.plate == Slide::stuck && mode.finger == Slide::stuck;
+  }
+
+  State state(const Stage& stage, T tau) const {
+    const Segment<T>& segment = stage.segment;
+    const Flow<T>& flow = segment.flow;
+    const auto moved = stage.waves ? flow.oscillator.after(tau) : Transition<T>{};
+    return {tau,
+            moved,
+            flow.position.at(moved, tau),
+            flow.velocity.at(moved, tau),
+            flow.acceleration.at(moved, tau),
+            segment.plate_force.at(moved, tau),
+            segment.finger_force.at(moved, tau)};
   }
 
   /// Kinetic friction at a sliding speed, from the rows of the contact's curve.
@@ -84,135 +172,226 @@ class Certifier {
     return force;
   }
 
-  T length(const Segment<T>& segment) const {
-    return std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin;
+  bool soft() const { return drive_.finger.present() && !drive_.finger.rigid(); }
+
+  T energy(const State& s) const {
+    const T skin = soft() ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness) : T(0);
+    return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin;
   }
 
-  /// Calls visit(τ) at both ends, some times in each half-wave, and closely after the start.
-  template <class Visitor>
-  void samples(const Segment<T>& segment, Visitor&& visit) const {
-    const T span = length(segment);
-    const T waves =
-        segment.flow.oscillator.oscillates() ? segment.flow.oscillator.omega() * span : T(0);
-    const int count = 24 + static_cast<int>(std::min(waves * 3, T(168)));
-    for (int i = 0; i <= count; ++i) visit(i == count ? span : span * (T(i) / count));
-    T tau = span / count;
-    for (int i = 0; i < 6; ++i) visit(tau /= 8);
-  }
-
-  static void worst(T& residual, T error, T scale) {
+  /// Keeps the larger of what was found and |error|; infinity for what is not a number.
+  static void raise(T& most, T error) {
     using std::abs;
-    if (!(error == 0)) residual = std::max(residual, scale > 0 ? abs(error) / scale : abs(error));
-    if (!std::isfinite(error)) residual = std::numeric_limits<T>::infinity();
+    const T size = abs(error);
+    if (!(size <= most)) most = size < never ? size : never;
+  }
+  static void worst(T& residual, T error, T scale) {
+    raise(residual, scale > 0 ? error / scale : error);
   }
 
+  /// The largest displacement, velocity and force where segments begin and end.
   void scales(const Segment<T>& segment) {
     using std::abs;
     using std::sqrt;
-    samples(segment, [&](T tau) {
-      const State s = state(segment, tau);
-      x_scale_ = std::max(x_scale_, abs(s.x));
-      v_scale_ = std::max({v_scale_, abs(s.v), abs(s.plate_velocity.value)});
+    const Stage stage = stage_of(segment);
+    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
+    for (const T tau : {T(0), stage.span}) {
+      const State s = state(stage, tau);
+      x_scale_ = std::max(
+          {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
       force_scale_ =
           std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
                     abs(drive_.stiffness * s.x), abs(s.plate_force), abs(s.finger_force)});
-    });
-    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
-    x_scale_ = std::max(x_scale_, v_scale_ / omega0);
-    v_scale_ = std::max(v_scale_, x_scale_ * omega0);
-  }
-
-  void laws(const Segment<T>& segment) {
-    using std::abs;
-    const auto contact = [&](const Contact<T>& law, Slide slide, T u, T force, T load) {
-      const int side = sign(slide);
-      if (slides(slide)) {
-        worst(result_.sliding_sign, std::min(side * u, T(0)), v_scale_);
-        worst(result_.friction_law, force + side * load * kinetic(law, abs(u)), force_scale_);
-      } else if (slide != Slide::absent) {
-        worst(result_.force_bound, std::max(abs(force) - law.static_limit * load, T(0)),
-              force_scale_);
-        if (slide == Slide::stuck) worst(result_.sticking, u, v_scale_);
-      }
-    };
-    samples(segment, [&](T tau) {
-      const State s = state(segment, tau);
-      worst(result_.motion_law,
-            drive_.mass * (s.a - s.plate_velocity.rate) + drive_.damping * s.v +
-                drive_.stiffness * s.x - s.plate_force - s.finger_force,
-            force_scale_);
-      contact(drive_.plate, segment.mode.plate, s.v - s.plate_velocity.value, s.plate_force,
-              s.load);
-      contact(drive_.finger, segment.mode.finger, s.v, s.finger_force, T(1));
-    });
-  }
-
-  /// x and v against the integrals of v and a, panel by panel; gripping skin against x.
-  void derivatives(const Segment<T>& segment) {
-    using std::sqrt;
-    const T span = length(segment);
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    const T fastest = sqrt(oscillator.omega0_squared()) + std::abs(oscillator.alpha());
-    T low{0};
-    for (int panel = 0; panel < 4 && low < span; ++panel) {
-      const T high = std::min(low + 1 / fastest, span);
-      const State from = state(segment, low), to = state(segment, high);
-      const T dx = gauss<T>([&](T tau) { return state(segment, tau).v; }, low, high);
-      const T dv = gauss<T>([&](T tau) { return state(segment, tau).a; }, low, high);
-      worst(result_.kinematics, to.x - from.x - dx, x_scale_);
-      worst(result_.kinematics, to.v - from.v - dv, v_scale_);
-      if (segment.mode.finger == Slide::gripping)
-        worst(result_.kinematics,
-              (to.finger_force - from.finger_force) / drive_.finger.stiffness + dx, x_scale_);
-      low = panel < 2 ? high : high + span / 3;
     }
+    v_scale_ = x_scale_ * omega0;
   }
 
-  void junction(const Segment<T>& before, const Segment<T>& after) {
-    if (before.end > duration_) return;
-    const State left = state(before, before.end - before.begin), right = state(after, T(0));
+  // ---- along a segment ---------------------------------------------------------------------------
+
+  /// The largest error of each law in a segment, in its own unit.
+  struct Errors {
+    T law{0}, velocity{0}, acceleration{0}, friction{0}, sticking{0};
+  };
+
+  /// Powers, and the sums of them and of v and a over a panel.
+  struct Sums {
+    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0};
+  };
+
+  void walk(const Stage& stage) {
+    using std::sqrt;
+    const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
+    const T alpha = oscillator.alpha();
+    const T fastest = oscillator.oscillates() ? sqrt(oscillator.omega0_squared())
+                                              : std::abs(alpha) + oscillator.omega();
+    const T quick = 8 / fastest;  // so far the rule is exact to rounding, for products too
+    Errors errors;
+    State from = state(stage, T(0));
+    laws(stage, from, errors);
+    T low{0};
+    for (int panels = 0; low < stage.span; ++panels) {
+      const bool grows = !oscillator.oscillates() || -alpha * low > 40;
+      const T length = !stage.waves ? stage.span : grows ? std::max(quick, low / 2) : quick;
+      const bool leaps = panels == walked && stage.span - low > (walked + 1) * length;
+      const T high = leaps ? stage.span - walked * length : std::min(low + length, stage.span);
+      const State to = state(stage, high);
+      if (leaps)
+        leap(stage, from, to);
+      else
+        panel(stage, from, to, errors);
+      from = to;
+      low = high;
+    }
+    worst(result_.motion_law, errors.law, force_scale_);
+    // In the velocity of a mode, an error of the position counts by its fastest rate.
+    worst(result_.kinematics, errors.velocity, std::max(v_scale_, x_scale_ * fastest));
+    worst(result_.kinematics, errors.acceleration * drive_.mass, force_scale_);
+    worst(result_.friction_law, errors.friction, force_scale_);
+    worst(result_.sticking, errors.sticking, v_scale_);
+  }
+
+  void panel(const Stage& stage, const State& from, const State& to, Errors& errors) {
+    const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
+    std::array<typename Guard<T>::Flatness, 4> flatness;
+    for (int i = 0; i < stage.count; ++i)
+      flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moved, to.tau - from.tau);
+    State before = from;
+    const auto follow = [&](const State& now) {
+      for (int i = 0; i < stage.count; ++i) {
+        const auto& [guard, law, scale] = stage.watches[i];
+        const T lowest = guard.lowest(oscillator, guard.at(before.moved, before.tau),
+                                      guard.at(now.moved, now.tau), flatness[i], unseen * scale);
+        if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
+      }
+      laws(stage, now, errors);
+      before = now;
+    };
+    Sums sums;
+    gauss_nodes(from.tau, to.tau, [&](T tau, T weight) {
+      const State now = state(stage, tau);
+      follow(now);
+      gather(stage, now, weight, sums);
+    });
+    follow(to);
+    worst(result_.kinematics, to.x - from.x - sums.v, x_scale_);
+    worst(result_.kinematics, to.v - from.v - sums.a, v_scale_);
+    if (stage.segment.mode.finger == Slide::gripping)
+      worst(result_.kinematics,
+            (to.finger_force - from.finger_force) / drive_.finger.stiffness + sums.v, x_scale_);
+    account(energy(from), energy(to), sums);
+  }
+
+  /// The same over the middle of a very long oscillation, in closed form and without guards.
+  void leap(const Stage& stage, const State& from, const State& to) {
+    const Segment<T>& segment = stage.segment;
+    const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
+    const Path<T> v_plate = stage.plate_velocity;
+    const auto over = [&](const Path<T>& p, const Path<T>& q) {
+      return product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
+    };
+    const Path<T> inertia = Line<T>{drive_.mass * stage.plate_velocity.rate, T(0)};
+    Sums sums;
+    sums.input = over(plate, v_plate) + over(inertia, v);
+    sums.damper = drive_.damping * over(v, v);
+    sums.plate = -over(plate, v + T(-1) * v_plate);
+    if (segment.mode.finger != Slide::gripping) sums.finger = -over(segment.finger_force, v);
+    account(energy(from), energy(to), sums);
+  }
+
+  void laws(const Stage& stage, const State& s, Errors& errors) {
+    using std::abs;
+    const Mode mode = stage.segment.mode;
+    raise(errors.velocity, stage.x_rate.at(s.moved, s.tau) - s.v);
+    raise(errors.acceleration, stage.v_rate.at(s.moved, s.tau) - s.a);
+    if (mode.finger == Slide::gripping)
+      raise(errors.velocity, stage.finger_rate.at(s.moved, s.tau) / drive_.finger.stiffness + s.v);
+    raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
+                          drive_.stiffness * s.x - s.plate_force - s.finger_force);
+    const auto contact = [&](const Contact<T>& law, Slide slide, T u, T force, T load) {
+      if (slides(slide))
+        raise(errors.friction, force + sign(slide) * load * kinetic(law, abs(u)));
+      else if (slide == Slide::stuck)
+        raise(errors.sticking, u);
+    };
+    contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
+            stage.load.at(s.tau));
+    contact(drive_.finger, mode.finger, s.v, s.finger_force, T(1));
+  }
+
+  void gather(const Stage& stage, const State& s, T weight, Sums& sums) const {
+    const T v_plate = stage.plate_velocity.at(s.tau);
+    sums.v += weight * s.v;
+    sums.a += weight * s.a;
+    sums.input +=
+        weight * (s.plate_force * v_plate + drive_.mass * stage.plate_velocity.rate * s.v);
+    sums.damper += weight * drive_.damping * s.v * s.v;
+    sums.plate -= weight * s.plate_force * (s.v - v_plate);
+    if (stage.segment.mode.finger != Slide::gripping) sums.finger -= weight * s.finger_force * s.v;
+  }
+
+  void account(T before, T after, const Sums& sums) {
+    using std::abs;
+    const T loss = sums.damper + sums.plate + sums.finger;
+    balance_ += after - before - sums.input + loss;
+    raise(unaccounted_, balance_);
+    stored_ = std::max({stored_, before, after});
+    input_ += abs(sums.input);
+    dissipated_ += abs(loss);
+    for (const T part : {sums.damper, sums.plate, sums.finger})
+      raise(gained_, std::min(part, T(0)));
+  }
+
+  // ---- from segment to segment -------------------------------------------------------------------
+
+  void junction(const Stage& before, const Stage& after) {
+    const State left = state(before, before.span), right = state(after, T(0));
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
-    worst(result_.continuity, before.end - after.begin, before.end);
-    const Event event = before.event;
-    const bool soft = drive_.finger.present() && !drive_.finger.rigid();
-    const bool skin_slips = soft && event.finger == Kind::slip;
-    if (soft && !skin_slips)
+    const Event event = before.segment.event;
+    const bool skin_slips = soft() && event.finger == Kind::slip;
+    if (soft() && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
-    if (skin_slips)
+    if (skin_slips) {
       worst(result_.transitions, drive_.finger.static_limit - std::abs(left.finger_force),
             force_scale_);
+      raise(gained_, std::min(energy(left) - energy(right), T(0)));
+    }
     const auto let_go = [](Kind kind) { return kind == Kind::slip || kind == Kind::cross; };
-    cannot_hold(let_go(event.plate), let_go(event.finger) && !soft, right, after.mode);
+    cannot_hold(let_go(event.plate), let_go(event.finger) && !soft(), right, after);
   }
 
   /// What contacts that let go would have had to carry to stay, against what they could.
-  void cannot_hold(bool plate, bool finger, const State& now, Mode after) {
+  void cannot_hold(bool plate, bool finger, const State& now, const Stage& after) {
     if (!plate && !finger) return;
     using std::abs;
+    const Line<T> v_plate = after.plate_velocity;
     const T still = T(1e-12) * v_scale_;
     const bool meets_both =
-        abs(now.v) <= still && abs(now.plate_velocity.value) <= still && drive_.finger.rigid();
-    if (meets_both && now.plate_velocity.rate != 0) return;  // the surfaces part
-    const T follows = plate ? now.plate_velocity.rate : T(0);
+        abs(now.v) <= still && abs(v_plate.value) <= still && drive_.finger.rigid();
+    if (meets_both && v_plate.rate != 0) return;  // the surfaces part
+    const T follows = plate ? v_plate.rate : T(0);
     T others{0}, limit{0};
     if (plate)
-      limit += drive_.plate.static_limit * now.load;
-    else if (after.plate != Slide::absent)
+      limit += drive_.plate.static_limit * after.load.value;
+    else
       others += now.plate_force;
     if (finger)
       limit += drive_.finger.static_limit;
-    else if (after.finger != Slide::absent)
+    else
       others += now.finger_force;
-    const T held = drive_.mass * (follows - now.plate_velocity.rate) + drive_.damping * now.v +
+    const T held = drive_.mass * (follows - v_plate.rate) + drive_.damping * now.v +
                    drive_.stiffness * now.x - others;
     worst(result_.transitions, std::max(limit - abs(held), T(0)), force_scale_);
   }
+
+  static constexpr T never = std::numeric_limits<T>::infinity();
 
   Motion<T> motion_;
   Drive<T> drive_;
   T duration_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
+  T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
+  T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
   Certificate<T> result_{};
 };
 

@@ -9,9 +9,9 @@
 
 namespace pindrive {
 
-/// ∫ f from low to high by the 16-point Gauss–Legendre rule.
-template <class T, class Function>
-T gauss(Function&& f, T low, T high) {
+/// Calls visit(τ, weight) at the nodes of the 16-point Gauss–Legendre rule, in order of τ.
+template <class T, class Visitor>
+void gauss_nodes(T low, T high, Visitor&& visit) {
   static constexpr std::array<long double, 8> nodes{
       0.0950125098376374401853193354249581L, 0.2816035507792589132304605014604961L,
       0.4580167776572273863424194429835775L, 0.6178762444026437484466717640487910L,
@@ -23,10 +23,18 @@ T gauss(Function&& f, T low, T high) {
       0.1246289712555338720524762821920164L, 0.0951585116824927848099251076022462L,
       0.0622535239386478928628438369943776L, 0.0271524594117540948517805724560181L};
   const T middle = (low + high) / 2, half = (high - low) / 2;
-  T sum{0};
+  for (std::size_t i = nodes.size(); i-- > 0;)
+    visit(middle - half * T(nodes[i]), half * T(weights[i]));
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    sum += T(weights[i]) * (f(middle - half * T(nodes[i])) + f(middle + half * T(nodes[i])));
-  return sum * half;
+    visit(middle + half * T(nodes[i]), half * T(weights[i]));
+}
+
+/// ∫ f from low to high by that rule.
+template <class T, class Function>
+T gauss(Function&& f, T low, T high) {
+  T sum{0};
+  gauss_nodes(low, high, [&](T tau, T weight) { sum += weight * f(tau); });
+  return sum;
 }
 
 /// ∫ f from 0 to `to` for a function of a mode: panels that resolve its oscillation and, where there

@@ -1,290 +1,206 @@
-// fuzz COUNT SEED      draws drives and inputs over many decades, runs each and judges it by certify
-// fuzz --replay FILE…  judges the drives written in these files
+// Draws drives and inputs over many decades, runs each and judges it by the laws of motion alone.
 //
-// A motion that fails is written to fuzz-SEED-CASE.txt, to be replayed and kept in tests/hard.
+//   fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]
+//   fuzz --replay FILE…
+//
+// The cases NUMBER … NUMBER + COUNT − 1 of a seed; the result does not depend on the threads. The
+// log is brought up to date once a minute, and a run goes on from where its log ends. A motion that
+// fails is written to fuzz-SEED-CASE.txt, to be replayed and kept in tests/hard.
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
+#include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
-#include <random>
-#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include "pindrive/certify.hpp"
-#include "pindrive/simulate.hpp"
-
-namespace pd = pindrive;
+#include "draw.hpp"
+#include "judge.hpp"
+#include "totals.hpp"
 
 namespace {
 
-constexpr double largest_residual = 1e-9;
-constexpr double never = std::numeric_limits<double>::infinity();
+using namespace fuzz;
 
-struct Rows {
-  std::vector<double> at, value;
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Options {
+  Range range;
+  int threads{1};
+  std::string log;
 };
 
-/// A drive and its inputs, owned.
-struct Case {
-  double mass{}, stiffness{}, damping{};
-  std::array<double, 2> limit{};    ///< static friction of plate and finger
-  std::array<Rows, 2> curve;        ///< kinetic friction over speed; one row is Coulomb
-  double skin{never};               ///< stiffness of the finger
-  Rows mouse_velocity, plate_load;  ///< over time; one row is a constant
-  double displacement{}, velocity{}, duration{};
-};
+// ---- one stretch of cases ------------------------------------------------------------------------
 
-void write(std::ostream& out, const Case& c) {
-  const auto rows = [&](const char* name, const Rows& r) {
-    out << name << ' ' << r.at.size();
-    for (std::size_t i = 0; i < r.at.size(); ++i) out << "  " << r.at[i] << ' ' << r.value[i];
-    out << '\n';
-  };
-  out << std::setprecision(17) << "drive " << c.mass << ' ' << c.stiffness << ' ' << c.damping
-      << '\n';
-  out << "static " << c.limit[0] << ' ' << c.limit[1] << '\n';
-  rows("plate", c.curve[0]);
-  rows("finger", c.curve[1]);
-  out << "skin " << (std::isinf(c.skin) ? 0.0 : c.skin) << '\n';
-  rows("mouse_velocity", c.mouse_velocity);
-  rows("plate_load", c.plate_load);
-  out << "start " << c.displacement << ' ' << c.velocity << ' ' << c.duration << '\n';
+Verdict judged(const Range& range, long long number, std::vector<pd::Segment<double>>& segments) {
+  const Case c =
+      Draw(static_cast<std::uint64_t>(range.seed), static_cast<std::uint64_t>(number)).next();
+  return judge(c, number % 64 == 0, segments);
 }
 
-bool read(std::istream& in, Case& c) {
-  std::string name;
-  const auto rows = [&](Rows& r) {
-    std::size_t count = 0;
-    in >> name >> count;
-    r.at.resize(count);
-    r.value.resize(count);
-    for (std::size_t i = 0; i < count; ++i) in >> r.at[i] >> r.value[i];
+/// The cases begin … end − 1, taken by the threads a few at a time.
+Totals stretch(const Options& options, long long begin, long long end) {
+  constexpr long long few = 64;
+  std::atomic<long long> next{begin};
+  std::vector<Totals> found(static_cast<std::size_t>(options.threads));
+  const auto work = [&](Totals& totals) {
+    std::vector<pd::Segment<double>> segments;
+    for (;;) {
+      const long long first = next.fetch_add(few);
+      if (first >= end || interrupted != 0) return;
+      for (long long i = first; i < std::min(first + few, end); ++i)
+        totals.add(i, judged(options.range, i, segments));
+    }
   };
-  in >> name >> c.mass >> c.stiffness >> c.damping >> name >> c.limit[0] >> c.limit[1];
-  rows(c.curve[0]);
-  rows(c.curve[1]);
-  in >> name >> c.skin;
-  if (c.skin == 0) c.skin = never;
-  rows(c.mouse_velocity);
-  rows(c.plate_load);
-  in >> name >> c.displacement >> c.velocity >> c.duration;
-  return static_cast<bool>(in);
-}
-
-// ---- drawing -------------------------------------------------------------------------------------
-
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
-
-  Case next() {
-    Case c;
-    round_ = chance(0.25);
-    const double omega = decade(0.5, 3.5), length = decade(-4, -2);
-    c.mass = decade(-4, -1);
-    c.stiffness = c.mass * omega * omega;
-    const double critical = 2 * c.mass * omega;
-    const double pick = uniform(0, 1);
-    c.damping = pick < 0.15   ? 0
-                : pick < 0.7  ? critical * decade(-4, 0)
-                : pick < 0.85 ? critical * (1 + (chance(0.5) ? 1 : -1) * decade(-15, -2))
-                              : critical * decade(0, 1.7);
-    force_ = c.stiffness * length;
-    speed_ = omega * length * decade(-1.5, 0.5);
-    period_ = 6.3 / omega;
-    for (int i = 0; i < 2; ++i) {
-      c.curve[i] = curve();
-      c.limit[i] = c.curve[i].value[0] * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
-    }
-    const bool coulomb = c.curve[1].at.size() == 1 && c.curve[1].value[0] > 0;
-    if (coulomb && chance(0.6)) c.skin = c.stiffness * decade(0, 6);
-    double last = 0;
-    c.mouse_velocity =
-        profile([&] { return chance(0.3) ? 0 : tidy(speed_ * uniform(-1, 1)); }, last);
-    c.plate_load = {{0}, {1}};
-    if (c.curve[0].at.size() == 1 && chance(0.4))
-      c.plate_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last);
-    c.displacement = chance(0.1) ? 0 : tidy(length * uniform(-1, 1));
-    c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]
-                 : chance(0.3) ? 0
-                               : speed_ * uniform(-2, 2);
-    c.duration = last + period_ * uniform(0.5, 12);
-    return c;
-  }
-
- private:
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random_);
-  }
-  bool chance(double p) { return uniform(0, 1) < p; }
-  double decade(double low, double high) { return tidy(std::pow(10, uniform(low, high))); }
-  /// Now and then few digits, so that things coincide.
-  double tidy(double value) const {
-    if (!round_ || value == 0) return value;
-    const double unit = std::pow(10, std::floor(std::log10(std::abs(value))));
-    return std::round(value / unit) * unit;
-  }
-
-  Rows curve() {
-    Rows rows{{0}, {chance(0.15) ? 0 : force_ * decade(-2.5, 0.3)}};
-    if (chance(0.65)) return rows;
-    const int more = static_cast<int>(uniform(1, 4));
-    for (int i = 0; i < more; ++i) {
-      rows.at.push_back(rows.at.back() + tidy(speed_ * decade(-1.5, 0.3)));
-      rows.value.push_back(tidy(force_ * decade(-2.5, 0)));
-    }
-    return rows;
-  }
-
-  template <class Value>
-  Rows profile(Value&& value, double& last) {
-    Rows rows{{0}, {value()}};
-    if (chance(0.4)) return rows;
-    const int more = static_cast<int>(uniform(1, 6));
-    for (int i = 0; i < more; ++i) {
-      rows.at.push_back(rows.at.back() + tidy(period_ * decade(-1.5, 0.7)));
-      rows.value.push_back(chance(0.25) ? rows.value.back() : value());
-    }
-    last = std::max(last, rows.at.back());
-    return rows;
-  }
-
-  std::mt19937_64 random_;
-  bool round_{false};
-  double force_{}, speed_{}, period_{};
-};
-
-// ---- judging -------------------------------------------------------------------------------------
-
-/// The rows of a curve as regions; the last slope goes on until the force is zero.
-std::vector<pd::Region<double>> regions(const Rows& rows) {
-  std::vector<pd::Region<double>> all;
-  if (rows.at.size() == 1) return all;
-  double slope = 0;
-  for (std::size_t i = 0; i + 1 < rows.at.size(); ++i) {
-    slope = (rows.value[i + 1] - rows.value[i]) / (rows.at[i + 1] - rows.at[i]);
-    all.push_back({rows.at[i], rows.at[i + 1], rows.value[i], slope});
-  }
-  double from = rows.at.back(), force = rows.value.back();
-  if (slope < 0) {
-    if (force > 0) {
-      const double zero = from - force / slope;
-      all.push_back({from, zero, force, slope});
-      from = zero;
-    }
-    force = slope = 0;
-  }
-  all.push_back({from, never, force, slope});
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < found.size(); ++i) others.emplace_back(work, std::ref(found[i]));
+  work(found[0]);
+  for (std::thread& thread : others) thread.join();
+  Totals all;
+  for (const Totals& part : found) all.add(part);
   return all;
 }
 
-struct Verdict {
-  pd::Certificate<double> certificate;
-  pd::Status status{};
-  std::size_t segments{};
+/// Writes a case that failed to a file; the first twenty of a run.
+void report(const Options& options, const Totals& before, const Totals& found) {
+  std::size_t count = before.failed.size();
+  std::vector<pd::Segment<double>> segments;
+  for (const long long number : found.failed) {
+    if (++count > 20) return;
+    const std::string name =
+        "fuzz-" + std::to_string(options.range.seed) + "-" + std::to_string(number) + ".txt";
+    std::ofstream file(name);
+    write(file,
+          Draw(static_cast<std::uint64_t>(options.range.seed), static_cast<std::uint64_t>(number))
+              .next());
+    print(name.c_str(), judged(options.range, number, segments));
+    std::fflush(stdout);
+  }
+}
 
-  bool good() const { return status == pd::Status::ok && certificate.worst() <= largest_residual; }
-};
+// ---- a run ---------------------------------------------------------------------------------------
 
-Verdict judge(const Case& c, std::vector<pd::Segment<double>>& segments) {
-  const auto plate = regions(c.curve[0]), finger = regions(c.curve[1]);
-  const pd::Drive<double> drive{
-      c.mass,
-      c.stiffness,
-      c.damping,
-      {c.curve[0].value[0], c.limit[0], never, plate.data(), static_cast<int>(plate.size())},
-      {c.curve[1].value[0], c.limit[1], c.skin, finger.data(), static_cast<int>(finger.size())}};
-  const auto profile = [](const Rows& rows) {
-    return rows.at.size() == 1
-               ? pd::Profile<double>(rows.value[0])
-               : pd::Profile<double>(rows.at.data(), rows.value.data(), rows.at.size());
+void progress(const Options& options, const Totals& totals, long long done, double seconds) {
+  const double rate = static_cast<double>(done) / seconds;
+  const auto left = static_cast<double>(options.range.count - totals.drives);
+  std::fprintf(stderr, "%lld of %lld drives, %.0f a second, %.0f min left, %zu failed\n",
+               totals.drives, options.range.count, rate, left / rate / 60, totals.failed.size());
+}
+
+/// Takes up the log of an earlier run, if there is one; false if it is not of these cases.
+bool take_up(const Options& options, Totals& totals) {
+  std::ifstream in(options.log);
+  if (options.log.empty() || !in) return true;
+  Range range;
+  if (read(in, range, totals) && range == options.range) return true;
+  std::fprintf(stderr, "fuzz: %s is not the log of seed %lld from %lld\n", options.log.c_str(),
+               options.range.seed, options.range.from);
+  return false;
+}
+
+int run(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
   };
-  const pd::Inputs<double> inputs{profile(c.mouse_velocity), c.displacement, c.velocity, c.duration,
-                                  profile(c.plate_load)};
-  segments.clear();
-  const auto outcome = pd::simulate(
-      drive, inputs, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
-  const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
-  if (outcome.status != pd::Status::ok) return {{}, outcome.status, segments.size()};
-  pd::Certifier<double> certifier(motion, c.duration);
-  return {certifier.certify(), outcome.status, segments.size()};
+  Totals totals;
+  if (!take_up(options, totals)) return 2;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point saved = start;
+  const long long already = totals.drives;
+  const auto save_log = [&] {
+    saved = Clock::now();
+    if (options.log.empty() || save(options.log, options.range, totals)) return true;
+    std::fprintf(stderr, "fuzz: %s cannot be written\n", options.log.c_str());
+    return false;
+  };
+  const long long end = options.range.from + options.range.count;
+  while (totals.drives < options.range.count) {
+    const Clock::time_point begun = Clock::now();
+    const long long first = options.range.from + totals.drives;
+    Totals found = stretch(options, first, std::min(first + 100'000, end));
+    if (interrupted != 0) break;  // what is begun and not finished is done again
+    found.seconds = since(begun);
+    report(options, totals, found);
+    totals.add(found);
+    if (since(saved) < 60) continue;
+    progress(options, totals, totals.drives - already, since(start));
+    if (!save_log()) return 2;
+  }
+  if (!save_log()) return 2;
+  std::cout << std::setprecision(2);
+  write(std::cout, options.range, totals);
+  if (interrupted != 0) return 130;
+  return totals.failed.empty() ? 0 : 1;
 }
 
-void print(const char* name, const Verdict& verdict) {
-  const auto& r = verdict.certificate;
-  std::printf(
-      "%s: status %d, %zu segments; law %.1e kinematics %.1e friction %.1e bound %.1e "
-      "sign %.1e sticking %.1e continuity %.1e transitions %.1e energy %.1e dissipation %.1e\n",
-      name, static_cast<int>(verdict.status), verdict.segments, r.motion_law, r.kinematics,
-      r.friction_law, r.force_bound, r.sliding_sign, r.sticking, r.continuity, r.transitions,
-      r.energy, r.dissipation);
-}
-
-int replay(int count, char** files) {
+int replay(const std::vector<std::string>& files) {
   std::vector<pd::Segment<double>> segments;
   int bad = 0;
-  for (int i = 0; i < count; ++i) {
-    std::ifstream file(files[i]);
+  for (const std::string& name : files) {
+    std::ifstream file(name);
     Case c;
     if (!read(file, c)) {
-      std::fprintf(stderr, "%s: cannot be read as a drive\n", files[i]);
+      std::fprintf(stderr, "fuzz: %s cannot be read as a drive\n", name.c_str());
       return 2;
     }
-    const Verdict verdict = judge(c, segments);
-    print(files[i], verdict);
+    const Verdict verdict = judge(c, true, segments);
+    print(name.c_str(), verdict);
     bad += verdict.good() ? 0 : 1;
   }
-  std::printf("%d drives replayed, %d failed\n", count, bad);
+  std::printf("%zu drives replayed, %d failed\n", files.size(), bad);
   return bad == 0 ? 0 : 1;
 }
 
-int fuzz(long long count, std::uint64_t seed) {
-  std::vector<pd::Segment<double>> segments;
-  Verdict worst;
-  long long bad = 0, all_segments = 0;
-  for (long long i = 0; i < count; ++i) {
-    // Each case has its own generator, so that any of them can be drawn again alone.
-    const Case c = Draw(seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(i)).next();
-    const Verdict verdict = judge(c, segments);
-    all_segments += static_cast<long long>(verdict.segments);
-    const auto raise = [](double& most, double value) { most = std::max(most, value); };
-    raise(worst.certificate.motion_law, verdict.certificate.motion_law);
-    raise(worst.certificate.kinematics, verdict.certificate.kinematics);
-    raise(worst.certificate.friction_law, verdict.certificate.friction_law);
-    raise(worst.certificate.force_bound, verdict.certificate.force_bound);
-    raise(worst.certificate.sliding_sign, verdict.certificate.sliding_sign);
-    raise(worst.certificate.sticking, verdict.certificate.sticking);
-    raise(worst.certificate.continuity, verdict.certificate.continuity);
-    raise(worst.certificate.transitions, verdict.certificate.transitions);
-    raise(worst.certificate.energy, verdict.certificate.energy);
-    raise(worst.certificate.dissipation, verdict.certificate.dissipation);
-    worst.segments = std::max(worst.segments, verdict.segments);
-    if (verdict.good()) continue;
-    if (++bad > 20) continue;
-    const std::string name = "fuzz-" + std::to_string(seed) + "-" + std::to_string(i) + ".txt";
-    std::ofstream file(name);
-    write(file, c);
-    print(name.c_str(), verdict);
+// ---- the command line ----------------------------------------------------------------------------
+
+/// A whole number from 0 on; false if the text is none.
+bool whole(const std::string& text, long long& number) {
+  if (text.empty() || text.size() > 18) return false;
+  if (text.find_first_not_of("0123456789") != std::string::npos) return false;
+  number = std::stoll(text);
+  return true;
+}
+
+bool parse(const std::vector<std::string>& words, Options& options) {
+  if (words.size() < 2 || words.size() % 2 != 0) return false;
+  if (!whole(words[0], options.range.count) || !whole(words[1], options.range.seed)) return false;
+  for (std::size_t i = 2; i < words.size(); i += 2) {
+    const std::string& value = words[i + 1];
+    long long threads = 1;
+    if (words[i] == "--from" && whole(value, options.range.from)) continue;
+    if (words[i] == "--threads" && whole(value, threads) && threads >= 1 && threads <= 1024)
+      options.threads = static_cast<int>(threads);
+    else if (words[i] == "--log" && !value.empty())
+      options.log = value;
+    else
+      return false;
   }
-  print("worst", worst);
-  std::printf("%lld drives (seed %llu), %lld segments, %lld failed\n", count,
-              static_cast<unsigned long long>(seed), all_segments, bad);
-  return bad == 0 ? 0 : 1;
+  return true;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc > 2 && std::strcmp(argv[1], "--replay") == 0) return replay(argc - 2, argv + 2);
-  if (argc == 3)
-    return fuzz(std::strtoll(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));
-  std::fprintf(stderr, "usage: fuzz COUNT SEED | fuzz --replay FILE...\n");
-  return 2;
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() > 1 && words[0] == "--replay") {
+    words.erase(words.begin());
+    return replay(words);
+  }
+  Options options;
+  if (!parse(words, options)) {
+    std::fprintf(stderr,
+                 "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
+                 "       fuzz --replay FILE...\n");
+    return 2;
+  }
+  const auto interrupt = [](int) { interrupted = 1; };
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  return run(options);
 }

@@ -1,0 +1,71 @@
+/// Proves that a quantity of a mode does not become negative, without looking for its roots.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pindrive/flow.hpp"
+
+namespace pindrive {
+
+/// What must stay positive along a mode: a speed against a border, a capacity against a force.
+template <class T>
+class Guard {
+ public:
+  Guard() = default;
+  Guard(const Oscillator<T>& oscillator, const Path<T>& path)
+      : path_(path), rate_(path.derivative(oscillator)) {}
+
+  /// Its value and slope at a time.
+  struct Level {
+    T tau, value, slope;
+  };
+  Level at(const Transition<T>& moved, T tau) const {
+    return {tau, path_.at(moved, tau), rate_.at(moved, tau)};
+  }
+
+  /// The largest size of its third and fourth derivatives.
+  struct Flatness {
+    T third{0}, fourth{0};
+  };
+  /// Over a length from a time on. Both derivatives oscillate freely, and a free oscillation y stays
+  /// below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0: its energy
+  /// (y'² + ω₀² y²)/2 changes by 2α y'².
+  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T length) const {
+    using std::abs;
+    using std::exp;
+    using std::sqrt;
+    if (!path_.oscillates()) return {};
+    const T bend = oscillator.bend(path_.value, path_.slope);
+    const T y = path_.value + path_.value * moved.decline + path_.slope * moved.gain;
+    const T y1 = path_.slope + path_.slope * moved.decline + bend * moved.gain;
+    const T y2 = oscillator.bend(y, y1), y3 = oscillator.bend(y1, y2);
+    const T y4 = oscillator.bend(y2, y3), y5 = oscillator.bend(y3, y4);
+    const T reach = std::min(length, 1 / sqrt(oscillator.omega0_squared()));
+    const T growth = oscillator.alpha() > 0 ? exp(2 * oscillator.alpha() * length) : T(1);
+    return {(abs(y3) + abs(y4) * reach) * growth, (abs(y4) + abs(y5) * reach) * growth};
+  }
+
+  /// The lowest value found between two times, or at either; it dips no deeper below zero than
+  /// that, or than `unseen`. Proven where it is monotone, or where the cubic through both ends (by
+  /// its Bernstein coefficients), less what the guard can differ from it, stays above; else halved.
+  T lowest(const Oscillator<T>& oscillator, const Level& a, const Level& b,
+           const Flatness& flatness, T unseen, int halvings = 40) const {
+    const T least = std::min(a.value, b.value), h = b.tau - a.tau;
+    if (!(least >= -unseen) || halvings == 0) return least;
+    const T turn = h * h / 8 * flatness.third;
+    if ((a.slope >= turn && b.slope >= turn) || (a.slope <= -turn && b.slope <= -turn))
+      return least;
+    const T cubic = std::min({least, a.value + h * a.slope / 3, b.value - h * b.slope / 3});
+    if (cubic - h * h * h * h / 384 * flatness.fourth >= -unseen) return least;
+    const T tau = a.tau + h / 2;
+    const Level middle = at(path_.oscillates() ? oscillator.after(tau) : Transition<T>{}, tau);
+    return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings - 1),
+                    lowest(oscillator, middle, b, flatness, unseen, halvings - 1));
+  }
+
+ private:
+  Path<T> path_{}, rate_{};
+};
+
+}  // namespace pindrive

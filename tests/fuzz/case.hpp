@@ -1,0 +1,70 @@
+/// A drive and its inputs as a file that replays it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <istream>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace fuzz {
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+struct Rows {
+  std::vector<double> at, value;
+};
+
+/// A drive and its inputs, owned.
+struct Case {
+  double mass{}, stiffness{}, damping{};
+  std::array<double, 2> limit{};    ///< static friction of plate and finger
+  std::array<Rows, 2> curve;        ///< kinetic friction over speed; one row is Coulomb
+  double skin{never};               ///< stiffness of the finger
+  Rows mouse_velocity, plate_load;  ///< over time; one row is a constant
+  double displacement{}, velocity{}, duration{};
+};
+
+inline void write(std::ostream& out, const Case& c) {
+  const auto rows = [&](const char* name, const Rows& r) {
+    out << name << ' ' << r.at.size();
+    for (std::size_t i = 0; i < r.at.size(); ++i) out << "  " << r.at[i] << ' ' << r.value[i];
+    out << '\n';
+  };
+  out << std::setprecision(17) << "drive " << c.mass << ' ' << c.stiffness << ' ' << c.damping
+      << '\n';
+  out << "static " << c.limit[0] << ' ' << c.limit[1] << '\n';
+  rows("plate", c.curve[0]);
+  rows("finger", c.curve[1]);
+  out << "skin " << (std::isinf(c.skin) ? 0.0 : c.skin) << '\n';
+  rows("mouse_velocity", c.mouse_velocity);
+  rows("plate_load", c.plate_load);
+  out << "start " << c.displacement << ' ' << c.velocity << ' ' << c.duration << '\n';
+}
+
+/// False if the text is no such drive.
+inline bool read(std::istream& in, Case& c) {
+  std::string name;
+  const auto rows = [&](Rows& r) {
+    std::size_t count = 0;
+    in >> name >> count;
+    r.at.resize(count);
+    r.value.resize(count);
+    for (std::size_t i = 0; i < count; ++i) in >> r.at[i] >> r.value[i];
+  };
+  in >> name >> c.mass >> c.stiffness >> c.damping >> name >> c.limit[0] >> c.limit[1];
+  rows(c.curve[0]);
+  rows(c.curve[1]);
+  in >> name >> c.skin;
+  if (c.skin == 0) c.skin = never;
+  rows(c.mouse_velocity);
+  rows(c.plate_load);
+  in >> name >> c.displacement >> c.velocity >> c.duration;
+  return static_cast<bool>(in);
+}
+
+}  // namespace fuzz

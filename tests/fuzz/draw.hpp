@@ -1,0 +1,122 @@
+/// Random drives and inputs over many decades. Each is drawn from its seed and number alone, so
+/// that any of them can be drawn again.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "case.hpp"
+
+namespace fuzz {
+
+/// The generator of Steele, Lea and Flood (2014), "SplitMix": a counter, mixed.
+class Random {
+ public:
+  Random(std::uint64_t seed, std::uint64_t stream) : counter_(mixed(mixed(seed) + stream * step)) {}
+
+  /// In [0, 1).
+  double uniform() { return static_cast<double>(mixed(counter_ += step) >> 11) * 0x1p-53; }
+
+ private:
+  static constexpr std::uint64_t step = 0x9e3779b97f4a7c15ULL;
+
+  static std::uint64_t mixed(std::uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+  }
+
+  std::uint64_t counter_;
+};
+
+class Draw {
+ public:
+  Draw(std::uint64_t seed, std::uint64_t number) : random_(seed, number) {}
+
+  Case next() {
+    Case c;
+    round_ = chance(0.25);
+    const double omega = decade(0.5, 3.5), length = decade(-4, -2);
+    c.mass = decade(-4, -1);
+    c.stiffness = c.mass * omega * omega;
+    const double critical = 2 * c.mass * omega;
+    const double pick = uniform(0, 1);
+    c.damping = pick < 0.15   ? 0
+                : pick < 0.7  ? critical * decade(-4, 0)
+                : pick < 0.85 ? critical * (1 + (chance(0.5) ? 1 : -1) * decade(-15, -2))
+                              : critical * decade(0, 1.7);
+    force_ = c.stiffness * length;
+    speed_ = omega * length * decade(-1.5, 0.5);
+    for (int i = 0; i < 2; ++i) {
+      c.curve[i] = curve();
+      c.limit[i] = c.curve[i].value[0] * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
+    }
+    const bool coulomb = c.curve[1].at.size() == 1 && c.curve[1].value[0] > 0;
+    if (coulomb && chance(0.6)) c.skin = c.stiffness * decade(0, 6);
+    times(c, omega);
+    double last = 0;
+    c.mouse_velocity =
+        profile([&] { return chance(0.3) ? 0 : tidy(speed_ * uniform(-1, 1)); }, last);
+    c.plate_load = {{0}, {1}};
+    if (c.curve[0].at.size() == 1 && chance(0.4))
+      c.plate_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last);
+    c.displacement = chance(0.1) ? 0 : tidy(length * uniform(-1, 1));
+    c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]
+                 : chance(0.3) ? 0
+                               : speed_ * uniform(-2, 2);
+    c.duration = last + period_ * uniform(0.3, long_ ? 12 : 3);
+    return c;
+  }
+
+ private:
+  double uniform(double low, double high) { return low + (high - low) * random_.uniform(); }
+  bool chance(double p) { return random_.uniform() < p; }
+  double decade(double low, double high) { return tidy(std::pow(10, uniform(low, high))); }
+  /// Now and then few digits, so that things coincide.
+  double tidy(double value) const {
+    if (!round_ || value == 0) return value;
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(value))));
+    return std::round(value / unit) * unit;
+  }
+
+  /// One drive in ten lasts long, and one in a thousand as long with a stiff skin, which then rings
+  /// thousands of times; the others show what skin does in its first waves.
+  void times(const Case& c, double omega) {
+    long_ = chance(0.1);
+    period_ = 6.3 / omega;
+    if (std::isinf(c.skin) || chance(0.002)) return;
+    const double wave = 6.3 / (omega * std::sqrt(1 + c.skin / c.stiffness));
+    period_ = std::min(period_, wave * decade(0, 1.3));
+  }
+
+  Rows curve() {
+    Rows rows{{0}, {chance(0.15) ? 0 : force_ * decade(-2.5, 0.3)}};
+    if (chance(0.65)) return rows;
+    const int more = static_cast<int>(uniform(1, 4));
+    for (int i = 0; i < more; ++i) {
+      rows.at.push_back(rows.at.back() + tidy(speed_ * decade(-1.5, 0.3)));
+      rows.value.push_back(tidy(force_ * decade(-2.5, 0)));
+    }
+    return rows;
+  }
+
+  template <class Value>
+  Rows profile(Value&& value, double& last) {
+    Rows rows{{0}, {value()}};
+    if (chance(0.4)) return rows;
+    const int more = static_cast<int>(uniform(1, 6));
+    for (int i = 0; i < more; ++i) {
+      rows.at.push_back(rows.at.back() + tidy(period_ * decade(-1.5, long_ ? 0.7 : 0.2)));
+      rows.value.push_back(chance(0.25) ? rows.value.back() : value());
+    }
+    last = std::max(last, rows.at.back());
+    return rows;
+  }
+
+  Random random_;
+  bool round_{false}, long_{false};
+  double force_{}, speed_{}, period_{};
+};
+
+}  // namespace fuzz

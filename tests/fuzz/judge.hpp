@@ -1,0 +1,92 @@
+/// Runs a drive and judges its motion by the laws alone.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <vector>
+
+#include "case.hpp"
+#include "pindrive/certify.hpp"
+#include "pindrive/energy.hpp"
+#include "pindrive/simulate.hpp"
+
+namespace fuzz {
+
+namespace pd = pindrive;
+
+inline constexpr double largest_residual = 1e-9;
+
+/// The rows of a curve as regions; the last slope goes on until the force is zero.
+inline std::vector<pd::Region<double>> regions(const Rows& rows) {
+  std::vector<pd::Region<double>> all;
+  if (rows.at.size() == 1) return all;
+  double slope = 0;
+  for (std::size_t i = 0; i + 1 < rows.at.size(); ++i) {
+    slope = (rows.value[i + 1] - rows.value[i]) / (rows.at[i + 1] - rows.at[i]);
+    all.push_back({rows.at[i], rows.at[i + 1], rows.value[i], slope});
+  }
+  double from = rows.at.back(), force = rows.value.back();
+  if (slope < 0) {
+    if (force > 0) {
+      const double zero = from - force / slope;
+      all.push_back({from, zero, force, slope});
+      from = zero;
+    }
+    force = slope = 0;
+  }
+  all.push_back({from, never, force, slope});
+  return all;
+}
+
+struct Verdict {
+  pd::Certificate<double> certificate;
+  pd::Status status{};
+  std::size_t segments{};
+
+  bool good() const { return status == pd::Status::ok && certificate.worst() <= largest_residual; }
+};
+
+/// With its numbers: the ledger of energies is measured too, with every integral and extremum.
+inline Verdict judge(const Case& c, bool measured, std::vector<pd::Segment<double>>& segments) {
+  const auto plate = regions(c.curve[0]), finger = regions(c.curve[1]);
+  const pd::Drive<double> drive{
+      c.mass,
+      c.stiffness,
+      c.damping,
+      {c.curve[0].value[0], c.limit[0], never, plate.data(), static_cast<int>(plate.size())},
+      {c.curve[1].value[0], c.limit[1], c.skin, finger.data(), static_cast<int>(finger.size())}};
+  const auto profile = [](const Rows& rows) {
+    return rows.at.size() == 1
+               ? pd::Profile<double>(rows.value[0])
+               : pd::Profile<double>(rows.at.data(), rows.value.data(), rows.at.size());
+  };
+  const pd::Inputs<double> inputs{profile(c.mouse_velocity), c.displacement, c.velocity, c.duration,
+                                  profile(c.plate_load)};
+  segments.clear();
+  const auto outcome = pd::simulate(
+      drive, inputs, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
+  const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
+  Verdict verdict{{}, outcome.status, segments.size()};
+  if (outcome.status != pd::Status::ok) return verdict;
+  pd::Certificate<double>& certificate = verdict.certificate;
+  certificate = pd::Certifier<double>(motion, c.duration).certify();
+  if (!measured) return verdict;
+  const auto ledger = pd::energy_ledger(motion, c.duration);
+  const double rest = std::abs(ledger.residual());
+  if (!(rest <= certificate.energy * ledger.scale()))
+    certificate.energy = rest < never ? rest / ledger.scale() : never;
+  return verdict;
+}
+
+inline void print(const char* name, const Verdict& verdict) {
+  const auto& r = verdict.certificate;
+  std::printf(
+      "%s: status %d, %zu segments; law %.1e kinematics %.1e friction %.1e bound %.1e "
+      "sign %.1e sticking %.1e continuity %.1e transitions %.1e energy %.1e dissipation %.1e\n",
+      name, static_cast<int>(verdict.status), verdict.segments, r.motion_law, r.kinematics,
+      r.friction_law, r.force_bound, r.sliding_sign, r.sticking, r.continuity, r.transitions,
+      r.energy, r.dissipation);
+}
+
+}  // namespace fuzz

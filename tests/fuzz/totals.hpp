@@ -1,0 +1,122 @@
+/// What a run has found so far, and the log that keeps it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "judge.hpp"
+
+namespace fuzz {
+
+using Certificate = pd::Certificate<double>;
+
+struct Law {
+  const char* name;
+  double Certificate::* residual;
+};
+inline constexpr std::array<Law, 10> laws{{{"motion_law", &Certificate::motion_law},
+                                           {"kinematics", &Certificate::kinematics},
+                                           {"friction_law", &Certificate::friction_law},
+                                           {"force_bound", &Certificate::force_bound},
+                                           {"sliding_sign", &Certificate::sliding_sign},
+                                           {"sticking", &Certificate::sticking},
+                                           {"continuity", &Certificate::continuity},
+                                           {"transitions", &Certificate::transitions},
+                                           {"energy", &Certificate::energy},
+                                           {"dissipation", &Certificate::dissipation}}};
+
+/// The largest of a number, and the first case that has it.
+struct Largest {
+  double value{0};
+  long long at{-1};
+
+  void meet(Largest other) {
+    if (other.value > value || (other.value == value && other.at < at)) *this = other;
+  }
+};
+
+/// Sums and maxima: however the cases are shared out, they come to the same.
+struct Totals {
+  long long drives{0}, segments{0};
+  Largest most_segments;
+  std::array<Largest, laws.size()> worst;
+  std::vector<long long> failed;
+  double seconds{0};
+
+  void add(long long number, const Verdict& verdict) {
+    ++drives;
+    const auto count = static_cast<long long>(verdict.segments);
+    segments += count;
+    most_segments.meet({static_cast<double>(count), number});
+    for (std::size_t i = 0; i < laws.size(); ++i)
+      worst[i].meet({verdict.certificate.*laws[i].residual, number});
+    if (!verdict.good()) failed.push_back(number);
+  }
+
+  void add(const Totals& other) {
+    drives += other.drives;
+    segments += other.segments;
+    most_segments.meet(other.most_segments);
+    for (std::size_t i = 0; i < laws.size(); ++i) worst[i].meet(other.worst[i]);
+    failed.insert(failed.end(), other.failed.begin(), other.failed.end());
+    std::sort(failed.begin(), failed.end());
+    seconds += other.seconds;
+  }
+};
+
+/// Which cases of which seed.
+struct Range {
+  long long count{0}, seed{0}, from{0};
+
+  friend bool operator==(const Range& a, const Range& b) {
+    return a.seed == b.seed && a.from == b.from;
+  }
+};
+
+inline void write(std::ostream& out, const Range& range, const Totals& totals) {
+  out << "seed " << range.seed << " from " << range.from << '\n'
+      << "drives " << totals.drives << " of " << range.count << '\n'
+      << "segments " << totals.segments << '\n'
+      << "most_segments " << totals.most_segments.value << " case " << totals.most_segments.at
+      << '\n'
+      << "seconds " << totals.seconds << '\n';
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    out << laws[i].name << ' ' << totals.worst[i].value << " case " << totals.worst[i].at << '\n';
+  out << "failed " << totals.failed.size();
+  for (const long long number : totals.failed) out << ' ' << number;
+  out << '\n';
+}
+
+/// False if the text is no such log.
+inline bool read(std::istream& in, Range& range, Totals& totals) {
+  std::string word;
+  std::size_t failures = 0;
+  in >> word >> range.seed >> word >> range.from >> word >> totals.drives >> word >> range.count >>
+      word >> totals.segments >> word >> totals.most_segments.value >> word >>
+      totals.most_segments.at >> word >> totals.seconds;
+  for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
+  in >> word >> failures;
+  for (long long number = 0; failures > 0 && in >> number; --failures)
+    totals.failed.push_back(number);
+  return static_cast<bool>(in);
+}
+
+/// Replaces the log whole, so that it is never half-written.
+inline bool save(const std::string& path, const Range& range, const Totals& totals) {
+  const std::string beside = path + ".new";
+  {
+    std::ofstream out(beside);
+    out << std::setprecision(17);
+    write(out, range, totals);
+    if (!out.flush()) return false;
+  }
+  return std::rename(beside.c_str(), path.c_str()) == 0;
+}
+
+}  // namespace fuzz
