@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from dataclasses import replace
 from math import inf, isfinite, isnan
+from pathlib import Path
 from typing import Any
 
 import mpmath as mp
@@ -12,7 +13,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+import test_oracle
 from drives import Release, releases
+from oracle import make_cases, mp_oracle
 from pindrive import Contact, Drive, Motion, Profile, simulate
 
 PIN = {"mass": 0.01, "stiffness": 100.0, "damping": 0.4}
@@ -72,6 +75,47 @@ def test_a_pin_that_is_carried_moves_with_the_plate() -> None:
     assert slope.event_times[0, 0] == pytest.approx(-release.time / 0.1 - 0.4 / (100 * 0.1))
     assert slope.event_times[1, 0] == pytest.approx(1 / (100 * 0.1))
     assert slope.event_times[2, 0] == 0.0
+
+
+PARAMETERS = ("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic", "displacement")
+CASES = make_cases.load(Path(make_cases.__file__).parent / "cases.json.gz")["cases"]
+
+
+@pytest.mark.parametrize("number", [i for i, c in enumerate(CASES) if len(c["events"]) > 1][::19])
+def test_against_the_forty_digit_oracle(number: int) -> None:
+    """Differences of two answers of forty digits, close enough for twelve digits of the slope."""
+    case = CASES[number]
+    at = case["inputs"]
+    name = [p for p in PARAMETERS if at[p]][number % sum(1 for p in PARAMETERS if at[p])]
+    pin_at, step = make_cases.pin_of(case), mp.mpf("1e-15") * abs(at[name])
+    tied = {name}
+    if name.endswith("kinetic") and at[name] == at[name.replace("kinetic", "static")]:
+        tied.add(name.replace("kinetic", "static"))
+
+    def solved(sign: int) -> mp_oracle.Path:
+        moved: dict[str, Any] = {p: mp.mpf(getattr(pin_at, p)) + sign * step for p in tied}
+        return mp_oracle.solve(replace(pin_at, **moved), case["duration"])
+
+    motion = test_oracle.release(case)
+    sensitivity = motion.sensitivity([name])
+    up, down = solved(1), solved(-1)
+    times = np.array(case["times"])
+    expected = [float((up.state(t)[0] - down.state(t)[0]) / (2 * step)) for t in times]
+    largest = max(*map(abs, expected), *np.abs(case["x"]) / abs(at[name]))
+    found = sensitivity.position(times)[0]
+    away = [min([abs(t - e.time) for e in up.events], default=1.0) > 1e-9 for t in times]
+    assert not np.isnan(found).any()
+    assert found[away] == pytest.approx(np.array(expected)[away], rel=1e-9, abs=1e-11 * largest)
+    assert len(up.events) == len(down.events) > 1
+    if motion.ending.cycle is None:  # of a cycle, the motion tells one round
+        assert sensitivity.event_times[0] == pytest.approx(
+            [
+                float((a.time - b.time) / (2 * step))
+                for a, b in zip(up.events, down.events, strict=True)
+            ],
+            rel=1e-9,
+            abs=1e-11 * case["duration"] / abs(at[name]),
+        )
 
 
 # ---- against differences of two motions ----------------------------------------------------------
