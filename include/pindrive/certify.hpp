@@ -189,21 +189,23 @@ class Certifier {
     raise(residual, scale > 0 ? error / scale : error);
   }
 
-  /// The largest displacement, velocity and force where segments begin and end.
+  /// The largest displacement, velocity and force: where segments begin and end, and within, where
+  /// no wave is that begins and ends at nothing.
   void scales(const Segment<T>& segment) {
     using std::abs;
     using std::sqrt;
     const Stage stage = stage_of(segment);
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
-    for (const T tau : {T(0), stage.span}) {
+    for (const T part : {T(0), T(0.382), T(1)}) {
+      const T tau = part * stage.span;
       const State s = state(stage, tau);
       x_scale_ = std::max(
           {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
-      force_scale_ =
-          std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                    abs(drive_.stiffness * s.x), abs(s.plate_force), abs(s.finger_force)});
+      force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                               abs(s.plate_force), abs(s.finger_force)});
     }
     v_scale_ = x_scale_ * omega0;
+    force_scale_ = std::max(force_scale_, drive_.stiffness * x_scale_);
   }
 
   // ---- along a segment ---------------------------------------------------------------------------

@@ -21,6 +21,18 @@ namespace {
 const Drive drive{0.010, 100.0, 0.32, {0.022, 0.0265}, {0.005, 0.0075}};
 const pd::Inputs<double> inputs{pd::Profile<double>(0.06), 2e-3, 0.06};  // NOLINT: cannot throw
 
+/// Swings freely for three whole periods, from x = 0 to x = 0.
+double free_swing() {
+  const Drive free{0.010, 100.0, 0.0, {}, {}};
+  const double duration = 6 * 3.14159265358979323846 / 100;
+  const pd::Inputs<double> kicked{pd::Profile<double>(0.0), 0.0, 0.25, duration};
+  Segments segments;
+  const auto outcome = pd::simulate(
+      free, kicked, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
+  const pd::Motion<double> motion(free, kicked, segments.data(), segments.size(), outcome);
+  return pd::Certifier<double>(motion, duration).certify().worst();
+}
+
 Certificate certificate(const std::function<void(Segments&, Drive&)>& spoil) {
   Segments segments;
   const auto outcome = pd::simulate(
@@ -67,6 +79,7 @@ int main() {
   };
   const double clean = certificate([](Segments&, Drive&) {}).worst();
   expect(clean < 1e-14, "as simulated", clean);
+  expect(free_swing() < 1e-14, "whole periods from nothing", free_swing());
   for (const Wrong& wrong : wrongs) {
     const Certificate found = certificate(wrong.spoil);
     expect(found.*wrong.law > 1e-4, wrong.what, found.*wrong.law);
