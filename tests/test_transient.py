@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 
 from drives import Release, releases
-from pindrive import Contact, Drive, Motion
+from pindrive import Contact, Drive, Motion, Profile, simulate
 
 SAMPLES = 20_001
 
@@ -145,3 +145,41 @@ def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
     transient = Release(drive, 0.1, 1.5e-3).run().transient
     assert transient.trough_time == np.inf
     assert transient.trough_displacement == pytest.approx(0.02 / 100.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_long_vibration_in_the_skin_against_samples(seed: int) -> None:
+    """Some hundred periods in one mode, until a jolt of the mouse ends it."""
+    random = np.random.default_rng(seed)
+    drive = Drive(
+        mass=0.01,
+        stiffness=100.0,
+        damping=10.0 ** random.uniform(-3.0, -1.5),
+        plate=Contact(0.0),
+        finger=Contact(0.15, stiffness=10.0 ** random.uniform(2.0, 4.0)),
+    )
+    jolt = 4.0 + random.uniform(0.0, 0.1)
+    drift = random.uniform(-2e-4, 2e-4)
+    v = Profile([0.0, 0.5, jolt, jolt + 0.01], [0.05, 0.05, 0.05 + drift, 0.0])
+    motion = simulate(drive, mouse_velocity=v, displacement=2e-3, velocity=0.05)
+    assert motion.ending.kind == "decaying"
+
+    t = np.linspace(0.0, motion.duration, 400_001)
+    x, step = motion.position(t), motion.duration / 400_000
+    size = np.abs(x).max()
+    transient = motion.transient
+    # What is sampled, and how much more it may be between two samples.
+    peak_stretch, between = np.abs(motion.stretch(t)).max(), step * np.abs(motion.velocity(t)).max()
+    peak_rate, hastens = np.abs(motion.stretch_rate(t)).max(), np.abs(motion.acceleration(t)).max()
+    assert 0.0 <= transient.peak_stretch - peak_stretch <= between
+    assert 0.0 <= transient.peak_stretch_rate - peak_rate <= step * hastens
+    assert transient.finger.peak_force == pytest.approx(
+        drive.finger.stiffness * transient.peak_stretch, rel=1e-12
+    )
+    for band in (0.02, 0.05, 0.2, 0.6):
+        width = band * abs(motion.displacement - motion.ending.position)
+        outside = np.flatnonzero(np.abs(x - motion.ending.position) > width + 1e-9 * size)
+        settled = motion.settling_time(band)
+        assert t[outside[-1]] <= settled
+        distance = abs(motion.position(settled) - motion.ending.position)
+        assert distance == pytest.approx(width, rel=1e-7)

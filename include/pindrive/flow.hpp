@@ -55,6 +55,7 @@ class Oscillator {
   T omega0_squared() const { return omega0_squared_; }  ///< ω₀² = κ/m, 1/s²
   T omega() const { return omega_; }                    ///< |ω₀² − α²|^½, rad/s
   bool oscillates() const { return discriminant_ > 0; }
+  T period() const { return oscillates() ? 2 * pi / omega_ : std::numeric_limits<T>::infinity(); }
 
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle_ : alpha_ + omega_; }

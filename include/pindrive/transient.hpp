@@ -53,6 +53,21 @@ void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
   visit(to, path.at(oscillator, to));
 }
 
+/// The same for a path on which only the highest and the lowest value are asked for: a vibration on
+/// a line has them within a period of an end, so what lies between need not be followed.
+template <class T, class Visitor>
+void highest_and_lowest(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
+                        Visitor&& visit) {
+  const T period = oscillator.period();
+  if (!path.oscillates() || !(to - from > 2 * period)) {
+    extrema(oscillator, path, from, to, visit);
+    return;
+  }
+  for (const T begin : {from, to - period})
+    extrema(oscillator, path.from(oscillator, begin), T(0), period,
+            [&](T tau, T value) { visit(begin + tau, value); });
+}
+
 /// Measures a motion over [0, duration]; what happens later, or never, is NaN.
 template <class T>
 class Measurement {
@@ -156,12 +171,13 @@ class Measurement {
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
       if (from > to) continue;
-      extrema(segment.flow.oscillator, segment.flow.velocity, from, to, [&](T tau, T velocity) {
+      const auto compare = [&](T tau, T velocity) {
         if (-outward * velocity <= 0) return;
         if (outward * velocity >= outward * result.return_velocity) return;
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
-      });
+      };
+      highest_and_lowest(segment.flow.oscillator, segment.flow.velocity, from, to, compare);
     }
   }
 
@@ -196,13 +212,15 @@ class Measurement {
         break;
     }
     T low = never, high = -never;
-    const auto widen = [&](T time, T position) {
-      if (time < outcome.cycle_begin) return true;
-      low = std::min(low, position);
-      high = std::max(high, position);
-      return true;
-    };
-    Measurement(motion_, outcome.until).turning_points(widen);
+    for (const Segment<T>& segment : motion_) {
+      if (segment.begin < outcome.cycle_begin) continue;
+      const Flow<T>& flow = segment.flow;
+      highest_and_lowest(flow.oscillator, flow.position, T(0), segment.end - segment.begin,
+                         [&](T, T position) {
+                           low = std::min(low, position);
+                           high = std::max(high, position);
+                         });
+    }
     result.end_position = (low + high) / 2;
     result.amplitude = (high - low) / 2;
   }
@@ -243,7 +261,9 @@ class Measurement {
     };
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
-      extrema(oscillator, x, T(0), segment.end - segment.begin, follow_to);
+      const Stretch last = last_outside(segment, x_end, width);
+      before = x.at(oscillator, last.from) - x_end;
+      extrema(oscillator, x, last.from, last.to, follow_to);
       return;
     }
     if (!x.oscillates()) return;  // at x_end
@@ -267,6 +287,30 @@ class Measurement {
       while (abs(x.at(oscillator, low + step) - x_end) > width && step < T(1e300)) step *= 2;
       follow_to(low + step, x.at(oscillator, low + step));
     }
+  }
+
+  struct Stretch {
+    T from, to;
+  };
+  /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
+  /// long vibration is halved until the few periods are left in which it leaves the band last.
+  static Stretch last_outside(const Segment<T>& segment, T x_end, T width) {
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const Path<T>& x = segment.flow.position;
+    Stretch last{T(0), segment.end - segment.begin};
+    const auto strays = [&](T from, T to) {
+      bool outside = false;
+      highest_and_lowest(oscillator, x, from, to, [&](T, T position) {
+        using std::abs;
+        outside = outside || abs(position - x_end) > width;
+      });
+      return outside;
+    };
+    while (x.oscillates() && last.to - last.from > 8 * oscillator.period()) {
+      const T middle = last.from + (last.to - last.from) / 2;
+      (strays(middle, last.to) ? last.from : last.to) = middle;
+    }
+    return last;
   }
 
   void contacts(Transient<T>& result) const {
@@ -295,7 +339,7 @@ class Measurement {
   }
 
   static void peak(T& largest, const Oscillator<T>& oscillator, const Path<T>& path, T from, T to) {
-    extrema(oscillator, path, from, to, [&](T, T value) {
+    highest_and_lowest(oscillator, path, from, to, [&](T, T value) {
       using std::abs;
       largest = std::max(largest, abs(value));
     });
