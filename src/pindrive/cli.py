@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from pindrive.refusing import DeviceArgument, OverridesOption, check_distinct, refusing
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
@@ -40,16 +42,6 @@ def main() -> None:
         sys.exit(2)
 
 
-@contextmanager
-def _refusing() -> Iterator[None]:
-    """Bad input ends the command with a line for each problem and exit status 2."""
-    try:
-        yield
-    except ValueError as error:
-        typer.echo(str(error), err=True)
-        raise typer.Exit(2) from None
-
-
 def _print_version(wanted: bool) -> None:
     if wanted:
         from pindrive import __version__
@@ -68,24 +60,25 @@ def _program(
     pass
 
 
-DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
-
-
 @app.command()
 def init(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    device: Annotated[
+        bool, typer.Option("--device", help="With magnet, control block, pin array and hand.")
+    ] = False,
 ) -> None:
     """Write a commented device file to start from."""
     from pindrive.output import OutputError, atomic_write
     from pindrive.template import template
 
-    with _refusing():
+    with refusing():
         if file.is_file() and not force:
             raise OutputError(f"{file}: exists already; --force replaces it")
         with atomic_write(file) as part:
-            part.write_text(template(), encoding="utf-8")
-    typer.echo(f"Wrote {file}; try: pindrive simulate {file}")
+            part.write_text(template(whole=device), encoding="utf-8")
+    command = f"scan {file} --text A" if device else f"simulate {file}"
+    typer.echo(f"Wrote {file}; try: pindrive {command}")
 
 
 @app.command()
@@ -93,7 +86,7 @@ def check(file: DeviceArgument) -> None:
     """Say what is wrong with a device file, or what it describes."""
     from pindrive.config import load
 
-    with _refusing():
+    with refusing():
         device = load(file)
     from pindrive.report import device_report, show
 
@@ -103,10 +96,7 @@ def check(file: DeviceArgument) -> None:
 @app.command()
 def simulate(
     file: DeviceArgument,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help='Another value, as in --set mass="12 g".'),
-    ] = None,
+    overrides: OverridesOption = None,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
     ] = None,
@@ -126,7 +116,7 @@ def simulate(
     from pindrive.config import load
     from pindrive.output import atomic_write, naming
 
-    with _refusing():
+    with refusing():
         device = load(file, overrides or ())
         outputs: dict[Path, Callable[[Motion, Path], None]] = {}
         if plot:
@@ -138,7 +128,7 @@ def simulate(
             outputs[netcdf] = lambda motion, part: export.write_netcdf(motion, part, samples)
         if json:
             outputs[json] = lambda motion, part: export.write_json(motion, device, part)
-        _check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
+        check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
         with ExitStack() as stack:
             parts = {path: stack.enter_context(atomic_write(path)) for path in outputs}
             motion = _simulate(device)
@@ -173,11 +163,11 @@ def _figure_format(path: Path) -> str:
     return suffix.removeprefix(".")
 
 
-def _check_distinct(paths: list[Path]) -> None:
-    """Refuse to write one file over another of the same command."""
-    seen: set[str] = set()
-    for path in paths:
-        real = os.path.realpath(path)
-        if real in seen:
-            raise ValueError(f"{path}: is named twice; give each file a name of its own")
-        seen.add(real)
+def _register() -> None:
+    """The commands that have a file of their own."""
+    from pindrive.cli_scan import scan
+
+    app.command()(scan)
+
+
+_register()

@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from math import inf
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
@@ -21,11 +21,15 @@ from pindrive.drive import Drive, Profile
 from pindrive.quantities import refusal
 from pindrive.quantity import Rows
 from pindrive.schema import Place, Schema, over_time
-from pindrive.template import NUMBERS, line
+from pindrive.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.units import quoted
 
+if TYPE_CHECKING:
+    from pindrive.schema_device import Whole
+
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
-TABLES: Final = ("device", "drive", "plate", "finger", "motion")
+AROUND: Final = ("magnet", "control", "array", "scan")
+TABLES: Final = ("device", "drive", "plate", "finger", "motion", *AROUND)
 
 
 class ConfigError(ValueError):
@@ -38,7 +42,11 @@ class ConfigError(ValueError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviceFile:
-    """What a device file says, in SI: the drive and the start of its motion (see `simulate`)."""
+    """What a device file says, in SI: the drive and the start of its motion (see `simulate`).
+
+    Where it has a table of the whole device, or is asked for it, `whole` is that device, and how a
+    hand reads with it (see `pindrive.device.scan`).
+    """
 
     path: Path
     name: str
@@ -50,6 +58,7 @@ class DeviceFile:
     velocity: float | None
     skin_stretch: float | None
     duration: float | None
+    whole: Whole | None = None
 
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
@@ -57,15 +66,19 @@ class DeviceFile:
         What changes is its rows: (speed, force) or (time, value).
         """
         owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
-        places = ((key, *key.split(".")) for key in NUMBERS)
+        places = ((key, *key.split(".")) for key in DRIVE)
         values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        if self.whole:
+            values |= {key: self.whole.value(key) for key in WHOLE}
         return {
             key: value.rows if isinstance(value, Profile) else None if value == inf else value
             for key, value in values.items()
         }
 
 
-def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile:
+def load(
+    path: str | PathLike[str], overrides: Iterable[str] = (), *, whole: bool = False
+) -> DeviceFile:
     """The device file at `path`, with single values set otherwise.
 
     Args:
@@ -73,6 +86,7 @@ def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile
         overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
             that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
             Setting damping replaces damping_ratio, and vice versa.
+        whole: the whole device is wanted, also of a file without a table of it.
 
     Raises:
         ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
@@ -84,6 +98,10 @@ def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile
     def place(*keys: str) -> str:
         return next((places[key] for key in keys if key in places), str(file))
 
+    whole = whole or any(tables[name] for name in AROUND)
+    hand = whole and "mouse_velocity" not in tables["motion"]
+    if hand:  # a single release is at the hand's speed then
+        tables["motion"]["mouse_velocity"] = usual(NUMBERS["scan.hand_speed"])
     unknown = _unknown_keys(tables)
     meant = {_nearest(key) for key in unknown}
     problems += [f"{file}: {_not_known(key)}" for key in unknown]
@@ -91,8 +109,11 @@ def load(path: str | PathLike[str], overrides: Iterable[str] = ()) -> DeviceFile
     try:
         schema = Schema.model_validate(tables, context=place)
         problems += schema.conflicts(place)
+        around = _around(tables, place) if whole else None
+        if around:
+            problems += around.conflicts(schema, tables, place)
         if not problems:
-            return _device(file, schema)
+            return _device(file, schema, around, hand)
     except ValidationError as error:
         problems += _value_problems(error, meant, place)
     except ValueError as error:  # each value in range, but not all together
@@ -178,8 +199,13 @@ def _nearest(key: str, *, tables: bool = True) -> str | None:
     names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
     if tables and "." not in key:
         names |= {table: table for table in TABLES}
-    name = key.rpartition(".")[2]
-    near = get_close_matches(key, KEYS, 1, cutoff=0.8) or get_close_matches(name, names, 1)
+    table, _, name = key.rpartition(".")
+    here = [known for known in names if f"{table}.{known}" in KEYS]
+    near = (
+        get_close_matches(key, KEYS, 1, cutoff=0.8)
+        or get_close_matches(name, here, 1)
+        or get_close_matches(name, names, 1, cutoff=0.7)
+    )
     return names.get(near[0], near[0]) if near else None
 
 
@@ -228,7 +254,14 @@ def _value_problems(error: ValidationError, meant: Set[str | None], place: Place
     return problems
 
 
-def _device(file: Path, schema: Schema) -> DeviceFile:
+def _around(tables: Mapping[str, Any], place: Place) -> Whole:
+    """The tables of the whole device; a plain drive does without what reading them takes."""
+    from pindrive.schema_device import Whole
+
+    return Whole.model_validate(tables, context=place)
+
+
+def _device(file: Path, schema: Schema, whole: Whole | None, hand: bool) -> DeviceFile:
     drive, motion = schema.drive, schema.motion
     plate, finger = schema.plate.contact(), schema.finger.contact()
     body = {"mass": drive.mass, "stiffness": drive.stiffness}
@@ -241,10 +274,13 @@ def _device(file: Path, schema: Schema) -> DeviceFile:
         else Drive.with_damping_ratio(
             **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
         ),
-        mouse_velocity=over_time(motion.mouse_velocity),
+        mouse_velocity=whole.scan.hand_speed
+        if whole and hand
+        else over_time(motion.mouse_velocity),
         plate_load=over_time(motion.plate_load),
         displacement=motion.displacement,
         velocity=motion.velocity,
         skin_stretch=motion.skin_stretch,
         duration=motion.duration,
+        whole=whole,
     )

@@ -249,7 +249,7 @@ PARTS: Final[tuple[Quantity, ...]] = (
 COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "curve": ("curve.speed", "curve.force"),
     "profile": ("profile.time", "profile.value"),
-    "places": ("place.x", "places"),
+    "places": ("place.x", "place.y"),
 }
 """What stands in the rows of a curve, of a profile and of places, by the names of the parts."""
 

@@ -256,6 +256,7 @@ DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + S
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("place.x", "x", "m", "place of a pin along the drive axis", FINITE),
+    Quantity("place.y", "y", "m", "place of a pin across the drive axis", FINITE),
     Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", FINITE),
     Quantity("scene.luminance", "L", "1", "luminance of a pixel, black 0, white 1", LUMINANCE),
     Quantity("stroke.length", "D", "m", "length of a stroke", POSITIVE),

@@ -44,7 +44,7 @@ def show(report: RenderableType) -> None:
 def device_report(device: DeviceFile) -> RenderableType:
     """What a device file describes, and what follows from it."""
     drive = device.drive
-    table = _table("Device", "key", "symbol", ">value", "unit", "meaning")
+    table = new_table("Device", "key", "symbol", ">value", "unit", "meaning")
     for key, value in device.values().items():
         name = key if key in QUANTITIES else key.partition(".")[2]
         if isinstance(value, tuple):
@@ -54,8 +54,12 @@ def device_report(device: DeviceFile) -> RenderableType:
     _add_number(table, "natural_frequency", drive.natural_frequency, "")
     hertz = significant(drive.natural_frequency / tau)
     words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
-    line = Text(f"{device.name or 'The drive'}: {words}.", no_wrap=True, overflow="ignore")
-    return Group(table, line)
+    lines = [f"{device.name or 'The drive'}: {words}."]
+    if device.whole:
+        from pindrive.device.report import device_words
+
+        lines += device_words(device.whole.device(drive))
+    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
 
 
 def regime(damping_ratio: float) -> str:
@@ -78,7 +82,7 @@ def motion_report(motion: Motion) -> RenderableType:
 
 def _phases(motion: Motion) -> Table:
     """A line for each mode the motion goes through; the middle of many left out."""
-    table = _table("Phases", ">from", ">to", ">duration", "phase", ">x", ">v", "ends as")
+    table = new_table("Phases", ">from", ">to", ">duration", "phase", ">x", ">v", "ends as")
     t, x, v = _TIME.display_unit, _POSITION.display_unit, _VELOCITY.display_unit
     table.add_row(t, t, t, "", x, v, "", style="dim")
     causes: dict[float, list[str]] = {}
@@ -106,7 +110,7 @@ def _phases(motion: Motion) -> Table:
 def _numbers(motion: Motion) -> Table:
     """The transient's numbers; those of an absent contact left out."""
     followed = f"Transient, followed for {_TIME.text(motion.duration)}"
-    table = _table(followed, "symbol", ">value", "unit", "meaning")
+    table = new_table(followed, "symbol", ">value", "unit", "meaning")
     values = motion.numbers()
     unseen = {"transient.settled"}
     if motion.drive.finger.rigid:
@@ -122,7 +126,7 @@ def _numbers(motion: Motion) -> Table:
     return table
 
 
-def _table(title: str, *headings: str) -> Table:
+def new_table(title: str, *headings: str) -> Table:
     """A table with headings; ">" aligns a column to the right."""
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
     for heading in headings:

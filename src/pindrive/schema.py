@@ -33,7 +33,7 @@ Place = Callable[..., str]
 """Where keys were written: on the command line if one of them was, else in the file."""
 
 
-class _Table(BaseModel):
+class Table(BaseModel):
     """A table of the file. The context of its validation maps a key to the place it was written."""
 
     table: ClassVar[str]
@@ -79,6 +79,8 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
                 _number(row[1], quantity, examples[1], f"{key}[{i}] {words[1]}", place),
             )
         )
+    if quantity.rows_of == "places":
+        return tuple(rows)
     check_increasing(
         [first for first, _ in rows],
         across.unit,
@@ -89,13 +91,13 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     return tuple(rows)
 
 
-class _Device(_Table):
+class _Device(Table):
     table = "device"
     name: StrictStr = ""
     description: StrictStr = ""
 
 
-class _Drive(_Table):
+class _Drive(Table):
     table = "drive"
     mass: float
     stiffness: float
@@ -103,7 +105,7 @@ class _Drive(_Table):
     damping_ratio: float | None = None
 
 
-class _Contact(_Table):
+class _Contact(Table):
     kinetic: float | None
     static: float | None = None
     curve: Rows | None = None
@@ -141,7 +143,7 @@ class _Finger(_Contact):
     stiffness: float = inf
 
 
-class _Motion(_Table):
+class _Motion(Table):
     table = "motion"
     mouse_velocity: float | Rows
     plate_load: float | Rows = 1.0

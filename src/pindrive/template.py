@@ -6,10 +6,15 @@ from textwrap import wrap
 from typing import Final
 
 from pindrive.quantities import COLUMNS, INPUTS, QUANTITIES
+from pindrive.quantities_device import DEVICE_INPUTS
 from pindrive.quantity import Quantity
 
-NUMBERS: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
-"""The keys of a device file that hold a quantity, in their order."""
+DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
+"""The keys of a device file that describe the drive and its motion, in their order."""
+WHOLE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DEVICE_INPUTS}
+"""The keys that describe the whole device around it, in their order."""
+NUMBERS: Final[dict[str, Quantity]] = DRIVE | WHOLE
+"""The keys of a device file that hold a quantity."""
 
 
 def usual(quantity: Quantity) -> str:
@@ -39,8 +44,12 @@ def _quoted(quantity: Quantity, value: float) -> str:
     return written if quantity.unit == "1" else f'"{written}"'
 
 
-def template() -> str:
-    """A commented device file with usual values, as `pindrive init` writes it."""
+def template(whole: bool = False) -> str:
+    """A commented device file with usual values, as `pindrive init` writes it.
+
+    Args:
+        whole: with the tables of the whole device, as `pindrive init --device` writes it.
+    """
     lines = [
         "# A pin drive of a tactile mouse, for pindrive.",
         "# Every value is written with its unit; the bounds below are in SI units.",
@@ -50,7 +59,7 @@ def template() -> str:
         '# description = "what is special about it"',
     ]
     table = "device"
-    for key, quantity in NUMBERS.items():
+    for key, quantity in (NUMBERS if whole else DRIVE).items():
         if key.partition(".")[0] != table:
             table = key.partition(".")[0]
             lines += ["", f"[{table}]"]

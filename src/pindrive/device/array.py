@@ -114,9 +114,9 @@ class PinArray:
         return np.stack([ax * along - ay * across, ay * along + ax * across], axis=1)
 
 
-def check_count(name: str, value: float, *, where: str = "", label: str | None = None) -> int:
+def check_count(name: str, value: float, *, where: str = "", label: str = "") -> int:
     """`value` as a whole number of at least 1."""
-    number = check(name, value, where=where, label=label)
+    number = check(name, value, where=where, label=label or name)
     if number != int(number):
         raise ValueError(refusal(label or name, "a whole number", repr(value), where))
     return int(number)

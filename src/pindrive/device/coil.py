@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from math import pi
 from typing import Final
@@ -120,21 +119,18 @@ DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """What is said instead of a coil."""
 
 
-def check_one_way(
-    given: set[str], *, where: Callable[..., str] = lambda *_: "", table: str = ""
-) -> None:
+def check_one_way(given: set[str], *, where: str = "", table: str = "") -> None:
     """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
     made = [name for name in (*COIL_NEEDS, *COIL_MAY) if name in given]
     if not made:
         return
     direct = [name for name in DIRECT if name in given]
-    key = f"{table}.{(direct or made)[0]}".removeprefix(".")
+    label = f"{table}.{(direct or made)[0]}".removeprefix(".")
     if direct:
         required = f"left out where {made[0]} describes the coil"
-        raise ValueError(refusal(key, required, f"both, {direct[0]} and {made[0]}", where(key)))
+        raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}", where))
     missing = [name for name in COIL_NEEDS if name not in given]
     if missing:
-        units = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
-        raise ValueError(
-            refusal(key, f"given with {units}", f"{', '.join(made)} alone", where(key))
-        )
+        needed = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
+        given_alone = f"{', '.join(made)} alone"
+        raise ValueError(refusal(label, f"given with {needed}", given_alone, where))

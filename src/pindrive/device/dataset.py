@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from io import BytesIO
 from math import nan, pi, sqrt
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -82,6 +84,16 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
         **inputs(scan),
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def write_netcdf(scan: Scan, path: Path) -> None:
+    """Write `Scan.to_dataset`; made in memory first, so that a full disk is refused as such."""
+    file = BytesIO()
+    packed = {"zlib": True, "complevel": 1}
+    scan.to_dataset().to_netcdf(
+        file, engine="h5netcdf", encoding={"scene": packed, "luminance": packed}
+    )
+    path.write_bytes(file.getvalue())
 
 
 def inputs(scan: Scan) -> dict[str, float]:

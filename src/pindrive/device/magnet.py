@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 GRAVITY: Final = 9.80665
 """Standard gravity, m/s²."""
 AT_ONCE: Final = 0.01
-"""How soon after a switching the pull is exact: times the root of the deviation, in time constants.
-In so short a time no curvature counts."""
+"""How soon after a switching the pull is exact: when it can have changed by no more than twice this
+part of its deviation."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,7 +209,7 @@ class Electromagnet:
         )
         if start == final:
             return np.zeros(1), np.zeros(0)
-        moment = AT_ONCE * sqrt(self._tolerance)
+        moment = AT_ONCE * self.saturation * self._tolerance
         soon = _after(start, rises, moment)
         due = levels[(levels > soon) if rises else (levels < soon)]
         apart = np.log((1.0 - start) / (1.0 - due)) if rises else np.log(start / due)
@@ -219,8 +219,9 @@ class Electromagnet:
 
     @property
     def _tolerance(self) -> float:
-        """The deviation as a part of the pull that comes and goes."""
-        return self.deviation * self.hold_force / (self.hold_force - self.residual)
+        """The deviation as a part of the pull that comes and goes, less what a moment takes."""
+        part = self.deviation * self.hold_force / (self.hold_force - self.residual)
+        return (1.0 - 5.0 * AT_ONCE) * part
 
     @cached_property
     def _rising(self) -> NDArray[np.float64]:

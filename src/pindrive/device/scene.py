@@ -26,6 +26,8 @@ LUMA: Final = (0.299, 0.587, 0.114)
 MOST_PIXELS: Final = 100_000_000
 """More are refused: 800 MB of luminance."""
 INCH: Final = 0.0254
+NEAR: Final = 1e-9
+"""Off the page by no more than that (m) is on its border."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,8 +72,9 @@ class Scene:
         return x, x + columns * self.pixel, y, y + rows * self.pixel
 
     def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
-        """Whether places (m, any shape) are on the page, its border included."""
+        """Whether places (m, any shape) are on the page, its border and rounding included."""
         left, right, top, bottom = self.extent
+        left, right, top, bottom = left - NEAR, right + NEAR, top - NEAR, bottom + NEAR
         px, py = np.asarray(x, np.float64), np.asarray(y, np.float64)
         return (left <= px) & (px <= right) & (top <= py) & (py <= bottom)
 

@@ -1,0 +1,134 @@
+"""How a hand reads a page: scenes of a fitting size, and the strokes that lead over them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from math import radians
+from os import PathLike
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.hand import HandPath, lines
+from pindrive.device.record import read_csv
+from pindrive.device.scene import Scene
+from pindrive.quantities import check, refusal
+
+if TYPE_CHECKING:
+    from pindrive.device.array import PinArray
+
+RUN_IN: Final = 0.005
+"""White before and after the text of a line, beyond the array's width, m."""
+PIXEL: Final = 1e-4
+"""Of text and lines unless given, m."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """How a hand reads.
+
+    Args:
+        hand_speed: peak speed of a reading stroke, m/s, greater than 0.
+        return_speed: the same on the way back to the next line, m/s.
+        pause: rest after each stroke, s, at least 0.
+        line_pitch: from line to line, m; None: twice the height of text, and of an image without
+            lines one stroke along its middle.
+        text_height: of capital letters, m, greater than 0.
+        pixel: of the scene, m; None: of an image its own, of text and lines 0.1 mm.
+        max_angle: between motion and drive axis before a warning, rad, from 0 to a right angle.
+        hand_acceleration: m/s²; more in a record is a jump of its speed.
+        path_deviation: of the strokes' piecewise-linear speed, a part of its peak, in (0, 0.1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    hand_speed: float = 0.06
+    return_speed: float = 0.1
+    pause: float = 0.2
+    line_pitch: float | None = None
+    text_height: float = 0.01
+    pixel: float | None = None
+    max_angle: float = radians(20.0)
+    hand_acceleration: float = 30.0
+    path_deviation: float = 1e-3
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                object.__setattr__(self, field.name, check(field.name, value))
+
+    def text(self, text: str, array: PinArray, font: str | PathLike[str] | None = None) -> Scene:
+        """A page of text on which the whole array finds room; errors as for `Scene.from_text`."""
+        return Scene.from_text(
+            text,
+            height=self.text_height,
+            pixel=self.pixel or PIXEL,
+            margin=self._margin(array),
+            line_pitch=self.line_pitch,
+            font=font,
+        )
+
+    def grating(self, pitches: Iterable[float], array: PinArray) -> Scene:
+        """Groups of lines on which the array finds room; errors as for `Scene.from_grating`."""
+        return Scene.from_grating(
+            pitches,
+            height=self.text_height,
+            pixel=self.pixel or PIXEL,
+            margin=self._margin(array),
+        )
+
+    def image(self, file: str | PathLike[str]) -> Scene:
+        """An image; errors as for `Scene.from_image`."""
+        return Scene.from_image(file, self.pixel)
+
+    def record(self, file: str | PathLike[str]) -> HandPath:
+        """A recorded path; errors as for `read_csv`."""
+        return read_csv(file, acceleration=self.hand_acceleration)
+
+    def strokes(self, scene: Scene, array: PinArray) -> HandPath:
+        """Line by line over a scene, as far as every spot stays on it.
+
+        Along the scene's lines of text; of a scene without any along lines `line_pitch` apart from
+        top to bottom or, where none is given, once along its middle.
+
+        Raises:
+            ValueError: the spots of the array find no room on the scene.
+        """
+        left, right, top, bottom = scene.extent
+        offsets = array.on_page(array.spots)
+        (low_x, low_y), (high_x, high_y) = offsets.min(axis=0), offsets.max(axis=0)
+        left, right, top, bottom = left - low_x, right - high_x, top - low_y, bottom - high_y
+        if not (left < right and top <= bottom):
+            room = f"{scene.title}, {_size(np.subtract(scene.extent[1::2], scene.extent[::2]))}"
+            spots = _size(offsets.max(axis=0) - offsets.min(axis=0))
+            raise ValueError(refusal("the spots of the array", f"smaller than {room}", spots))
+        return lines(
+            scene.lines or self._rows(float(top), float(bottom)),
+            float(left),
+            float(right),
+            speed=self.hand_speed,
+            return_speed=self.return_speed,
+            pause=self.pause,
+            deviation=self.path_deviation,
+        )
+
+    def _rows(self, top: float, bottom: float) -> list[float]:
+        """The lines that a hand reads between two heights: as many as find room, in the middle."""
+        middle = 0.5 * (top + bottom)
+        if self.line_pitch is None:
+            return [middle]
+        count = int((bottom - top) / self.line_pitch)
+        return [middle + (i - 0.5 * count) * self.line_pitch for i in range(count + 1)]
+
+    def _margin(self, array: PinArray) -> float:
+        """White around a scene, m: the array stands beside the text before and after each line."""
+        offsets = array.on_page(array.spots)
+        return RUN_IN + float((offsets.max(axis=0) - offsets.min(axis=0)).max())
+
+
+def _size(extent: Iterable[float]) -> str:
+    return " by ".join(f"{1e3 * length:g}" for length in extent) + " mm"

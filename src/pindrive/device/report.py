@@ -1,0 +1,101 @@
+"""A scan as a person reads it in a terminal: what each pin did."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING, Final
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from pindrive.device.dataset import numbers
+from pindrive.quantities import QUANTITIES
+from pindrive.quantities_device import PIN
+from pindrive.report import TRUSTED, new_table
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from pindrive.device.device import Device
+    from pindrive.device.scanning import PinScan, Scan
+
+HEAD, TAIL = 24, 8
+"""How many pins of a large array are shown, from its first and from its last."""
+HEADINGS: Final = {
+    "pin.energised": "on",
+    "pin.switchings": "times",
+    "pin.slips": "slips",
+    "pin.captures": "caught",
+    "pin.carried": "held",
+    "pin.peak_displacement": "peak |x|",
+    "pin.peak_skin_force": "peak force",
+    "pin.peak_stretch": "peak stretch",
+}
+_MM: Final = 1e3
+
+
+def scan_report(scan: Scan) -> RenderableType:
+    """Its pins in a table, then its hand, its device and how far it can be trusted, in words."""
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _words(scan))
+    return Group(_pins(scan), *lines)
+
+
+def _pins(scan: Scan) -> Table:
+    names = [q.name for q in PIN]
+    if scan.device.drive.finger.rigid:
+        names.remove("pin.peak_stretch")
+    title = f"Pins, over {scan.scene.title}"
+    found = new_table(title, ">pin", ">place", *(f">{HEADINGS[name]}" for name in names))
+    found.add_row("", "mm", *(QUANTITIES[name].display_unit for name in names), style="dim")
+    for pin in scan.pins:
+        if HEAD <= pin.number < len(scan.pins) - TAIL:
+            if pin.number == HEAD:
+                found.add_row("...", f"{len(scan.pins) - HEAD - TAIL} more")
+            continue
+        found.add_row(*_row(scan, pin, names))
+    return found
+
+
+def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
+    x, y = scan.device.array.places[pin.number]
+    values = numbers(pin)
+    cells = [
+        f"{values[n]:g}" if QUANTITIES[n].unit == "" else QUANTITIES[n].digits(values[n])
+        for n in names
+    ]
+    return [str(pin.number), f"{_MM * x:g}, {_MM * y:g}", *cells]
+
+
+def _words(scan: Scan) -> list[str]:
+    device, path = scan.device, scan.path
+    largest, _ = path.angles(device.array.axis)
+    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
+    worst = max(pin.motion.certificate().worst for pin in scan.pins)
+    doubt = "" if worst <= TRUSTED else " Do not trust this scan."
+    return [
+        f"The hand moves for {path.end - path.begin:.4g} s, at {speed} at the most, up to "
+        f"{degrees(largest):.3g} deg off the drive axis.",
+        *device_words(device),
+        f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
+    ]
+
+
+def device_words(device: Device) -> list[str]:
+    """What follows from a device's numbers."""
+    length = QUANTITIES["displacement"]
+    words = [
+        f"A magnet carries its pin up to {length.text(device.reach)} "
+        f"(friction coefficient {device.friction_coefficient:.3g})"
+        + (f"; off, the plate drags it {length.text(device.drag)}." if device.drag else ".")
+    ]
+    coil = device.magnet.coil
+    if coil is not None:
+        quantities = [
+            QUANTITIES[f"coil.{name}"].text(getattr(coil, name))
+            for name in ("resistance", "inductance", "current", "power")
+        ]
+        words.append(
+            f"Its coil: {', '.join(quantities)}; on for {coil.duty:.0%} of the time at most, to "
+            f"warm by {coil.temperature_rise:g} K."
+        )
+    return words
