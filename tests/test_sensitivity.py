@@ -139,6 +139,14 @@ def changed(release: Release, name: str, by: float) -> Motion:
     return replace(release, drive=replace(drive, **rubbed)).run(0.5)
 
 
+def quantities(motion: Motion, times: np.ndarray) -> np.ndarray:
+    """Positions, then all numbers that have a derivative."""
+    numbers = motion.numbers()
+    del numbers["energy.residual"], numbers["transient.settled"]
+    all_of_them = np.array([*motion.position(times), *numbers.values()])
+    return np.where(np.isfinite(all_of_them), all_of_them, np.nan)
+
+
 def course_of(motion: Motion) -> list[object]:
     return [(s.mode, s.plate, s.finger) for s in motion.segments] + [
         (e.contact, e.kind) for e in motion.events
@@ -146,7 +154,7 @@ def course_of(motion: Motion) -> list[object]:
 
 
 @given(releases())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_random_motions_against_differences(release: Release) -> None:
     values = {
         "mass": release.drive.mass,
@@ -165,27 +173,23 @@ def test_random_motions_against_differences(release: Release) -> None:
     sensitivity = motion.sensitivity(names)
     times = np.linspace(0.0, min(0.5, motion.duration), 9)
     positions = sensitivity.position(times)
-    numbers = motion.numbers()
-    course = course_of(motion)
+    at = quantities(motion, times)
     for i, name in enumerate(names):
+        found = np.array([*positions[i], *(n[name] for n in sensitivity.numbers.values())])
         step = 1e-6 * abs(values[name])
-        up, down = changed(release, name, step), changed(release, name, -step)
-        if any(course_of(m) != course for m in (up, down)):
+        around = [changed(release, name, by) for by in (step, -step, step / 4, -step / 4)]
+        if any(course_of(m) != course_of(motion) for m in around):
             continue
-        largest = np.abs(motion.position(times)).max() / abs(values[name])
-        central = (up.position(times) - down.position(times)) / (2 * step)
-        exists = ~np.isnan(positions[i])
-        near = 1e-4 * max(largest, np.abs(central).max())
-        np.testing.assert_allclose(positions[i][exists], central[exists], rtol=1e-4, atol=near)
-        for number, slopes in sensitivity.numbers.items():
-            above, below = up.numbers()[number], down.numbers()[number]
-            bent = above + below - 2 * numbers[number]
-            central_change = (above - below) / (2 * step)
-            size = max(abs(numbers[number]), 1e-15)  # less is what has died away
-            scale = max(abs(central_change), size / abs(values[name]))
-            if not isfinite(slopes[name]) or not abs(bent) <= 1e-3 * step * scale:
-                continue
-            assert slopes[name] == pytest.approx(central_change, rel=1e-4, abs=1e-4 * scale)
+        up, down, near_up, near_down = (quantities(m, times) for m in around)
+        wide, narrow = (up - down) / (2 * step), (near_up - near_down) / (step / 2)
+        size = np.maximum(np.abs(at), 1e-15)  # less is what has died away
+        size[: len(times)] = max(1e-15, np.abs(at[: len(times)]).max())
+        near = 1e-4 * np.maximum(np.abs(narrow), size / abs(values[name]))
+        bent = near_up + near_down - 2 * at
+        # Where two differences agree, and both sides do, the derivative is theirs.
+        tells = (np.abs(wide - narrow) <= near / 4) & (np.abs(bent) <= step * near)
+        tells &= np.isfinite(found)
+        assert np.all(np.abs(found - narrow)[tells] <= near[tells])
 
 
 CURVED = pin(
