@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 from pathlib import Path
 from typing import Any
 
@@ -143,6 +143,12 @@ def quantities(motion: Motion, times: np.ndarray) -> np.ndarray:
     """Positions, then all numbers that have a derivative."""
     numbers = motion.numbers()
     del numbers["energy.residual"], numbers["transient.settled"]
+    # A band this narrow has few digits, and its derivative none.
+    if not abs(motion.displacement - motion.ending.position) > 1e-5 * abs(motion.displacement):
+        numbers["transient.settling_time"] = nan
+    # Of a turn where next to nothing is left of the wave, the time has few digits too.
+    if abs(motion.transient.trough_displacement) < 1e-9 * abs(motion.displacement):
+        numbers["transient.trough_time"] = nan
     all_of_them = np.array([*motion.position(times), *numbers.values()])
     return np.where(np.isfinite(all_of_them), all_of_them, np.nan)
 
