@@ -16,17 +16,21 @@ CONSUMER = ROOT / "tests" / "consumer"
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
 
-def run(*command: str | Path) -> str:
-    """The program's output; its complaints, if it fails."""
+def attempt(*command: str | Path) -> subprocess.CompletedProcess[str]:
     program = shutil.which(str(command[0]), path=PATH)
     assert program, f"{command[0]} is missing: it comes with the extra `test`"
-    result = subprocess.run(
+    return subprocess.run(
         [program, *map(str, command[1:])],
         env={**os.environ, "PATH": PATH},
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+def run(*command: str | Path) -> str:
+    """The program's output; its complaints, if it fails."""
+    result = attempt(*command)
     assert result.returncode == 0, result.stdout + result.stderr
     return result.stdout
 
@@ -77,4 +81,17 @@ def test_add_subdirectory(tmp_path: Path) -> None:
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
 def test_ctest(tmp_path: Path) -> None:
     build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release")
+    run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
+
+
+@pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+def test_no_sanitizer_complains(tmp_path: Path) -> None:
+    """The same programs, stopped at any memory error or undefined behaviour, and a shorter fuzz."""
+    settings = ("-DPINDRIVE_TESTS=ON", "-DPINDRIVE_SANITIZE=ON")
+    configured = attempt("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *settings)
+    if "this compiler has no -fsanitize" in " ".join(configured.stderr.split()):
+        pytest.skip("this compiler has no sanitizers")
+    assert configured.returncode == 0, configured.stderr
+    run("cmake", "--build", tmp_path)
+    assert b"__ubsan_handle" in (tmp_path / "fuzz").read_bytes()
     run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
