@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Final, SupportsFloat
 
 from pindrive.quantities_device import DEVICE_INPUTS, DEVICE_PARTS, PIN
+from pindrive.quantities_judge import JUDGE
 from pindrive.quantity import (
     FINITE,
     NON_NEGATIVE,
@@ -390,7 +391,9 @@ OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN
 """What the whole device adds."""
 
-QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
+QUANTITIES: Final[dict[str, Quantity]] = {
+    q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE + JUDGE
+}
 
 
 def refusal(label: str, required: str, given: object, where: str = "") -> str:

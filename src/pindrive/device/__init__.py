@@ -10,26 +10,32 @@ if TYPE_CHECKING:
     from pindrive.device.control import Commands, ControlBlock, Decision
     from pindrive.device.device import Device
     from pindrive.device.hand import HandPath, lines, strokes, through
+    from pindrive.device.judging import judge
     from pindrive.device.magnet import CoilState, Current, Electromagnet
     from pindrive.device.record import read_csv
     from pindrive.device.scanning import PinScan, PinState, Scan, scan
     from pindrive.device.scene import Scene
+    from pindrive.device.verdict import Criteria, Judgement, Line
 
 _HOME = {
     "Coil": "coil",
     "CoilState": "magnet",
     "Commands": "control",
     "ControlBlock": "control",
+    "Criteria": "verdict",
     "Current": "magnet",
     "Decision": "control",
     "Device": "device",
     "Electromagnet": "magnet",
     "HandPath": "hand",
+    "Judgement": "verdict",
+    "Line": "verdict",
     "PinArray": "array",
     "PinScan": "scanning",
     "PinState": "scanning",
     "Scan": "scanning",
     "Scene": "scene",
+    "judge": "judging",
     "lines": "hand",
     "read_csv": "record",
     "scan": "scanning",
@@ -42,16 +48,20 @@ __all__ = [
     "CoilState",
     "Commands",
     "ControlBlock",
+    "Criteria",
     "Current",
     "Decision",
     "Device",
     "Electromagnet",
     "HandPath",
+    "Judgement",
+    "Line",
     "PinArray",
     "PinScan",
     "PinState",
     "Scan",
     "Scene",
+    "judge",
     "lines",
     "read_csv",
     "scan",

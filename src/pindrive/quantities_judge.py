@@ -1,0 +1,106 @@
+"""The table of quantities, third part: what a scan is judged by, and what is found."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pindrive.quantity import POSITIVE, Bounds, Quantity
+
+GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
+SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
+
+CRITERIA: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "felt",
+        "d_1",
+        "m",
+        "motion that is felt as a pulse",
+        POSITIVE,
+        45e-6,
+        "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
+        "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
+    ),
+    Quantity(
+        "direction",
+        "d_2",
+        "m",
+        "motion of skin whose direction is perceived",
+        POSITIVE,
+        5e-5,
+        f"{GLEESON}, from 0.05 mm",
+    ),
+    Quantity(
+        "direction_sure",
+        "d_3",
+        "m",
+        "motion of skin whose direction is told right in more than 95 % of cases",
+        POSITIVE,
+        2e-4,
+        f"{GLEESON}, 0.2 mm",
+    ),
+    Quantity(
+        "direction_speed",
+        "v_3",
+        "m/s",
+        "speed at which it must be gone for that",
+        POSITIVE,
+        2e-3,
+        f"{GLEESON}, 2 mm/s",
+    ),
+    Quantity(
+        "echo",
+        "h_e",
+        "1",
+        "a swing this part as high as the line before it is a line that is not there",
+        SHARE,
+        0.5,
+        "assumed",
+    ),
+)
+"""The limits that a scan is judged by."""
+
+_FOUND: Final = (
+    ("latency_on", "t_l,on", "s", "from the edge where a line begins until the pin goes along"),
+    ("latency_off", "t_l,off", "s", "from the edge where it ends until the pin comes back"),
+    ("lag_on", "l_on", "m", "what the hand goes meanwhile, where a line begins"),
+    ("lag_off", "l_off", "m", "what the hand goes meanwhile, where it ends"),
+    ("stroke", "h", "m", "how far the line moves the pin"),
+    ("skin_on", "d_on", "m", "how far the skin moves where a line begins"),
+    ("skin_off", "d_off", "m", "how far the skin moves where it ends"),
+    ("smear_time", "t_s", "s", "from the pin's release until it has settled"),
+    ("smear", "l_s", "m", "what the hand goes meanwhile"),
+    ("overshoot", "o", "1", "swing beyond the resting place, a part of the way back to it"),
+    ("contrast", "C", "1", "deflection over the line against that over as much way after it"),
+)
+
+LINE: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(f"line.{name}", symbol, unit, meaning) for name, symbol, unit, meaning in _FOUND
+)
+"""What is found of each line under each pin."""
+
+JUDGED: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(f"judged.{name}", symbol, "", meaning)
+    for name, symbol, meaning in (
+        ("lines", "n", "lines that passed under a pin"),
+        ("shown", "n_1", "of them shown: the pin went along and came back"),
+        ("unseen", "n_2", "missed: the control block did not see them"),
+        ("merged", "n_3", "missed: the pin or the magnet had not let go of the line before"),
+        ("faint", "n_4", "missed: the skin did not move enough to be felt"),
+        ("echoes", "n_5", "false lines: swings that no line explains"),
+        ("unsettled", "n_6", "of those shown, not settled before the next line or the hand's stop"),
+        ("direction", "n_7", "of those shown, moved the skin enough for its direction"),
+        ("sure", "n_8", "of those, enough for 95 % right answers"),
+    )
+)
+"""What is found of a scan."""
+
+SPEED: Final[tuple[Quantity, ...]] = (
+    Quantity("speed.pitch", "p", "m", "distance between two lines", POSITIVE),
+    Quantity("speed.width", "w", "m", "width of the lines", POSITIVE),
+    Quantity("speed.part", "r", "1", "part of its way that the pin must be back between", SHARE),
+    Quantity("speed.slowest", "v_min", "m/s", "slowest hand tried", POSITIVE),
+    Quantity("speed.fastest", "v_max", "m/s", "fastest hand tried", POSITIVE),
+)
+"""What the largest hand speed is found for."""
+
+JUDGE: Final = CRITERIA + LINE + JUDGED + SPEED
