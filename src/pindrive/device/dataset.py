@@ -148,9 +148,7 @@ def peak_displacement(motion: Motion) -> float:
     drive = motion.drive
     skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
     period = 2.0 * pi / sqrt((drive.stiffness + skin) / drive.mass)
-    ends = np.array([s.end for s in motion.segments])
-    even = np.linspace(0.0, motion.duration, int(30.0 * motion.duration / period) + 2)
-    t = np.union1d(even, ends[ends <= motion.duration])
+    t = motion.sample_times(int(30.0 * motion.duration / period) + 2)  # and where modes change
     right, left = motion.velocity(t[:-1]), motion.velocity(t[1:], "left")
     turns = right * left < 0.0
     low, high, sign = t[:-1][turns], t[1:][turns], np.sign(right[turns])

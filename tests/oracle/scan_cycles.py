@@ -1,0 +1,79 @@
+"""A pin's scan under SUNDIALS: the same hand and pull, integrated by `sundials_modes`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from oracle import sundials_modes
+from pindrive import Contact, Profile
+from pindrive.device import PinScan
+
+SAMPLES = 300
+JUST_BEFORE = 0.999
+"""Of the duration: at the very end, where the hand comes to rest, one may tell an event or not."""
+
+
+@dataclass(frozen=True)
+class Distance:
+    """How far a pin's scan is from SUNDIALS'."""
+
+    events: bool
+    """Whether the same happened in the same order."""
+    time: float
+    """Between two times of one event at the most, s."""
+    position: float
+    """And the rest, parts of the largest deflection, velocity, force and stretch."""
+    velocity: float
+    force: float
+    stretch: float
+
+    @property
+    def state(self) -> float:
+        return max(self.position, self.velocity, self.force, self.stretch)
+
+
+def distance(pin: PinScan) -> Distance:
+    """Integrate it anew, and compare."""
+    last = JUST_BEFORE * pin.end
+    samples = np.linspace(0.0, last, SAMPLES)
+    run = sundials_modes.solve(_inputs(pin), pin.end, samples.tolist())
+    mine = [(e.contact, e.kind, e.time) for e in pin.events if e.time < last]
+    theirs = [(contact, kind, time) for time, contact, kind, _, _ in run.events if time < last]
+    same = [row[:2] for row in mine] == [row[:2] for row in theirs]
+    times = [abs(a[2] - b[2]) for a, b in zip(mine, theirs, strict=False)]
+    x, v, _, force, stretch = np.array(run.rows).T
+    parts = []
+    for found, true in (
+        (pin.position(samples), x),
+        (pin.velocity(samples), v),
+        (pin.skin_force(samples), -force),
+        (pin.stretch(samples), 0.0 * x if pin.motion.drive.finger.rigid else stretch),
+    ):
+        parts.append(float(np.abs(found - true).max() / max(np.abs(true).max(), 1e-12)))
+    return Distance(same, max(times, default=0.0), *parts)
+
+
+def _inputs(pin: PinScan) -> dict[str, Any]:
+    motion, load = pin.motion, pin.load
+    assert isinstance(motion.mouse_velocity, Profile)
+    return {
+        "mass": motion.drive.mass,
+        "stiffness": motion.drive.stiffness,
+        "damping": motion.drive.damping,
+        "plate": _contact(motion.drive.plate),
+        "finger": _contact(motion.drive.finger),
+        "mouse_velocity": [list(row) for row in motion.mouse_velocity.rows],
+        "load": [list(row) for row in load.rows] if isinstance(load, Profile) else [[0.0, load]],
+        "displacement": 0.0,
+        "velocity": 0.0,
+        "skin_stretch": None if motion.drive.finger.rigid else 0.0,
+    }
+
+
+def _contact(surface: Contact) -> dict[str, Any]:
+    stiffness = None if surface.rigid else surface.stiffness
+    curve = [(0.0, surface.kinetic)]
+    return {"curve": curve, "static": surface.static_friction, "stiffness": stiffness}

@@ -1,0 +1,155 @@
+"""Random devices over random lines: what a scan must be whatever it is made of.
+
+python -m random_scans COUNT SEED            the worst of so many, from that seed on
+python -m random_scans COUNT SEED sundials   the same against SUNDIALS, of those it can follow
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from pindrive import Contact, Drive, Profile
+from pindrive.device import (
+    ControlBlock,
+    Device,
+    Electromagnet,
+    HandPath,
+    PinScan,
+    Scene,
+    scan,
+    strokes,
+)
+
+
+@dataclass(frozen=True)
+class RandomScan:
+    """A device, a scene and a path drawn from a seed, over decades of every number."""
+
+    device: Device
+    scene: Scene
+    path: HandPath
+    cut: float
+    """A time within the path, s."""
+
+    @classmethod
+    def of(cls, seed: int) -> RandomScan:
+        draw = np.random.default_rng(seed)
+
+        def between(low: float, high: float) -> float:
+            return float(np.exp(draw.uniform(np.log(low), np.log(high))))
+
+        def either(*values: float) -> float:
+            return float(draw.choice(values))
+
+        plate, finger = between(0.002, 0.1), between(0.0005, 0.05)
+        drive = Drive.with_damping_ratio(
+            mass=between(0.002, 0.05),
+            stiffness=between(20.0, 1000.0),
+            damping_ratio=either(0.0, between(0.01, 2.0)),
+            plate=Contact(plate, plate * either(1.0, 1.2, 1.8)),
+            finger=Contact(
+                finger, finger * either(1.0, 1.5), stiffness=either(inf, between(50.0, 3000.0))
+            ),
+        )
+        magnet = Electromagnet(
+            hold_force=between(0.1, 20.0),
+            rise_constant=between(1e-4, 1e-2),
+            fall_constant=between(1e-4, 1e-2),
+            saturation=either(1.0, draw.uniform(0.1, 1.0)),
+            residual=either(0.0, 0.02),
+            deviation=between(1e-5, 1e-2),
+        )
+        control = ControlBlock(
+            sample_rate=between(100.0, 5000.0), latency=either(0.0, between(1e-3, 0.05))
+        )
+        pitches = [between(0.0006, 0.01) for _ in range(draw.integers(1, 4))]
+        lines = Scene.from_grating(
+            pitches, count=int(draw.integers(1, 4)), margin=0.004, pixel=2e-4, height=0.002
+        )
+        half = 0.5 * lines.luminance.shape[1] * lines.pixel
+        scene = Scene(lines.luminance, lines.pixel, (-half, 0.0), lines.lines)
+        y = scene.lines[0]
+        stops = [(0.001 - half, y), (half - 0.001, y)]
+        if draw.random() < 0.4:
+            stops.append(stops[0])  # and back
+        path = strokes(stops, between(0.01, 0.4), pause=either(0.0, 0.05))
+        cut = float(draw.uniform(0.05, 0.95)) * path.end
+        return cls(Device(drive=drive, magnet=magnet, control=control), scene, path, cut)
+
+    def scan(self) -> PinScan:
+        return scan(self.device, self.scene, self.path, threads=1).pins[0]
+
+    def halves(self) -> tuple[PinScan, PinScan]:
+        parts = self.path.between(0.0, self.cut), self.path.between(self.cut, self.path.end)
+        first = scan(self.device, self.scene, parts[0], threads=1)
+        second = scan(self.device, self.scene, parts[1], start=first.state, threads=1)
+        return first.pins[0], second.pins[0]
+
+    def mirrored(self) -> PinScan:
+        path, scene = self.path, self.scene
+        start = -float(path.x[0]), float(path.y[0])
+        back = HandPath(path.times, -path.vx, path.vy, start)
+        other = replace(scene, luminance=scene.luminance[:, ::-1])
+        return scan(self.device, other, back, threads=1).pins[0]
+
+
+def short(pin: PinScan) -> bool:
+    """Whether a general integrator gets through it in a second."""
+    rows = len(pin.load.times) if isinstance(pin.load, Profile) else 1
+    return rows <= 600 and pin.end <= 4.0
+
+
+def parting(whole: PinScan, halves: tuple[PinScan, PinScan]) -> float:
+    """How far two halves are from the whole, a part of its largest deflection."""
+    largest = np.abs(whole.position(np.linspace(whole.begin, whole.end, 2000))).max()
+    worst = 0.0
+    for half in halves:
+        t = np.linspace(half.begin, half.end, 400)
+        worst = max(worst, float(np.abs(half.position(t) - whole.position(t)).max()))
+    return worst / max(float(largest), 1e-9)
+
+
+def mirrors(pin: PinScan, other: PinScan) -> bool:
+    """Whether one is the mirror image of the other, to the bit."""
+    t = np.linspace(pin.begin, pin.end, 500)
+    return (
+        np.array_equal(pin.commands.times, other.commands.times)
+        and np.array_equal(pin.position(t), -other.position(t))
+        and [e.time for e in pin.events] == [e.time for e in other.events]
+    )
+
+
+def main(count: int, seed: int) -> None:
+    residual = part = 0.0
+    events = turned = 0
+    for one in (RandomScan.of(s) for s in range(seed, seed + count)):
+        pin = one.scan()
+        residual = max(residual, pin.motion.certificate().worst)
+        part = max(part, parting(pin, one.halves()))
+        turned += mirrors(pin, one.mirrored())
+        events += len(pin.events)
+    print(f"{count} scans from seed {seed}, {events} events: largest residual {residual:.1e},")
+    print(f"in two halves {part:.1e} apart, {turned} mirrored to the bit")
+
+
+def main_sundials(count: int, seed: int) -> None:
+    from oracle.scan_cycles import distance
+
+    pins = [pin for s in range(seed, seed + count) if short(pin := RandomScan.of(s).scan())]
+    found = [distance(pin) for pin in pins]
+    print(
+        f"{len(found)} scans, {sum(len(pin.events) for pin in pins)} events: "
+        f"{sum(d.events for d in found)} with the same events, times within "
+        f"{max(d.time for d in found):.1e} s, positions within "
+        f"{max(d.position for d in found):.1e} of the largest, all states within "
+        f"{max(d.state for d in found):.1e}"
+    )
+
+
+if __name__ == "__main__":
+    run = main_sundials if "sundials" in sys.argv else main
+    run(int(sys.argv[1]), int(sys.argv[2]))

@@ -1,0 +1,28 @@
+"""Random scans keep the laws of motion, go on where they were cut, and mirror."""
+
+from __future__ import annotations
+
+import pytest
+
+from oracle.scan_cycles import distance
+from random_scans import RandomScan, mirrors, parting
+
+SHORT = (1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 15)
+"""Seeds of scans that a general integrator gets through in a second."""
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_random_scans(seed: int) -> None:
+    one = RandomScan.of(seed)
+    pin = one.scan()
+    assert pin.motion.certificate().worst < 1e-9
+    assert parting(pin, one.halves()) < 1e-10
+    assert mirrors(pin, one.mirrored())
+
+
+@pytest.mark.parametrize("seed", SHORT)
+def test_random_scans_against_sundials(seed: int) -> None:
+    found = distance(RandomScan.of(seed).scan())
+    assert found.events
+    assert found.time < 1e-8
+    assert found.state < 1e-8
