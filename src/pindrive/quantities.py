@@ -388,12 +388,10 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
 
 OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE
 
-DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN
+DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
-QUANTITIES: Final[dict[str, Quantity]] = {
-    q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE + JUDGE
-}
+QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
 
 
 def refusal(label: str, required: str, given: object, where: str = "") -> str:
