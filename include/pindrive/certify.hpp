@@ -226,7 +226,7 @@ class Certifier {
     const T alpha = oscillator.alpha();
     const T fastest = oscillator.oscillates() ? sqrt(oscillator.omega0_squared())
                                               : std::abs(alpha) + oscillator.omega();
-    const T quick = 8 / fastest;  // so far the rule is exact to rounding, for products too
+    const T quick = 8 / fastest;  // so far gauss16 is exact, for products too
     Errors errors;
     State from = state(stage, T(0));
     laws(stage, from, errors);
@@ -240,7 +240,7 @@ class Certifier {
       if (leaps)
         leap(stage, from, to);
       else
-        panel(stage, from, to, errors);
+        panel(stage, from, to, !stage.waves || (high - low) * fastest < T(1.2), errors);
       from = to;
       low = high;
     }
@@ -252,7 +252,7 @@ class Certifier {
     worst(result_.sticking, errors.sticking, v_scale_);
   }
 
-  void panel(const Stage& stage, const State& from, const State& to, Errors& errors) {
+  void panel(const Stage& stage, const State& from, const State& to, bool brief, Errors& errors) {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     std::array<typename Guard<T>::Flatness, 4> flatness;
     for (int i = 0; i < stage.count; ++i)
@@ -269,11 +269,15 @@ class Certifier {
       before = now;
     };
     Sums sums;
-    gauss_nodes(from.tau, to.tau, [&](T tau, T weight) {
+    const auto visit = [&](T tau, T weight) {
       const State now = state(stage, tau);
       follow(now);
       gather(stage, now, weight, sums);
-    });
+    };
+    if (brief)
+      gauss_nodes(gauss8, from.tau, to.tau, visit);
+    else
+      gauss_nodes(gauss16, from.tau, to.tau, visit);
     follow(to);
     worst(result_.kinematics, to.x - from.x - sums.v, x_scale_);
     worst(result_.kinematics, to.v - from.v - sums.a, v_scale_);

@@ -9,31 +9,42 @@
 
 namespace pindrive {
 
-/// Calls visit(τ, weight) at the nodes of the 16-point Gauss–Legendre rule, in order of τ.
-template <class T, class Visitor>
-void gauss_nodes(T low, T high, Visitor&& visit) {
-  static constexpr std::array<long double, 8> nodes{
-      0.0950125098376374401853193354249581L, 0.2816035507792589132304605014604961L,
-      0.4580167776572273863424194429835775L, 0.6178762444026437484466717640487910L,
-      0.7554044083550030338951011948474422L, 0.8656312023878317438804678977123931L,
-      0.9445750230732325760779884155346083L, 0.9894009349916499325961541734503326L};
-  static constexpr std::array<long double, 8> weights{
-      0.1894506104550684962853967232082831L, 0.1826034150449235888667636679692199L,
-      0.1691565193950025381893120790303599L, 0.1495959888165767320815017305474785L,
-      0.1246289712555338720524762821920164L, 0.0951585116824927848099251076022462L,
-      0.0622535239386478928628438369943776L, 0.0271524594117540948517805724560181L};
+/// Positive nodes and weights of a Gauss–Legendre rule on [−1, 1].
+template <std::size_t Half>
+struct GaussRule {
+  std::array<long double, Half> nodes, weights;
+};
+/// Exact to rounding for e^(κs) with |κ| up to 8 and to 1.2.
+inline constexpr GaussRule<8> gauss16{
+    {0.0950125098376374401853193354249581L, 0.2816035507792589132304605014604961L,
+     0.4580167776572273863424194429835776L, 0.6178762444026437484466717640487910L,
+     0.7554044083550030338951011948474423L, 0.8656312023878317438804678977123931L,
+     0.9445750230732325760779884155346083L, 0.9894009349916499325961541734503326L},
+    {0.1894506104550684962853967232082831L, 0.1826034150449235888667636679692199L,
+     0.1691565193950025381893120790303600L, 0.1495959888165767320815017305474785L,
+     0.1246289712555338720524762821920164L, 0.0951585116824927848099251076022462L,
+     0.0622535239386478928628438369943777L, 0.0271524594117540948517805724560181L}};
+inline constexpr GaussRule<4> gauss8{
+    {0.1834346424956498049394761423601840L, 0.5255324099163289858177390491892463L,
+     0.7966664774136267395915539364758304L, 0.9602898564975362316835608685694730L},
+    {0.3626837833783619829651504492771956L, 0.3137066458778872873379622019866013L,
+     0.2223810344533744705443559944262409L, 0.1012285362903762591525313543099622L}};
+
+/// Calls visit(τ, weight) at the nodes of a rule from low to high, in order of τ.
+template <class T, std::size_t Half, class Visitor>
+void gauss_nodes(const GaussRule<Half>& rule, T low, T high, Visitor&& visit) {
   const T middle = (low + high) / 2, half = (high - low) / 2;
-  for (std::size_t i = nodes.size(); i-- > 0;)
-    visit(middle - half * T(nodes[i]), half * T(weights[i]));
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    visit(middle + half * T(nodes[i]), half * T(weights[i]));
+  for (std::size_t i = Half; i-- > 0;)
+    visit(middle - half * T(rule.nodes[i]), half * T(rule.weights[i]));
+  for (std::size_t i = 0; i < Half; ++i)
+    visit(middle + half * T(rule.nodes[i]), half * T(rule.weights[i]));
 }
 
-/// ∫ f from low to high by that rule.
+/// ∫ f from low to high by the 16-point rule.
 template <class T, class Function>
 T gauss(Function&& f, T low, T high) {
   T sum{0};
-  gauss_nodes(low, high, [&](T tau, T weight) { sum += weight * f(tau); });
+  gauss_nodes(gauss16, low, high, [&](T tau, T weight) { sum += weight * f(tau); });
   return sum;
 }
 
