@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/model.hpp"
 
@@ -20,6 +21,13 @@ template <class T>
 struct Equation {
   T damping, stiffness;
   Line<T> pull;
+  T size;  ///< of all that the pull is the sum of, N
+
+  /// What the pull and the damping at a velocity leave, less than this, is rounding, N.
+  T blur(T velocity) const {
+    using std::abs;
+    return 4 * std::numeric_limits<T>::epsilon() * (size + abs(damping * velocity));
+  }
 };
 
 template <class T>
@@ -36,13 +44,15 @@ class Friction {
 
   /// The motion of a pin at x whose sliding and gripping contacts act on it.
   Equation<T> equation(Mode mode, const Instant<T>& now, T x, T skin_force) const {
-    Equation<T> sum{drive_.damping,
-                    drive_.stiffness,
-                    {drive_.mass * now.plate_velocity.rate - drive_.stiffness * x, T(0)}};
+    using std::abs;
+    const T inertia = drive_.mass * now.plate_velocity.rate, spring = drive_.stiffness * x;
+    Equation<T> sum{
+        drive_.damping, drive_.stiffness, {inertia - spring, T(0)}, abs(inertia) + abs(spring)};
     add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, now.plate_velocity, now.load);
     if (mode.finger == Slide::gripping) {
       sum.stiffness += drive_.finger.stiffness;
       sum.pull.value -= skin_force;
+      sum.size += abs(skin_force);
     } else {
       add_sliding(sum, drive_.finger, mode.finger, mode.finger_region, {}, {T(1), T(0)});
     }
@@ -102,10 +112,10 @@ class Friction {
   }
 
   /// Mode of a pin that, sliding, has brought one rigid contact to its level at x. It came with a
-  /// force that pushed it there, so it sticks or crosses; it cannot turn back.
+  /// force that pushed it there, so it sticks or crosses; it cannot turn back. What is as large as
+  /// the capacity to rounding holds: the mode that holds asks where it goes from there.
   Mode arriving(Mode stuck, int side, const Instant<T>& now, T x, T skin_force) const {
-    const T force = needed(equation(stuck, now, x, skin_force), level(stuck, now));
-    return side * force > capacity(stuck, now).value ? released(stuck, -side, now) : stuck;
+    return overload(stuck, now, x, skin_force) == side ? released(stuck, -side) : stuck;
   }
 
   /// Mode of a pin at rest against the surface of every contact marked stuck, of which those of
@@ -113,44 +123,41 @@ class Friction {
   Mode holding(Mode stuck, Mode before, const Instant<T>& now, T x, T skin_force) const {
     const T w = now.plate_velocity.rate;
     if (stuck.plate != Slide::stuck || stuck.finger != Slide::stuck || w == 0) {
-      const T force = needed(equation(stuck, now, x, skin_force), level(stuck, now));
-      const T limit = capacity(stuck, now).value;
-      return force > limit    ? released(stuck, -1, now)
-             : force < -limit ? released(stuck, 1, now)
-                              : stuck;
+      const int side = overload(stuck, now, x, skin_force);
+      return side == 0 ? stuck : released(stuck, -side);
     }
     // The surfaces part: with the plate, with the finger, or with neither.
     const int parting = w > 0 ? 1 : -1;
     Mode with_plate = stuck, with_finger = stuck;
     with_plate.finger = static_cast<Slide>(parting);
     with_finger.plate = static_cast<Slide>(-parting);
-    const auto holds = [&](Mode mode) {
-      using std::abs;
-      const T force = needed(equation(mode, now, x, skin_force), level(mode, now));
-      return abs(force) <= capacity(mode, now).value;
-    };
     const bool plate_first = before.plate == Slide::stuck || before.finger != Slide::stuck;
     for (const Mode& mode :
          {plate_first ? with_plate : with_finger, plate_first ? with_finger : with_plate})
-      if (holds(mode)) return mode;
+      if (overload(mode, now, x, skin_force) == 0) return mode;
     // Neither holds: the pin is thrown ahead of both or behind both, or slides between them.
     const auto acceleration = [&](Mode mode) {
       return -needed(equation(mode, now, x, skin_force), Line<T>{}) / drive_.mass;
     };
-    const Mode ahead = released(stuck, 1, now), behind = released(stuck, -1, now);
+    const Mode ahead = released(stuck, 1), behind = released(stuck, -1);
     if (acceleration(ahead) > std::max(w, T(0))) return ahead;
     if (acceleration(behind) < std::min(w, T(0))) return behind;
     with_plate.plate = static_cast<Slide>(-parting);
     return with_plate;
   }
 
-  /// The mode in which the stuck contacts slide to the given side.
-  Mode released(Mode stuck, int side, const Instant<T>& now) const {
+  /// The mode in which the stuck contacts slide to the given side. What slides already stays in its
+  /// region.
+  Mode released(Mode stuck, int side) const {
     const auto slide = static_cast<Slide>(side);
-    const T v = level(stuck, now).value;
-    if (stuck.plate == Slide::stuck) stuck.plate = slide;
-    if (stuck.finger == Slide::stuck) stuck.finger = slide;
-    sort_regions(stuck, v, now);
+    if (stuck.plate == Slide::stuck) {
+      stuck.plate = slide;
+      stuck.plate_region = 0;
+    }
+    if (stuck.finger == Slide::stuck) {
+      stuck.finger = slide;
+      stuck.finger_region = 0;
+    }
     return stuck;
   }
 
@@ -164,6 +171,16 @@ class Friction {
   }
 
  private:
+  /// The sign of the force that the stuck contacts cannot carry; 0 if they can.
+  int overload(Mode stuck, const Instant<T>& now, T x, T skin_force) const {
+    using std::abs;
+    const Equation<T> sum = equation(stuck, now, x, skin_force);
+    const Line<T> held = level(stuck, now);
+    const T force = needed(sum, held), inertia = drive_.mass * held.rate;
+    const T blur = sum.blur(held.value) + 4 * std::numeric_limits<T>::epsilon() * abs(inertia);
+    return abs(force) <= capacity(stuck, now).value + blur ? 0 : force > 0 ? 1 : -1;
+  }
+
   static Slide touch(const Contact<T>& contact, T u) {
     if (!contact.present()) return Slide::absent;
     return u > 0 ? Slide::forward : u < 0 ? Slide::backward : Slide::stuck;
@@ -177,7 +194,9 @@ class Friction {
     const Region<T> region = contact.region(index);
     const T drag = region.slope * load.value;
     const T force = sign(slide) * (region.force - region.slope * region.from);
+    using std::abs;
     sum.damping += drag;
+    sum.size += abs(drag * surface.value) + abs(force * load.value);
     sum.pull.value += drag * surface.value - force * load.value;
     sum.pull.rate += drag * surface.rate - force * load.rate;
   }

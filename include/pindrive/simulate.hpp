@@ -66,6 +66,7 @@ class Simulation {
 
   Segment<T> next() {
     const Equation<T> equation = friction_.equation(mode_, now_, x_, skin_);
+    follows_ = !mode_.stuck() && follows(equation);
     const Flow<T> flow =
         mode_.stuck() ? Flow<T>::stuck(x_, friction_.level(mode_, now_)) : free_flow(equation);
     const auto forces = friction_.forces(mode_, now_, equation, flow, skin_);
@@ -92,10 +93,25 @@ class Simulation {
   Flow<T> free_flow(const Equation<T>& equation) const {
     const Oscillator<T> oscillator(drive_.mass, equation.damping, equation.stiffness);
     const T drift = equation.pull.rate / equation.stiffness;
-    const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
-    const T acceleration =
-        tangential_ ? tangent_ : (equation.pull.value - equation.damping * v_) / drive_.mass;
-    return Flow<T>::free(oscillator, x_, v_, acceleration, y, drift);
+    if (!follows_) {
+      const T acceleration = (equation.pull.value - equation.damping * v_) / drive_.mass;
+      const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
+      return Flow<T>::free(oscillator, x_, v_, acceleration, y, drift);
+    }
+    const T y = -(drive_.mass * followed() + equation.damping * (v_ - drift)) / equation.stiffness;
+    return Flow<T>::free(oscillator, x_, v_, followed(), y, drift);
+  }
+
+  /// Whether the pin sets out along with a level: it breaks loose tangentially, or came to the border
+  /// of a region with no more than rounding against it.
+  bool follows(const Equation<T>& equation) const {
+    using std::abs;
+    const T against = equation.pull.value - equation.damping * v_ - drive_.mass * followed();
+    return tangential_ || (bordering_ && abs(against) <= equation.blur(v_));
+  }
+  /// The acceleration of that level.
+  T followed() const {
+    return tangential_ ? tangent_ : changed_plate_ ? now_.plate_velocity.rate : T(0);
   }
 
   // ---- how it ends -------------------------------------------------------------------------------
@@ -103,11 +119,13 @@ class Simulation {
   Exit first_exit(const Segment<T>& segment, const Equation<T>& equation) const {
     const Flow<T>& flow = segment.flow;
     const Mode mode = segment.mode;
-    Exit first;
+    Exit first, border;
     if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
 
     const auto consider = [&](const Path<T>& guard, int goes, Exit exit) {
       exit.tau = exit_time(flow.oscillator, guard, goes, row_ - time_);
+      if ((exit.cause == Cause::slower || exit.cause == Cause::faster) && exit.tau < border.tau)
+        border = exit;
       if (exit.tau == never || exit.tau > first.tau) return;
       if (exit.tau == first.tau && exit.cause == first.cause) {
         first.plate = first.plate || exit.plate;
@@ -125,8 +143,10 @@ class Simulation {
       Path<T> above = speed, below = T(-1) * speed;
       above.start -= region.from;
       below.start += region.to;
+      // A pin that goes along with the border of a region may be sent back, but not twice.
+      const bool away = just_changed && (!follows_ || tangential_ || bounced_);
       const auto goes = [&](const Path<T>& guard) {
-        return just_changed ? 1 : side_after_zero(flow.oscillator, guard);
+        return away ? 1 : side_after_zero(flow.oscillator, guard);
       };
       exit.cause = index == 0 ? Cause::arrives : Cause::slower;
       // A pin that stays at its level has arrived there.
@@ -140,8 +160,9 @@ class Simulation {
         exit.side = side;
         const Path<T> most = limit, left = most + T(-side) * force;
         // A gripping skin stretches as the pin moves, whose start is exact.
-        const int goes = mode.stuck() ? side_after_zero(flow.oscillator, left)
-                                      : -side * side_after_start(flow.oscillator, flow.velocity);
+        const int goes = !mode.stuck() ? -side * side_after_start(flow.oscillator, flow.velocity)
+                         : held_again_ ? 1
+                                       : side_after_zero(flow.oscillator, left);
         consider(left, goes, exit);
       }
     };
@@ -156,6 +177,10 @@ class Simulation {
     if (mode.stuck())
       holding(friction_.needed(equation, flow), friction_.capacity(mode, now_),
               {never, Cause::nothing, mode.plate == Slide::stuck, mode.finger == Slide::stuck, 0});
+    // A force that comes to its limit as another contact comes to a row of its curve is judged with
+    // what the row brings.
+    if (first.cause == Cause::gives_way && border.tau - first.tau <= rounding * (time_ + first.tau))
+      return border;
     return first;
   }
 
@@ -190,6 +215,12 @@ class Simulation {
     const bool at_once = exit.tau == 0 && (exit.cause == Cause::slower ||
                                            exit.cause == Cause::faster || skin_follows);
     tangential_ = tangential_ && at_once;
+    const bool border = exit.cause == Cause::slower || exit.cause == Cause::faster;
+    const bool same_instant = !(segment.end > segment.begin);
+    bounced_ = border && bordering_ && same_instant;
+    bordering_ = border;
+    let_go_ = let_go_ && same_instant;
+    held_again_ = let_go_ && exit.cause == Cause::arrives;
     changed_plate_ = exit.plate || (changed_plate_ && at_once);
     changed_finger_ = exit.finger || (changed_finger_ && at_once);
 
@@ -269,7 +300,7 @@ class Simulation {
   void give_way(const Segment<T>& segment, const Exit& exit) {
     if (mode_.finger == Slide::gripping && exit.finger) {
       mode_.finger = static_cast<Slide>(exit.side);
-      friction_.sort_regions(mode_, v_, now_);
+      mode_.finger_region = drive_.finger.region_of(exit.side * v_);
       if (!mode_.stuck()) return;
       // The skin's force drops to its kinetic friction: the plate may not hold what is left.
       mode_ = friction_.holding(mode_, mode_, now_, x_, skin_);
@@ -279,9 +310,10 @@ class Simulation {
     const auto even = [](bool taken, const Contact<T>& contact) {
       return !taken || contact.kinetic == contact.static_limit;
     };
+    let_go_ = true;
     tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
     tangent_ = friction_.level(mode_, now_).rate;
-    mode_ = friction_.released(mode_, -exit.side, now_);
+    mode_ = friction_.released(mode_, -exit.side);
     if (!exit.plate) return;
     hold_begin_ = segment.begin;
     note_recurrence(true);
@@ -362,8 +394,12 @@ class Simulation {
 
   bool changed_plate_{false},
       changed_finger_{false};  ///< by the last event: a zero there is no root
-  bool tangential_{false};     ///< the pin breaks loose with no relative acceleration, …
-  T tangent_{0};               ///< … at this acceleration
+  bool bordering_{false},
+      bounced_{false};  ///< came to the border of a region; from another, at once
+  bool let_go_{false}, held_again_{false};  ///< at this instant: then it is rounding that lets go
+  bool follows_{false};                     ///< it sets out along with a level
+  bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
+  T tangent_{0};            ///< … at this acceleration
 
   Mark mark_{};
   long long marks_{0}, next_mark_{0};  ///< states seen, and when the one to compare with is renewed
