@@ -7,11 +7,11 @@ import pytest
 from oracle.scan_cycles import distance
 from random_scans import RandomScan, mirrors, parting
 
-SHORT = (1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 15)
+SHORT = (1, 2, 5, 9, 12, 15)
 """Seeds of scans that a general integrator gets through in a second."""
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(40))
 def test_random_scans(seed: int) -> None:
     one = RandomScan.of(seed)
     pin = one.scan()
