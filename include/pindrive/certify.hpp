@@ -51,7 +51,7 @@ class Certifier {
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_) break;
       const Stage stage = stage_of(segment);
-      if (segment.end > segment.begin) walk(stage);
+      const State last = walk(stage);
       if (segment.end > duration_) break;
       const Segment<T>* next = &segment + 1;
       if (next != motion_.end())
@@ -60,7 +60,7 @@ class Certifier {
         next = motion_.locate(motion_.outcome().cycle_begin, Side::right).segment;
       else
         break;
-      junction(stage, stage_of(*next));
+      junction(segment.event, last, stage_of(*next));
     }
     const T energy = std::max({stored_, input_, dissipated_});
     worst(result_.energy, unaccounted_, energy);
@@ -153,7 +153,7 @@ class Certifier {
   State state(const Stage& stage, T tau) const {
     const Segment<T>& segment = stage.segment;
     const Flow<T>& flow = segment.flow;
-    const auto moved = stage.waves ? flow.oscillator.after(tau) : Transition<T>{};
+    const auto moved = stage.waves && tau > 0 ? flow.oscillator.after(tau) : Transition<T>{};
     return {tau,
             moved,
             flow.position.at(moved, tau),
@@ -220,7 +220,8 @@ class Certifier {
     T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0};
   };
 
-  void walk(const Stage& stage) {
+  /// Holds the laws all along a segment; its last state.
+  State walk(const Stage& stage) {
     using std::sqrt;
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     const T alpha = oscillator.alpha();
@@ -250,6 +251,7 @@ class Certifier {
     worst(result_.kinematics, errors.acceleration * drive_.mass, force_scale_);
     worst(result_.friction_law, errors.friction, force_scale_);
     worst(result_.sticking, errors.sticking, v_scale_);
+    return from;
   }
 
   void panel(const Stage& stage, const State& from, const State& to, bool brief, Errors& errors) {
@@ -349,11 +351,10 @@ class Certifier {
 
   // ---- from segment to segment -------------------------------------------------------------------
 
-  void junction(const Stage& before, const Stage& after) {
-    const State left = state(before, before.span), right = state(after, T(0));
+  void junction(Event event, const State& left, const Stage& after) {
+    const State right = state(after, T(0));
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
-    const Event event = before.segment.event;
     const bool skin_slips = soft() && event.finger == Kind::slip;
     if (soft() && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);

@@ -65,7 +65,7 @@ class Draw {
     c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]
                  : chance(0.3) ? 0
                                : speed_ * uniform(-2, 2);
-    c.duration = last + period_ * uniform(0.3, long_ ? 12 : 3);
+    c.duration = last + period_ * uniform(0.3, long_ ? 12 : 2);
     return c;
   }
 
@@ -80,10 +80,10 @@ class Draw {
     return std::round(value / unit) * unit;
   }
 
-  /// One drive in ten lasts long, and one in a thousand as long with a stiff skin, which then rings
-  /// thousands of times; the others show what skin does in its first waves.
+  /// One drive in twenty lasts long; one in a thousand is let ring as long as its spring takes with
+  /// skin however stiff, thousands of times. The others show what skin does in its first waves.
   void times(const Case& c, double omega) {
-    long_ = chance(0.1);
+    long_ = chance(0.05);
     period_ = 6.3 / omega;
     if (std::isinf(c.skin) || chance(0.002)) return;
     const double wave = 6.3 / (omega * std::sqrt(1 + c.skin / c.stiffness));
