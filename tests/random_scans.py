@@ -76,7 +76,7 @@ class RandomScan:
         stops = [(0.001 - half, y), (half - 0.001, y)]
         if draw.random() < 0.4:
             stops.append(stops[0])  # and back
-        path = strokes(stops, between(0.01, 0.4), pause=either(0.0, 0.05))
+        path = strokes(stops, between(0.01, 0.4), pause=either(0.0, 0.05), deviation=1e-3)
         cut = float(draw.uniform(0.05, 0.95)) * path.end
         return cls(Device(drive=drive, magnet=magnet, control=control), scene, path, cut)
 

@@ -48,7 +48,7 @@ def grating(*pitches: float, count: int = 2) -> Scene:
 def across(scene: Scene, speed: float = 0.06, margin: float = 0.003) -> HandPath:
     left, right, _, _ = scene.extent
     y = scene.lines[0]
-    return strokes([(left + margin, y), (right - margin, y)], speed, pause=0.1)
+    return strokes([(left + margin, y), (right - margin, y)], speed, pause=0.1, deviation=1e-3)
 
 
 def weak(deviation: float = 1e-3) -> Electromagnet:

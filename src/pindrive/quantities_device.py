@@ -243,11 +243,11 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "1",
         "largest deviation of the piecewise-linear speed from minimum jerk, a part of its peak",
         FINE,
-        1e-3,
-        "far below the scatter of hands",
+        1e-4,
+        "its slope, which is the force of inertia, is then within 3 % of its peak",
         "scan",
         optional=True,
-        remark="1e-3 unless given",
+        remark="1e-4 unless given",
     ),
 )
 

@@ -162,7 +162,7 @@ def strokes(
     speeds: float | Sequence[float],
     *,
     pause: float = 0.0,
-    deviation: float = 1e-3,
+    deviation: float = 1e-4,
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -213,7 +213,7 @@ def lines(
     speed: float,
     return_speed: float,
     pause: float = 0.0,
-    deviation: float = 1e-3,
+    deviation: float = 1e-4,
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 

@@ -52,7 +52,7 @@ class Reading:
     pixel: float | None = None
     max_angle: float = radians(20.0)
     hand_acceleration: float = 30.0
-    path_deviation: float = 1e-3
+    path_deviation: float = 1e-4
 
     def __post_init__(self) -> None:
         """Validate, and keep plain floats."""
