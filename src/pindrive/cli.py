@@ -11,13 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pindrive.refusing import DeviceArgument, OverridesOption, check_distinct, refusing
+from pindrive.refusing import (
+    DeviceArgument,
+    OverridesOption,
+    check_distinct,
+    figure_format,
+    refusing,
+)
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
     from pindrive.motion import Motion
-
-FIGURE_FORMATS = (".png", ".svg", ".pdf")
 
 app = typer.Typer(
     name="pindrive",
@@ -120,7 +124,7 @@ def simulate(
         device = load(file, overrides or ())
         outputs: dict[Path, Callable[[Motion, Path], None]] = {}
         if plot:
-            suffix = _figure_format(plot)
+            suffix = figure_format(plot)
             outputs[plot] = lambda motion, part: export.write_figure(motion, part, suffix)
         if csv:
             outputs[csv] = lambda motion, part: export.write_csv(motion, part, samples)
@@ -156,18 +160,13 @@ def _simulate(device: DeviceFile) -> Motion:
     )
 
 
-def _figure_format(path: Path) -> str:
-    suffix = path.suffix.lower()
-    if suffix not in FIGURE_FORMATS:
-        raise ValueError(f"--plot {path}: must end in {', '.join(FIGURE_FORMATS)}")
-    return suffix.removeprefix(".")
-
-
 def _register() -> None:
     """The commands that have a file of their own."""
     from pindrive.cli_scan import scan
+    from pindrive.cli_speed import speed
 
     app.command()(scan)
+    app.command()(speed)
 
 
 _register()

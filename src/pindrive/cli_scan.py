@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pindrive.refusing import DeviceArgument, OverridesOption, check_distinct, refusing
+from pindrive.progress import bar
+from pindrive.refusing import (
+    DeviceArgument,
+    OverridesOption,
+    check_distinct,
+    measures,
+    refusing,
+)
 
 if TYPE_CHECKING:
     from pindrive.device.array import PinArray
     from pindrive.device.hand import HandPath
     from pindrive.device.reading import Reading
-    from pindrive.device.scanning import Progress
     from pindrive.device.scene import Scene
 
 STROKES = "strokes"
@@ -61,7 +65,7 @@ def scan(
         scene = _scene(text, image, grating, font, reading, device.array)
         hand = _path(path, reading, scene, device.array)
         part = stack.enter_context(atomic_write(output)) if output else None
-        with _bar() as progress:
+        with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
         if output and part:
             from pindrive.device.dataset import write_netcdf
@@ -101,35 +105,10 @@ def _scene(
         return reading.text(text.replace("\\n", "\n"), array, font)
     if image is not None:
         return reading.image(image)
-    return reading.grating(_lengths(grating or ""), array)
-
-
-def _lengths(text: str) -> list[float]:
-    from pindrive.units import UnitError, to_si
-
-    lengths = []
-    for part in text.split(","):
-        try:
-            lengths.append(to_si(part.strip(), "m", "4 mm"))
-        except UnitError as error:
-            raise ValueError(f"--grating {text}: must be {error}, got {part.strip()!r}") from None
-    return lengths
+    pitches = measures(grating or "", "m", "4 mm", "--grating")
+    return reading.grating(pitches, array)
 
 
 def _path(path: str, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
     """How the hand moves."""
     return reading.strokes(scene, array) if path == STROKES else reading.record(path)
-
-
-@contextmanager
-def _bar() -> Iterator[Progress | None]:
-    """A progress bar where somebody looks on."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("Pins")
-        yield lambda done, of: bar.update(task, completed=done, total=of)

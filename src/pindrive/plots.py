@@ -7,7 +7,7 @@ corner and a jump is a jump. No global state of matplotlib is used or left behin
 from __future__ import annotations
 
 from math import inf, isnan
-from typing import IO, TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
@@ -18,11 +18,10 @@ from matplotlib.patches import Patch
 from pindrive._core import settling_band
 from pindrive.captions import NAME, duration, outcome, parameters, short, stuck_name
 from pindrive.drive import Profile
+from pindrive.style import GREY, PALETTE, SMALL, STYLE, save
 from pindrive.trace import MM, Trace
 
 if TYPE_CHECKING:
-    import os
-
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
@@ -31,49 +30,12 @@ if TYPE_CHECKING:
 
 __all__ = ["PALETTE", "plot_motion", "save"]
 
-PALETTE: Final = {
-    "curve": "#0072B2",  # blue
-    "stick": "#D55E00",  # vermillion
-    "slip": "#009E73",  # bluish green
-    "cross": "#000000",
-    "plate": "#000000",
-    "carried": "#56B4E9",  # sky blue
-    "resting": "#E69F00",  # orange
-    "gripping": "#CC79A7",  # reddish purple
-}
-"""Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
-
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
 _GRIP_TINT: Final = 0.3
 _MARKER: Final = {"stick": "s", "slip": "^", "cross": "x"}
-_GREY: Final = "0.45"
-_SMALL: Final = 7.0
 
 _MOST_MARKERS = 100
 """With more events their markers would hide the curve."""
-
-_STYLE: Final[dict[str, Any]] = {
-    "font.size": 8.0,
-    "axes.labelsize": 8.0,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.formatter.useoffset": False,
-    "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": (-2, 5),
-    "lines.linewidth": 1.1,
-    "lines.markersize": 4.0,
-    "legend.fontsize": _SMALL,
-    "agg.path.chunksize": 5000,  # a third faster with a hundred thousand points
-    "svg.fonttype": "none",  # text as text
-    "svg.hashsalt": "pindrive",  # the same motion is the same file
-    "pdf.fonttype": 42,  # TrueType: journals refuse Type 3
-}
-_SAVING: Final[dict[str, dict[str, Any]]] = {
-    "png": {"pil_kwargs": {"optimize": True}},
-    "svg": {"metadata": {"Date": None}},
-    "pdf": {"metadata": {"CreationDate": None}},
-}
 
 
 def plot_motion(motion: Motion) -> Figure:
@@ -87,7 +49,7 @@ def plot_motion(motion: Motion) -> Figure:
     Returns:
         A figure that belongs to nobody else: `save` it, or show it in a notebook.
     """
-    with matplotlib.style.context(_STYLE, after_reset=True):
+    with matplotlib.style.context(STYLE, after_reset=True):
         trace = Trace.of(motion)
         skin = not motion.drive.finger.rigid
         height = 150 if skin else 125
@@ -113,21 +75,6 @@ def plot_motion(motion: Motion) -> Figure:
     return figure
 
 
-def save(
-    figure: Figure, target: str | os.PathLike[str] | IO[bytes], format: str | None = None
-) -> None:
-    """Write a figure, with its text as text where the format has text.
-
-    Args:
-        figure: what `plot_motion` drew.
-        target: a path or a file open for writing bytes.
-        format: "png" (250 dpi), "svg" or "pdf"; the ending of the path unless given.
-    """
-    kind = format or str(target).rpartition(".")[2].lower()
-    with matplotlib.style.context(_STYLE, after_reset=True):
-        figure.savefig(target, format=kind, **_SAVING.get(kind, {}))
-
-
 # ---- the panels ----------------------------------------------------------------------------------
 
 
@@ -138,7 +85,7 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
         for mode in ("carried", "resting"):
             _shade(axes, trace.stuck(mode), mode, _TINT[mode])
         axes.set_ylabel(label)
-        axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5, labelbottom=axes is a)
+        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is a)
     x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
     v.plot(trace.t, trace.v, color=PALETTE["curve"], gid="curve")
     a.plot(trace.broken(trace.t), trace.broken(trace.a), color=PALETTE["curve"], gid="curve")
@@ -166,7 +113,7 @@ def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
     axes.set_xlabel(above.get_xlabel())
     above.set_xlabel("")
     above.tick_params(labelbottom=False)
-    axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5)
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
@@ -205,7 +152,7 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
     axes.set_ylabel("velocity $v$ (mm/s)")
     axes.set_xlim(_room(trace.x, margin=0.1))
     axes.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
-    axes.tick_params(labelsize=_SMALL, width=0.6, length=2.5)
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -232,7 +179,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
         handles.append(Patch(color=colour, alpha=_GRIP_TINT, lw=0.0, label=NAME["gripping"]))
     if _band(motion) > 0.0:
         label = rf"$x_\mathrm{{end}}$ ± {100 * settling_band:g} % of $|x_0 - x_\mathrm{{end}}|$"
-        handles.append(Line2D([], [], color=_GREY, lw=0.7, ls=":", label=label))
+        handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
     axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
 
@@ -296,7 +243,7 @@ def _note_level(axes: Axes, level: float, text: str) -> None:
         xycoords=axes.get_yaxis_transform(),
         textcoords="offset points",
         va="center",
-        fontsize=_SMALL,
+        fontsize=SMALL,
     )
 
 
@@ -315,7 +262,7 @@ def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
         axes.plot(*place, "o", color="black", mfc=fill, mew=0.8, ms=3.5, zorder=4, gid="ends")
         above = i == 0 or comes_from_below
         axes.annotate(
-            text, place, (4, 4 if above else -9), textcoords="offset points", fontsize=_SMALL
+            text, place, (4, 4 if above else -9), textcoords="offset points", fontsize=SMALL
         )
 
 
@@ -331,13 +278,13 @@ def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
     if isnan(middle):
         return
     if motion.ending.kind == "steady":
-        axes.axhline(middle, color=_GREY, lw=0.7, ls=":", zorder=1, gid="middle")
+        axes.axhline(middle, color=GREY, lw=0.7, ls=":", zorder=1, gid="middle")
     for level in {middle - _band(motion), middle + _band(motion)} - {middle}:
-        axes.axhline(level, color=_GREY, lw=0.7, ls=":", zorder=1, gid="band")
+        axes.axhline(level, color=GREY, lw=0.7, ls=":", zorder=1, gid="band")
     _note_level(axes, middle, r"$x_\mathrm{end}$")
     if 0.0 < time <= trace.end:
         word = "steady from" if motion.ending.kind == "steady" else "settled at"
-        axes.axvline(time * trace.scale, color=_GREY, lw=0.7, zorder=1, gid="settling")
+        axes.axvline(time * trace.scale, color=GREY, lw=0.7, zorder=1, gid="settling")
         side = ("left", "center", "right")[(time > 0.2 * trace.end) + (time > 0.8 * trace.end)]
         axes.annotate(
             f"{word} {duration(time)}",
@@ -347,7 +294,7 @@ def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
             textcoords="offset points",
             ha=side,
             va="bottom",
-            fontsize=_SMALL,
+            fontsize=SMALL,
         )
 
 
@@ -365,7 +312,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
             textcoords="offset points",
             ha="right" if late else "left",
             va="bottom" if up else "top",
-            fontsize=_SMALL,
+            fontsize=SMALL,
         )
 
 

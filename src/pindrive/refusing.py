@@ -17,6 +17,9 @@ OverridesOption = Annotated[
 ]
 
 
+FIGURE_FORMATS = (".png", ".svg", ".pdf")
+
+
 @contextmanager
 def refusing() -> Iterator[None]:
     """Bad input ends the command with a line for each problem and exit status 2."""
@@ -35,3 +38,34 @@ def check_distinct(paths: Iterable[Path]) -> None:
         if real in seen:
             raise ValueError(f"{path}: is named twice; give each file a name of its own")
         seen.add(real)
+
+
+def figure_format(path: Path) -> str:
+    """The format that the name of a figure asks for."""
+    suffix = path.suffix.lower()
+    if suffix not in FIGURE_FORMATS:
+        raise ValueError(f"--plot {path}: must end in {', '.join(FIGURE_FORMATS)}")
+    return suffix.removeprefix(".")
+
+
+def measures(text: str, unit: str, example: str, option: str) -> list[float]:
+    """Numbers with units, apart by commas, as an option of the command line gives them, in SI."""
+    from pindrive.units import UnitError, to_si
+
+    values = []
+    for part in text.split(","):
+        try:
+            values.append(to_si(part.strip(), unit, example))
+        except UnitError as error:
+            raise ValueError(f"{option} {text}: must be {error}, got {part.strip()!r}") from None
+    return values
+
+
+def measure(text: str, unit: str, example: str, option: str) -> float:
+    """One number with a unit, as an option of the command line gives it, in SI."""
+    from pindrive.units import UnitError, to_si
+
+    try:
+        return to_si(text, unit, example)
+    except UnitError as error:
+        raise ValueError(f"{option} {text}: must be {error}") from None

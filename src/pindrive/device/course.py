@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 HALVINGS: Final = 60
 PIECES: Final = 64
 """A bracket is cut into so many at once, which is as good as six halvings."""
+_GRID: Final = np.arange(PIECES + 1) / PIECES
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -199,7 +200,8 @@ def halved(
 def crossing(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:
     """Where a monotone f, negative at `low`, reaches 0 on the way to `high`."""
     while True:
-        t = np.linspace(low, high, PIECES + 1)
+        t = low + (high - low) * _GRID
+        t[-1] = high
         i = int(np.argmax(f(t[1:]) >= 0.0)) + 1
         if not (low < t[i - 1] or t[i] < high):
             return float(high)

@@ -57,7 +57,7 @@ def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
     lines: list[Line] = []
     echoes: list[Echo] = []
     for pin, passed in zip(scan.pins, printed(scan), strict=True):
-        judged = _JudgedPin(scan, pin, passed, stops, way, limits)
+        judged = JudgedPin(scan, pin, passed, stops, way, limits)
         lines += judged.lines()
         echoes += judged.echoes()
     return Judgement(scan=scan, criteria=limits, lines=tuple(lines), echoes=tuple(echoes))
@@ -79,8 +79,17 @@ class _Pull:
     """Of the plate's velocity."""
 
 
-class _JudgedPin:
-    """One pin's lines and swings. Times are since the scan's begin, s."""
+class JudgedPin:
+    """One pin's lines and swings. Times are since the scan's begin, s.
+
+    Args:
+        scan: the scan.
+        pin: one of its pins.
+        passed: the lines printed along its way.
+        stops: when the hand stops or turns back, s.
+        way: the length of the hand's way.
+        criteria: what counts as felt.
+    """
 
     def __init__(
         self,
@@ -161,7 +170,7 @@ class _JudgedPin:
         sign = self._sign(line.begin)
         x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
         fate: Fate = "shown"
-        stroke = release = settled = overshoot = contrast = nan
+        stroke = height = returned = release = settled = overshoot = contrast = nan
         on = off = (nan, nan, nan)  # command, response, motion of the skin
         cue_on = cue_off = CUES[0]
         if first is None:
@@ -186,6 +195,7 @@ class _JudgedPin:
             if back == back:
                 moved, cue_off = self._moved(-skin, peak_time, limit)
                 off = (pull.off, back, moved)
+            height, returned = peak, peak - low
             contrast = (peak - low) / (abs(peak) + abs(low)) if peak > low else 0.0
             settled, overshoot = self._settling(x, release, peak, low, limit)
         if fate == "shown" and cue_on == cue_off == CUES[0]:
@@ -196,6 +206,8 @@ class _JudgedPin:
             end=self._edge(line.end, *off, cue_off),
             fate=fate,
             stroke=stroke,
+            height=height,
+            returned=returned,
             release=self.begin + release,
             settled=self.begin + settled,
             smear=self.way.between(self.begin + release, self.begin + settled),

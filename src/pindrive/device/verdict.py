@@ -89,6 +89,10 @@ class Line:
     """Shown; or missed: unseen by the control block, merged into the line before, or too faint."""
     stroke: float
     """How far it moved the pin, m."""
+    height: float
+    """The pin's highest deflection for it, m."""
+    returned: float
+    """How far the pin came back from there, before the next line or the hand's stop, m."""
     release: float
     """When the plate let go of the pin, s."""
     settled: float

@@ -1,0 +1,89 @@
+"""The command `pindrive speed`: how fast the hand may move before two lines run into one."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.progress import bar
+from pindrive.refusing import (
+    DeviceArgument,
+    OverridesOption,
+    check_distinct,
+    figure_format,
+    measure,
+    measures,
+    refusing,
+)
+
+USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
+
+
+def speed(
+    file: DeviceArgument,
+    pitch: Annotated[
+        list[str] | None,
+        typer.Option(metavar="LENGTHS", help=f"From line to line; {USUAL} if none."),
+    ] = None,
+    width: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Of the lines; half the pitch if none.")
+    ] = None,
+    part: Annotated[
+        float, typer.Option(help="Part of its way that the pin must be back in between.")
+    ] = 0.5,
+    slowest: Annotated[str, typer.Option(metavar="SPEED", help="Hand tried.")] = "5 mm/s",
+    fastest: Annotated[str, typer.Option(metavar="SPEED", help="Hand tried.")] = "1000 mm/s",
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    overrides: OverridesOption = None,
+) -> None:
+    """Say how fast the hand may move before two lines run into one."""
+    from pindrive.config import load
+
+    with refusing(), ExitStack() as stack:
+        device_file = load(file, overrides or (), whole=True)
+        assert device_file.whole
+        pitches = [
+            step for text in pitch or [USUAL] for step in measures(text, "m", "2 mm", "--pitch")
+        ]
+        line = None if width is None else measure(width, "m", "1 mm", "--width")
+        tried = (
+            measure(slowest, "m/s", "5 mm/s", "--slowest"),
+            measure(fastest, "m/s", "1000 mm/s", "--fastest"),
+        )
+        check_distinct([file, *([plot] if plot else [])])
+        kind = figure_format(plot) if plot else ""
+
+        from pindrive.device.speed import largest_speeds
+        from pindrive.device.verdict import Criteria
+        from pindrive.output import atomic_write, naming
+
+        target = stack.enter_context(atomic_write(plot)) if plot else None
+        device, criteria = device_file.whole.device(device_file.drive), Criteria()
+        with bar("Pitches") as progress:
+            limits = largest_speeds(
+                device,
+                pitches,
+                width=line,
+                part=part,
+                slowest=tried[0],
+                fastest=tried[1],
+                criteria=criteria,
+                progress=progress,
+            )
+        if plot and target:
+            from pindrive.device.speed_picture import plot_speeds
+            from pindrive.plots import save
+
+            with naming(plot):
+                save(plot_speeds(limits, part, criteria, device_file.name), target, kind)
+    from pindrive.device.judged import speed_report
+    from pindrive.report import show
+
+    show(speed_report(limits, part, tried, criteria))
+    if plot:
+        typer.echo(f"Wrote {plot}")

@@ -1,0 +1,277 @@
+"""How fast the hand may move before two lines run into one.
+
+Two lines, black, stand `pitch` apart; an even hand goes over them. They are **distinct** at its
+speed if, wherever the control block's looks happen to fall (`PHASES` of them are tried),
+
+- between them the pin comes back at least `part` of its way from its highest place to where spring
+  and dragging plate balance, before the second line takes it along, and
+- each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
+  finger: the pin).
+
+They are **settled** if moreover the first line's transient is over before the second line comes
+(see `judging`). Every trial is an exact simulation. Distinct speeds need not be one interval: a
+swing may fit by chance. So all of a geometric grid of speeds is tried first, and the border of each
+interval it shows is found by bisection; intervals between two speeds of the grid may be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, isnan, nan, pi
+from typing import Final
+
+import numpy as np
+
+from pindrive.device.array import PinArray
+from pindrive.device.course import Way
+from pindrive.device.device import Device
+from pindrive.device.hand import HandPath
+from pindrive.device.judging import JudgedPin
+from pindrive.device.printed import Printed
+from pindrive.device.scanning import PinState, scan
+from pindrive.device.scene import Scene
+from pindrive.device.verdict import Criteria, Line
+from pindrive.quantities import QUANTITIES, check, refusal
+
+PART: Final = 0.5
+SLOWEST: Final = 0.005
+FASTEST: Final = 1.0
+"""What is tried, m/s: beyond both ends of what hands do (MODEL.md, 9)."""
+PHASES: Final = 4
+TRIED: Final = 32
+"""Speeds in the grid."""
+PRECISION: Final = 1e-3
+"""Of a border, a part of it."""
+FINE: Final = 40.0
+"""Pixels in the thinner of line and gap."""
+MOMENT: Final = 0.002
+"""From the begin of a trial to the first line, s, and a look more."""
+
+Band = tuple[float, float]
+Progress = Callable[[int, int], None]
+"""Told after each pitch: how many are done, of how many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """Two lines at one speed: the worst of all phases."""
+
+    speed: float
+    """m/s"""
+    back: float
+    """Part of its way that the pin comes back between the lines; 0 where they merge."""
+    skin: float
+    """How far the fainter line moves the skin, m."""
+    settled: bool
+    """Whether the pin settles in between."""
+
+    def distinct(self, part: float, direction: float) -> bool:
+        """Whether two lines are felt; direction is in m."""
+        return self.back >= part and self.skin >= direction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedLimit:
+    """How fast a hand may go over two lines."""
+
+    pitch: float
+    width: float
+    """Of the lines, m."""
+    distinct: tuple[Band, ...]
+    """From which speed to which the lines are distinct, m/s, the slowest first."""
+    settled: tuple[Band, ...]
+    """From which to which they are distinct and the pin settles in between."""
+    beyond: Trial | None
+    """What a hand just faster than the limit finds; None: there is none so fast."""
+
+    @property
+    def speed(self) -> float:
+        """The largest hand speed up to which the lines stay distinct, m/s; NaN: at none they are.
+
+        Of the first interval: a faster one beyond it is chance.
+        """
+        return self.distinct[0][1] if self.distinct else nan
+
+    @property
+    def settled_speed(self) -> float:
+        """The largest up to which the pin settles in between, m/s; NaN: there is none."""
+        return self.settled[0][1] if self.settled else nan
+
+
+def largest_speeds(
+    device: Device,
+    pitches: Sequence[float],
+    *,
+    width: float | None = None,
+    part: float = PART,
+    slowest: float = SLOWEST,
+    fastest: float = FASTEST,
+    criteria: Criteria | None = None,
+    progress: Progress | None = None,
+) -> tuple[SpeedLimit, ...]:
+    """The largest hand speed at which two lines stay distinct, for each pitch.
+
+    Args:
+        device: its drive, magnet and control block; one pin of it.
+        pitches: from line to line, m, greater than 0.
+        width: of the lines, m, less than each pitch; None: half the pitch.
+        part: of its way that the pin must be back in between, in (0, 1].
+        slowest: hand tried, m/s, greater than 0.
+        fastest: hand tried, m/s, greater than `slowest`.
+        criteria: what counts as felt; the literature's unless given.
+        progress: told after each pitch.
+
+    Raises:
+        ValueError: no pitch, or a value is no number or out of its range.
+    """
+    steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
+    if not steps:
+        raise ValueError(refusal("pitches", "at least one", "none"))
+    least, most = (
+        check(f"speed.{name}", value, label=name)
+        for name, value in (("slowest", slowest), ("fastest", fastest))
+    )
+    if not least < most:
+        raise ValueError(
+            refusal("fastest", f"greater than the slowest, {least!r} m/s", f"{most!r}")
+        )
+    needed = check("speed.part", part, label="part")
+    limits = criteria or Criteria()
+    found = []
+    for pitch in steps:
+        line = 0.5 * pitch if width is None else check("speed.width", width, label="width")
+        if not line < pitch:
+            raise ValueError(refusal("width", f"less than the pitch, {pitch!r} m", f"{line!r} m"))
+        found.append(_limit(device, pitch, line, needed, (least, most), limits))
+        if progress:
+            progress(len(found), len(steps))
+    return tuple(found)
+
+
+def _limit(
+    device: Device, pitch: float, width: float, part: float, tried: Band, criteria: Criteria
+) -> SpeedLimit:
+    """The limit for one pitch."""
+    speeds = np.geomspace(*tried, TRIED).tolist()
+    trials = {speed: two_lines(device, pitch, width, speed, criteria) for speed in speeds}
+
+    def bands(holds: Callable[[Trial], bool]) -> list[Band]:
+        """The intervals in which something holds: from the grid, with borders by bisection."""
+        borders = [-inf] if holds(trials[speeds[0]]) else []
+        for slow, fast in pairwise(speeds):
+            if holds(trials[slow]) != holds(trials[fast]):
+                borders.append(border(slow, fast, holds))
+        if holds(trials[speeds[-1]]):
+            borders.append(inf)
+        ends = np.clip(borders, *tried).tolist()
+        return list(zip(ends[::2], ends[1::2], strict=True))
+
+    def border(slow: float, fast: float, holds: Callable[[Trial], bool]) -> float:
+        """The speed at which it begins or ceases to hold, on the side on which it holds."""
+        before = holds(trials[slow])
+        while fast - slow > PRECISION * slow:
+            middle = 0.5 * (slow + fast)
+            trials[middle] = two_lines(device, pitch, width, middle, criteria)
+            if holds(trials[middle]) == before:
+                slow = middle
+            else:
+                fast = middle
+        return slow if before else fast
+
+    def distinct(trial: Trial) -> bool:
+        return trial.distinct(part, criteria.direction)
+
+    apart = bands(distinct)
+    faster = [speed for speed in sorted(trials) if apart and speed > apart[0][1]]
+    return SpeedLimit(
+        pitch=pitch,
+        width=width,
+        distinct=tuple(apart),
+        settled=tuple(bands(lambda trial: distinct(trial) and trial.settled)),
+        beyond=trials[faster[0]] if faster else None,
+    )
+
+
+def two_lines(
+    device: Device, pitch: float, width: float, speed: float, criteria: Criteria
+) -> Trial:
+    """Go over two lines at an even speed, once for each phase of the control block's looks.
+
+    Args:
+        device: one pin of it is taken.
+        pitch: m.
+        width: m.
+        speed: m/s.
+        criteria: what counts as felt.
+    """
+    look = 1.0 / device.control.sample_rate
+    drive, magnet = device.drive, device.magnet
+    after = device.control.latency + 8.0 * magnet.fall_constant + 4.0 * pi / drive.natural_frequency
+    begin, end = -speed * (MOMENT + look), pitch + width + speed * after
+    pixel = min(width, pitch - width) / FINE
+    shifts = [speed * look * i / PHASES for i in range(PHASES)]
+    phases = PinArray([(float(i), 0.0) for i in range(PHASES)], [(s, 0.0) for s in shifts])
+    page = _page(pitch, width, begin - pixel, end + speed * look + pixel, pixel)
+    lasts = (end - begin) / speed
+    path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
+    done = scan(
+        replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
+    )
+    stops, way = np.zeros(0), Way(path)
+    worst = Trial(speed, inf, inf, True)
+    for pin, shift in zip(done.pins, shifts, strict=True):
+        edges = [(x - begin - shift) / speed for x in (0.0, width, pitch, pitch + width)]
+        passed = [Printed(edges[0], edges[1], True), Printed(edges[2], edges[3], True)]
+        first, second = JudgedPin(done, pin, passed, stops, way, criteria).lines()
+        back = 0.0 if "merged" in (first.fate, second.fate) else _back(device, first)
+        worst = Trial(
+            speed,
+            min(worst.back, back),
+            min(worst.skin, _skin(first), _skin(second)),
+            worst.settled and not isnan(first.settled),
+        )
+    return worst
+
+
+def steady(device: Device) -> PinState:
+    """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
+    finger = device.drive.finger
+    if finger.rigid:
+        return PinState(position=device.drag)
+    plate = device.drive.plate.kinetic * device.load(device.magnet.residual)
+    held = plate if plate <= finger.static_friction else finger.kinetic
+    return PinState(position=device.drag, skin_stretch=held / finger.stiffness)
+
+
+def _page(pitch: float, width: float, left: float, right: float, pixel: float) -> Scene:
+    """Two lines that begin at 0 and at `pitch`; a border between pixels is as dark as it covers."""
+    first = int(np.floor(left / pixel))
+    borders = pixel * np.arange(first, int(np.ceil(right / pixel)) + 1)
+    covered = sum(np.clip(borders, x, x + width) for x in (0.0, pitch))
+    row = 1.0 - np.clip(np.diff(covered) / pixel, 0.0, 1.0)
+    return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="two lines")
+
+
+def _back(device: Device, line: Line) -> float:
+    """The part of its way back to its place of rest that the pin comes after a line."""
+    if isnan(line.returned):
+        return 0.0
+    high = line.height - device.drag
+    return line.returned / high if high > 0.0 else 0.0
+
+
+def _skin(line: Line) -> float:
+    """How far a line moves the skin, forward or back, m."""
+    moves = [edge.skin for edge in (line.begin, line.end) if not isnan(edge.skin)]
+    return max(moves, default=0.0)
+
+
+def criterion(part: float, direction: float) -> str:
+    """When two lines are distinct, in a sentence."""
+    length = QUANTITIES["direction"]
+    return (
+        f"Two lines are distinct where the pin comes back at least {part:.0%} of its way between "
+        f"them, and each moves the skin by {length.text(direction)} or more."
+    )
