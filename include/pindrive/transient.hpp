@@ -43,11 +43,12 @@ struct Transient {
 template <class T, class Visitor>
 void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor&& visit) {
   visit(from, path.at(oscillator, from));
-  const Path<T> slope = path.derivative(oscillator);
+  const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
+  const Path<T> slope = rest.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
   if (side != 0)
-    each_root(oscillator, slope, side, to, [&](T tau) {
-      if (tau > from) visit(tau, path.at(oscillator, tau));
+    each_root(oscillator, slope, side, to - from, [&](T tau) {
+      visit(from + tau, rest.at(oscillator, tau));
       return true;
     });
   visit(to, path.at(oscillator, to));
@@ -63,9 +64,8 @@ void highest_and_lowest(const Oscillator<T>& oscillator, const Path<T>& path, T 
     extrema(oscillator, path, from, to, visit);
     return;
   }
-  for (const T begin : {from, to - period})
-    extrema(oscillator, path.from(oscillator, begin), T(0), period,
-            [&](T tau, T value) { visit(begin + tau, value); });
+  extrema(oscillator, path, from, from + period, visit);
+  extrema(oscillator, path, to - period, to, visit);
 }
 
 /// Measures a motion over [0, duration]; what happens later, or never, is NaN.
