@@ -2,15 +2,18 @@
 
 Only the number of events should count. Each motion is timed by `simulate`, a call from Python; by
 `simulate` and all its numbers; and by `simulate_batch` on many copies of it, which is what the core
-alone takes for the same numbers. Times are processor time, measured by turns, so that whatever else
+alone takes, numbers included. Times are processor time, measured by turns, so that whatever else
 the machine does falls on all alike.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import chain, islice
 from pathlib import Path
 from statistics import median
 from time import process_time
@@ -20,13 +23,15 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from pindrive import Contact, Drive, Motion, simulate, simulate_batch
+from pindrive import Contact, Drive, Motion, Profile, simulate, simulate_batch
 from pindrive.plots import PALETTE
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 DURATIONS = tuple(10.0**n for n in range(7))
 REVERSALS = (1, 3, 10, 30, 100, 300, 1000)
 RATIOS = tuple(10.0**n for n in range(7))
-WAYS = ("simulate", "and its numbers", "the core alone")
+WAYS = ("simulate", "with numbers", "core alone")
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,8 @@ class Release:
     drive: Drive
     mouse_velocity: float
     displacement: float
+    velocity: float | None = None
+    plate_load: float | Profile = 1.0
     duration: float | None = None
 
     def run(self) -> Motion:
@@ -43,6 +50,8 @@ class Release:
             self.drive,
             mouse_velocity=self.mouse_velocity,
             displacement=self.displacement,
+            velocity=self.velocity,
+            plate_load=self.plate_load,
             duration=self.duration,
         )
 
@@ -51,7 +60,7 @@ class Release:
         return motion.transient, motion.ending
 
     def batch(self, copies: int) -> object:
-        """All numbers of so many copies, on one thread."""
+        """All numbers of so many copies, on one thread; the load of a batch is constant."""
         drive = self.drive
         return simulate_batch(
             mass=np.full(copies, drive.mass),
@@ -76,7 +85,7 @@ def mouse(duration: float | None = None, skin: float = np.inf) -> Release:
         plate=Contact(0.020),
         finger=Contact(0.005, stiffness=skin),
     )
-    return Release(drive, 0.10, 1.5e-3, duration)
+    return Release(drive, 0.10, 1.5e-3, duration=duration)
 
 
 def undamped(reversals: int) -> Release:
@@ -86,15 +95,26 @@ def undamped(reversals: int) -> Release:
     return Release(drive, 0.0, 1.5e-3)
 
 
+def ringing(skin: float) -> Release:
+    """Undamped skin that rings as it holds the pin, while a magnet pulls the plate on ever more.
+
+    Each time the ringing meets the friction, the skin slips a little: events as many as periods.
+    """
+    finger = Contact(0.005, stiffness=skin)
+    drive = Drive(mass=0.010, stiffness=100.0, damping=0.0, plate=Contact(0.010), finger=finger)
+    pull = Profile([0.0, 0.5], [0.0, 0.2])
+    return Release(drive, 0.10, -0.025e-3, velocity=0.0, plate_load=pull, duration=0.6)
+
+
 # ---- measuring -----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Median processor time of one motion in each of the `WAYS`, s, and its events."""
+    """Median processor time of one motion in each of the `WAYS` that it goes, s, and its events."""
 
     events: int
-    times: tuple[float, float, float]
+    times: tuple[float, ...]
 
 
 def spent(call: Callable[[], object]) -> float:
@@ -103,37 +123,46 @@ def spent(call: Callable[[], object]) -> float:
     return process_time() - begin
 
 
-def enough(call: Callable[[int], object], least: float) -> int:
-    """How many times to run it so that it takes this long, s."""
-    count = 1
-    while spent(lambda: call(count)) < least:
-        count *= 2
-    return count
+@dataclass
+class Racer:
+    """One release in one way, run so many times that a timing takes long enough."""
+
+    call: Callable[[int], object]
+    count: int
+    times: list[float]
+
+    @classmethod
+    def warm(cls, call: Callable[[int], object], least: float) -> Racer:
+        call(1)
+        count = 1
+        while spent(partial(call, count)) < least:
+            count *= 2
+        return cls(call, count, [])
+
+    def run(self) -> None:
+        self.times.append(spent(partial(self.call, self.count)) / self.count)
 
 
-def repeatedly(call: Callable[[], object]) -> Callable[[int], object]:
-    def run(count: int) -> None:
-        for _ in range(count):
-            call()
-
-    return run
+def repeat(call: Callable[[], object], count: int) -> None:
+    for _ in range(count):
+        call()
 
 
 def measure(releases: Sequence[Release], rounds: int, least: float) -> list[Cost]:
     """Each release in each way, by turns; `least` is how long one timing takes, s."""
-    racers = [
-        (release, way, enough(way, least))
-        for release in releases
-        for way in (repeatedly(release.run), repeatedly(release.with_numbers), release.batch)
-    ]
-    times: list[list[float]] = [[] for _ in racers]
+    racers = []
+    for release in releases:
+        ways: list[Callable[[int], object]]
+        ways = [partial(repeat, release.run), partial(repeat, release.with_numbers)]
+        if not isinstance(release.plate_load, Profile):
+            ways.append(release.batch)
+        racers.append([Racer.warm(way, least) for way in ways])
     for _ in range(rounds):
-        for taken, (_, way, count) in zip(times, racers, strict=True):
-            taken.append(spent(lambda way=way, count=count: way(count)) / count)  # type: ignore[misc]
-    medians = [median(taken) for taken in times]
+        for racer in chain.from_iterable(racers):
+            racer.run()
     return [
-        Cost(len(release.run().events), (medians[3 * i], medians[3 * i + 1], medians[3 * i + 2]))
-        for i, release in enumerate(releases)
+        Cost(len(release.run().events), tuple(median(racer.times) for racer in ways))
+        for release, ways in zip(releases, racers, strict=True)
     ]
 
 
@@ -143,23 +172,23 @@ def measure(releases: Sequence[Release], rounds: int, least: float) -> list[Cost
 def table(
     title: str, first: str, given: Sequence[float], costs: Sequence[Cost], *, each: bool
 ) -> Table:
-    """Medians in µs and, below each other, how often the first row's; `each`: for an event."""
+    """Medians in µs; beside each its part of one event (`each`), or how often the first row's."""
     shown = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
     shown.add_column(first, justify="right")
     shown.add_column("events", justify="right")
-    for way in WAYS:
+    for way, _ in zip(WAYS, costs[0].times, strict=False):
         shown.add_column(f"{way}\nµs", justify="right")
-        shown.add_column("µs an event" if each else "ratio", justify="right", style="dim")
+        shown.add_column("\nµs an event" if each else "\nratio", justify="right", style="dim")
     for value, cost in zip(given, costs, strict=True):
         cells = []
         for time, reference in zip(cost.times, costs[0].times, strict=True):
             beside = 1e6 * time / cost.events if each else time / reference
-            cells += [f"{1e6 * time:.4g}", f"{beside:.3f}" if each else f"{beside:.2f}"]
-        shown.add_row(f"{value:g}", str(cost.events), *cells)
+            cells += [f"{1e6 * time:.1f}", f"{beside:.2f}"]
+        shown.add_row(f"{value:,.0f}".replace(",", " "), f"{cost.events}", *cells)
     return shown
 
 
-def slope(costs: Sequence[Cost], way: int) -> tuple[float, float]:
+def line(costs: Sequence[Cost], way: int) -> tuple[float, float]:
     """The straight line through time over events: fixed part and part of one event, s."""
     events = np.array([cost.events for cost in costs], dtype=float)
     times = np.array([cost.times[way] for cost in costs])
@@ -168,48 +197,53 @@ def slope(costs: Sequence[Cost], way: int) -> tuple[float, float]:
 
 
 def draw(durations: list[Cost], reversals: list[Cost], skins: list[Cost], path: Path) -> None:
+    """The first three tables as curves."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import FuncFormatter
 
-    figure = Figure(figsize=(7.1, 2.5), layout="constrained")
-    left, middle, right = figure.subplots(1, 3, sharey=True)
+    counts = [cost.events for cost in reversals]
     panels = (
-        (left, DURATIONS, durations, "duration, s", "at rest after 0.134 s"),
-        (middle, [c.events for c in reversals], reversals, "events", "friction ends the swing"),
+        ("at rest after 0.134 s: 5 events", "duration (s)", DURATIONS, durations),
+        ("swings to and fro", "number of events", counts, reversals),
         (
-            right,
+            f"compliant finger: {skins[0].events} events",
+            r"stiffness ratio $k_\mathrm{skin}/k$",
             RATIOS,
             skins,
-            "stiffness ratio $k_{\\rm skin}/k$",
-            "skin that stretches and slips",
         ),
     )
     looks = (
         ("simulate", "o", PALETTE["curve"]),
         ("simulate, with all numbers", "s", PALETTE["resting"]),
-        ("the core alone, with all numbers", "^", PALETTE["slip"]),
+        ("core alone, with all numbers", "^", PALETTE["slip"]),
     )
-    for axes, given, costs, name, title in panels:
+    figure = Figure(figsize=(7.1, 2.5), layout="constrained")
+    every = figure.subplots(1, 3, sharey=True)
+    for axes, (title, name, given, costs) in zip(every, panels, strict=True):
         for way, (label, marker, colour) in enumerate(looks):
-            microseconds = [1e6 * cost.times[way] for cost in costs]
-            axes.loglog(
-                given,
-                microseconds,
-                marker,
-                ls="-",
-                lw=1.0,
-                ms=3.5,
-                color=colour,
-                label=label,
-                clip_on=False,
-            )
-        axes.set_xlabel(name, fontsize=8)
+            times = [1e6 * cost.times[way] for cost in costs]
+            axes.loglog(given, times, marker, ls="-", lw=1.0, ms=3.5, c=colour, label=label)
         axes.set_title(title, fontsize=8, loc="left")
-        axes.spines[["top", "right"]].set_visible(False)
+        axes.set_xlabel(name, fontsize=8)
         axes.tick_params(labelsize=7.5)
-        axes.grid(visible=True, which="major", lw=0.4, color="0.9")
-    left.set_ylabel("time of a motion, µs", fontsize=8)
-    middle.legend(fontsize=7, frameon=False, loc="upper left")
-    figure.savefig(path, dpi=200)
+        axes.tick_params(which="minor", length=0)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(lw=0.4, c="0.9")
+    # Time in proportion to the events, beside the curve that comes to it.
+    each = 1e6 * reversals[-1].times[0] / counts[-1] / 2
+    every[1].loglog(counts[3:], [each * n for n in counts[3:]], "--", lw=0.8, c="0.45")
+    every[1].annotate(
+        "in proportion",
+        (counts[4], each * counts[4]),
+        (4, -10),
+        fontsize=7,
+        textcoords="offset points",
+        color="0.45",
+    )
+    every[0].set_ylabel("processor time of a motion (µs)", fontsize=8)
+    every[0].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    every[0].legend(fontsize=7, frameon=False, loc="upper left")
+    figure.savefig(path, dpi=200, pil_kwargs={"optimize": True})
 
 
 def main() -> None:
@@ -221,26 +255,29 @@ def main() -> None:
 
     from benchmarks.simulate import machine
 
-    releases = (
-        *(mouse(duration=duration) for duration in DURATIONS),
-        *(undamped(reversals) for reversals in REVERSALS),
-        *(mouse(skin=100.0 * ratio) for ratio in RATIOS),
+    stiff = [100.0 * ratio for ratio in RATIOS]
+    series = (
+        [mouse(duration=duration) for duration in DURATIONS],
+        [undamped(reversals) for reversals in REVERSALS],
+        [mouse(skin=skin) for skin in stiff],
+        [ringing(skin) for skin in stiff[1:]],
     )
-    costs = measure(releases, given.rounds, given.least)
-    long, many = len(DURATIONS), len(DURATIONS) + len(REVERSALS)
-    durations, reversals, skins = costs[:long], costs[long:many], costs[many:]
+    costs = iter(measure([*chain.from_iterable(series)], given.rounds, given.least))
+    durations, reversals, skins, rings = ([*islice(costs, len(part))] for part in series)
 
-    console = Console(width=100, highlight=False)
-    console.print(f"{machine()}\nmedians of {given.rounds} timings in processor time, one thread\n")
-    console.print(
-        table("A motion that rests after 0.134 s", "duration, s", DURATIONS, durations, each=False)
-    )
-    console.print(table("Undamped, small friction", "reversals", REVERSALS, reversals, each=True))
+    console = Console(width=110, highlight=False)
+    console.print(f"{machine()}\nmedians of {given.rounds} timings, processor time, one thread\n")
+    title = "At rest after 0.134 s, and simulated for much longer"
+    console.print(table(title, "duration, s", DURATIONS, durations, each=False))
+    title = "Undamped: the smaller the friction, the more often it reverses"
+    console.print(table(title, "reversals", REVERSALS, reversals, each=True))
     for way, name in enumerate(WAYS):
-        fixed, each = slope(reversals, way)
-        console.print(f"  {name}: {1e6 * fixed:.2f} µs and {1e6 * each:.3f} µs an event")
-    console.print()
-    console.print(table("Compliant finger", "k_skin / k", RATIOS, skins, each=True))
+        fixed, each = line(reversals, way)
+        console.print(f"  {name}: {1e6 * fixed:.1f} µs and {1e6 * each:.2f} µs an event")
+    title = "\nA finger whose skin stretches and slips"
+    console.print(table(title, "k_skin / k", RATIOS, skins, each=True))
+    title = "Skin that rings undamped and slips a little in each period"
+    console.print(table(title, "k_skin / k", RATIOS[1:], rings, each=True))
     if given.figure:
         draw(durations, reversals, skins, given.figure)
         console.print(f"The figure is {given.figure}")
