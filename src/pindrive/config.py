@@ -92,7 +92,12 @@ def load(
         ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
     """
     file = Path(path)
-    tables = _read(file)
+    return device_of(file, read_tables(file), overrides)
+
+
+def device_of(file: Path, given: Mapping[str, Any], overrides: Iterable[str] = ()) -> DeviceFile:
+    """The device that tables describe; `file`, `overrides` and what it raises as for `load`."""
+    tables = _with_all_tables(file, given)
     places, problems = _override(tables, overrides)
 
     def place(*keys: str) -> str:
@@ -103,8 +108,8 @@ def load(
     if hand:  # a single release is at the hand's speed then
         tables["motion"]["mouse_velocity"] = usual(NUMBERS["scan.hand_speed"])
     unknown = _unknown_keys(tables)
-    meant = {_nearest(key) for key in unknown}
-    problems += [f"{file}: {_not_known(key)}" for key in unknown]
+    meant = {nearest(key) for key in unknown}
+    problems += [f"{file}: {not_known(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
     try:
         schema = Schema.model_validate(tables, context=place)
@@ -124,8 +129,12 @@ def load(
 # ---- the file's text -----------------------------------------------------------------------------
 
 
-def _read(file: Path) -> dict[str, Any]:
-    """The tables of a TOML file, empty where they are missing."""
+def read_tables(file: Path, template: str = "`pindrive init FILE` writes a device file") -> Any:
+    """What a TOML file says, as a dictionary; of an empty one `template` says what to do.
+
+    Raises:
+        ConfigError: it cannot be read, is empty or no TOML.
+    """
     try:
         text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
@@ -134,12 +143,19 @@ def _read(file: Path) -> dict[str, Any]:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError([f"{file}: cannot be read: {reason}"]) from None
     if not text.strip():
-        raise ConfigError([f"{file}: is empty; `pindrive init FILE` writes a device file"])
+        raise ConfigError([f"{file}: is empty; {template}"])
     try:
-        tables = {name: {} for name in TABLES} | tomllib.loads(text)
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         hint = "; a value with a unit stands in quotes" if "Expected newline" in str(error) else ""
         raise ConfigError([f"{file}: is not valid TOML: {error}{hint}"]) from None
+
+
+def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Its tables, free to be changed; empty where they are missing."""
+    tables = {name: {} for name in TABLES} | {
+        name: dict(table) if isinstance(table, dict) else table for name, table in given.items()
+    }
     flat = [name for name in TABLES if not isinstance(tables[name], dict)]
     if flat:
         raise ConfigError(
@@ -158,11 +174,11 @@ def _override(tables: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[st
     for override in overrides:
         given, equals, value = (part.strip() for part in override.partition("="))
         place = f"--set {' '.join(given.split())}"
-        keys = [key for key in KEYS if given in (key, key.partition(".")[2])]
+        keys = keys_meant(given)
         if not equals or not given:
             problems.append(f"--set {quoted(override)}: must be key=value")
         elif not keys:
-            problems.append(f"{place}: {_not_known(given, tables=False)}")
+            problems.append(f"{place}: {not_known(given, tables=False)}")
         elif len(keys) > 1:
             problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
         else:
@@ -194,7 +210,12 @@ def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
     return unknown + [key for key in full if key not in KEYS]
 
 
-def _nearest(key: str, *, tables: bool = True) -> str | None:
+def keys_meant(given: str) -> list[str]:
+    """The keys that may be meant by one in full, or by its last part."""
+    return [key for key in KEYS if given in (key, key.partition(".")[2])]
+
+
+def nearest(key: str, *, tables: bool = True) -> str | None:
     """The known table or key most like `key`; a known name in the wrong table finds its table."""
     names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
     if tables and "." not in key:
@@ -209,14 +230,14 @@ def _nearest(key: str, *, tables: bool = True) -> str | None:
     return names.get(near[0], near[0]) if near else None
 
 
-def _not_known(key: str, *, tables: bool = True) -> str:
+def not_known(key: str, *, tables: bool = True) -> str:
     """What to say of an unknown key; without `tables` where only a key can stand."""
     if key == "plate.stiffness":
         return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
-    nearest = _nearest(key, tables=tables) if tables or key not in TABLES else None
+    near = nearest(key, tables=tables) if tables or key not in TABLES else None
     said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
-    if nearest:
-        return f"unknown key {said}; did you mean {nearest}?"
+    if near:
+        return f"unknown key {said}; did you mean {near}?"
     table = key.partition(".")[0]
     known = [known for known in KEYS if known.startswith(f"{table}.")] or (
         TABLES if tables else KEYS

@@ -47,18 +47,18 @@ class Table(BaseModel):
         quantity, place = NUMBERS[key], cast(Place, info.context)(key)
         if quantity.rows and (isinstance(value, list) or not quantity.may_be_constant):
             return _rows(value, quantity, key, place)
-        return _number(value, quantity, usual(quantity), key, place)
+        return number(value, quantity, usual(quantity), key, place)
 
 
-def _number(value: object, quantity: Quantity, example: str, label: str, place: str) -> float:
+def number(value: object, quantity: Quantity, example: str, label: str, place: str) -> float:
     """What TOML gave, in SI: text with a unit, or a bare number where the quantity has no unit."""
     bare = isinstance(value, (int, float)) and not isinstance(value, bool)
     text = value if isinstance(value, str) else repr(value) if bare else ""
     try:
-        number = to_si(text, quantity.unit, example)
+        si = to_si(text, quantity.unit, example)
     except UnitError as error:
         raise ValueError(refusal(label, str(error), quoted(value), place)) from None
-    return check(quantity.name, number, where=place, label=label, given=quoted(value))
+    return check(quantity.name, si, where=place, label=label, given=quoted(value))
 
 
 def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
@@ -75,8 +75,8 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
             raise ValueError(refusal(f"{key}[{i}]", required, quoted(row), place))
         rows.append(
             (
-                _number(row[0], across, examples[0], f"{key}[{i}] {words[0]}", place),
-                _number(row[1], quantity, examples[1], f"{key}[{i}] {words[1]}", place),
+                number(row[0], across, examples[0], f"{key}[{i}] {words[0]}", place),
+                number(row[1], quantity, examples[1], f"{key}[{i}] {words[1]}", place),
             )
         )
     if quantity.rows_of == "places":

@@ -1,0 +1,216 @@
+"""How a study file writes an axis: a list, a table with one way to choose, or a tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from typing import TYPE_CHECKING, Any, Final
+
+from pindrive.config import keys_meant, not_known
+from pindrive.quantities import refusal
+from pindrive.schema import number
+from pindrive.study.axis import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
+from pindrive.template import NUMBERS, usual
+from pindrive.units import UnitError, quoted, to_si
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from pindrive.quantity import Quantity
+
+_TABLES: Final = ("drive", "plate", "finger", "motion")
+_WAYS: Final = ("lin", "log", "list", *KINDS, "times")
+_BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}
+
+
+def written_axes(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The keys of [axes] and what is written for each, whether under its table or in full."""
+    for given, spec in table.items():
+        if given in _TABLES and isinstance(spec, dict):
+            yield from ((f"{given}.{name}", inner) for name, inner in spec.items())
+        else:
+            yield given, spec
+
+
+def sweepable(given: str, place: str) -> str:
+    """The key that is meant, if it holds a number.
+
+    Raises:
+        ValueError: it is unknown, may mean two, or is no number.
+    """
+    keys = keys_meant(given)
+    if not keys:
+        raise ValueError(f"{place}: {not_known(given, tables=False)}")
+    if len(keys) > 1:
+        raise ValueError(f"{place}: give the key in full, {' or '.join(keys)}")
+    if keys[0] not in NUMBERS or not NUMBERS[keys[0]].may_be_constant:
+        raise ValueError(f"{place}: {keys[0]} is no single number, it cannot be varied")
+    return keys[0]
+
+
+class AxisReader:
+    """Reads what is written for one key; says mistakes with the file and the key."""
+
+    def __init__(self, file: str, table: str, key: str, base: float | None) -> None:
+        self._file, self._label, self._key = file, f"{table}.{key}", key
+        self._quantity: Quantity = NUMBERS[key]
+        self._base = base
+        self._tolerance = table == "tolerances"
+
+    def read(self, spec: object) -> Axis:
+        """The axis.
+
+        Raises:
+            ValueError: it is malformed, empty, or out of the key's bounds.
+        """
+        if self._tolerance and isinstance(spec, str):
+            return self._around(spec)
+        if isinstance(spec, list) and not self._tolerance:
+            return self._listed(spec, "")
+        ways = [way for way in _WAYS if way in spec] if isinstance(spec, dict) else []
+        if not isinstance(spec, dict) or len(ways) != 1:
+            raise ValueError(self._refusal(self._expected(), spec))
+        way = ways[0]
+        beside = _BESIDE.get(way, ("within",))
+        for name in spec:
+            if name not in (way, *beside):
+                known = " and ".join((way, *beside))
+                raise ValueError(
+                    f"{self._file}: unknown key {self._label}.{name}; there is {known}"
+                )
+        if way == "times":
+            return self._linked(spec)
+        if way in KINDS:
+            return self._distribution(way, spec)
+        if self._tolerance:
+            raise ValueError(self._refusal(self._expected(), spec))
+        if way == "list":
+            return self._listed(spec["list"], ".list")
+        return self._even(way, spec)
+
+    def _expected(self) -> str:
+        a, b = (quoted(self._quantity.written(x)) for x in self._example())
+        if self._tolerance:
+            return f'a tolerance like "20 %" or {{ uniform = [{a}, {b}] }}'
+        return f"a list of values, or a table like {{ lin = [{a}, {b}], count = 10 }}"
+
+    def _example(self) -> tuple[float, float]:
+        quantity = self._quantity
+        value = self._base or quantity.default or quantity.example or 1.0
+        return 0.5 * value, 2.0 * value
+
+    def _refusal(self, required: str, given: object, part: str = "") -> str:
+        return refusal(f"{self._label}{part}", required, quoted(given), self._file)
+
+    def _value(self, given: object, part: str) -> float:
+        """One value in SI, within the key's bounds."""
+        quantity, label = self._quantity, f"{self._label}{part}"
+        return number(given, quantity, usual(quantity), label, self._file)
+
+    def _pair(self, given: object, part: str, names: tuple[str, str]) -> list[Any]:
+        if not isinstance(given, list) or len(given) != 2:
+            raise ValueError(self._refusal(f"two values, [{', '.join(names)}]", given, part))
+        return given
+
+    def _listed(self, values: object, part: str) -> Listed:
+        if not isinstance(values, list) or not values:
+            raise ValueError(self._refusal("a list of at least one value", values, part))
+        return Listed(tuple(self._value(v, f"{part}[{i}]") for i, v in enumerate(values)))
+
+    def _even(self, way: str, spec: Mapping[str, Any]) -> Even:
+        pair = self._pair(spec[way], f".{way}", ("first", "last"))
+        low, high = (self._value(v, f".{way}[{i}]") for i, v in enumerate(pair))
+        if low == high:
+            raise ValueError(self._refusal("two different values", pair, f".{way}"))
+        if way == "log" and not min(low, high) > 0.0:
+            raise ValueError(self._refusal("two values greater than 0", pair, ".log"))
+        count = spec.get("count")
+        if type(count) is not int or count < 2:
+            given = "none" if count is None else quoted(count)
+            required = "a whole number of at least 2"
+            raise ValueError(refusal(f"{self._label}.count", required, given, self._file))
+        return Even(low, high, count, way == "log")
+
+    def _linked(self, spec: Mapping[str, Any]) -> Linked:
+        of = spec.get("of")
+        if not isinstance(of, str):
+            raise ValueError(
+                self._refusal('the key that it follows, like of = "plate.kinetic"', of, ".of")
+            )
+        key = sweepable(of, f"{self._file}: {self._label}.of")
+        if key == self._key or NUMBERS[key].unit != self._quantity.unit:
+            required = f"another key in {self._quantity.unit}"
+            raise ValueError(self._refusal(required, of, ".of"))
+        return Linked(key, self._plain(spec["times"], ".times"))
+
+    def _plain(self, given: object, part: str) -> float:
+        if isinstance(given, bool) or not isinstance(given, (int, float)) or not abs(given) < inf:
+            raise ValueError(self._refusal("a plain finite number", given, part))
+        return float(given)
+
+    def _distribution(self, kind: Kind, spec: Mapping[str, Any]) -> Distribution:
+        part, names = f".{kind}", KINDS[kind]
+        if kind == "normal" and isinstance(spec[kind], str) and self._tolerance:
+            first, second = self._about(part, spec[kind]), self._spread(spec[kind], part)
+        else:
+            pair = self._pair(spec[kind], part, names)
+            first = self._value(pair[0], f"{part}[0]")
+            if kind == "normal":
+                second = self._spread(pair[1], f"{part}[1]", first)
+            elif kind == "lognormal":
+                second = self._plain(pair[1], f"{part}[1]")
+            else:
+                second = self._value(pair[1], f"{part}[1]")
+        if kind in ("uniform", "loguniform") and not first < second:
+            raise ValueError(self._refusal("a lowest and a highest value", spec[kind], part))
+        if kind in ("loguniform", "lognormal") and not first > 0.0:
+            raise ValueError(self._refusal(f"a {names[0]} greater than 0", spec[kind], part))
+        if kind == "lognormal" and not second > 1.0:
+            raise ValueError(self._refusal("a factor greater than 1", pair[1], f"{part}[1]"))
+        bounds = self._quantity.bounds
+        found = Distribution(kind, first, second, bounds.lower, bounds.upper)
+        if "within" not in spec:
+            return found
+        pair = self._pair(spec["within"], ".within", ("lowest", "highest"))
+        low, high = (self._value(v, f".within[{i}]") for i, v in enumerate(pair))
+        if not low < high:
+            raise ValueError(self._refusal("a lowest and a highest value", pair, ".within"))
+        if kind in ("uniform", "loguniform"):
+            raise ValueError(self._refusal(f"left out, {kind} has its own ends", pair, ".within"))
+        return replace(found, lower=low, upper=high)
+
+    def _around(self, text: str) -> Distribution:
+        """A tolerance about the device's own value: "20 %" or "4 mN" either way."""
+        base = self._about("", text)
+        off = self._spread(text.strip().removeprefix("±"), "", base)
+        low, high = base - off, base + off
+        for end in (low, high):
+            if end not in self._quantity.bounds:
+                shown = f"{quoted(text)}, which reaches {self._quantity.written(end)}"
+                words = self._quantity.bounds.words(self._quantity.unit)
+                raise ValueError(refusal(self._label, words, shown, self._file))
+        return Distribution("uniform", low, high)
+
+    def _about(self, part: str, given: object) -> float:
+        if self._base is None:
+            raise ValueError(
+                self._refusal("given with its ends, the device has no value", given, part)
+            )
+        return self._base
+
+    def _spread(self, given: object, part: str, about: float | None = None) -> float:
+        """A deviation in SI, greater than 0; "5 %" is a part of the value that it is about."""
+        about = self._base if about is None else about
+        quantity, text = self._quantity, given.strip() if isinstance(given, str) else ""
+        relative = text.endswith("%") and quantity.unit != "1"
+        example = usual(quantity)
+        try:
+            if relative:
+                off = to_si(text, "1", "5 %") * abs(about or 0.0)
+            else:
+                off = to_si(text or repr(given), quantity.unit, example)
+        except UnitError as error:
+            raise ValueError(self._refusal(f"{error} or a percentage", given, part)) from None
+        if not 0.0 < off < inf:
+            raise ValueError(self._refusal("a deviation greater than 0", given, part))
+        return off

@@ -1,0 +1,88 @@
+"""What cannot be true together in a study: told before anything is computed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive.study.axis import Axis, Linked
+from pindrive.study.plan import base_value
+from pindrive.template import NUMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from pindrive.study.plan import Plan
+
+_MOST_COMPARED = 1 << 20
+"""Points of one dimension that are compared one by one."""
+
+
+def conflicts(plan: Plan, file: str) -> list[str]:
+    """A line for each contradiction among the axes, and between them and the device."""
+    problems = []
+    for table, keys in (("axes", [*plan.axes]), ("tolerances", [*plan.tolerances])):
+        problems += [f"{file}: {table}: {words}" for words in _among(plan, keys)]
+    for contact in ("plate", "finger"):
+        if words := _static_below_kinetic(plan, contact):
+            problems.append(f"{file}: {words}")
+    return problems
+
+
+def _among(plan: Plan, keys: list[str]) -> Iterator[str]:
+    if {"drive.damping", "drive.damping_ratio"} <= {*keys}:
+        yield "vary drive.damping or drive.damping_ratio, not both"
+    drive = plan.device.drive
+    for contact, part in (("plate", drive.plate), ("finger", drive.finger)):
+        if part.curve and f"{contact}.kinetic" in keys:
+            yield f"{contact}.kinetic cannot be varied beside {contact}.curve: it is its first row"
+    if drive.finger.curved and "finger.stiffness" in keys:
+        yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
+    if "motion.skin_stretch" in keys and drive.finger.rigid and "finger.stiffness" not in keys:
+        yield "motion.skin_stretch cannot be varied for a rigid finger; give finger.stiffness"
+    for key in keys:
+        link = plan.links.get(key)
+        if link and link.of in plan.links:
+            yield f"{key} follows {link.of}, which follows {plan.links[link.of].of}; follow that"
+        if link and link.of not in keys and not isinstance(base_value(plan.device, link.of), float):
+            yield f"{key} follows {link.of}, which has no value"
+
+
+def _static_below_kinetic(plan: Plan, contact: str) -> str:
+    """Words for static friction that is below kinetic friction at every point."""
+    static, kinetic = f"{contact}.static", f"{contact}.kinetic"
+    axes: dict[str, Axis] = {**plan.tolerances, **plan.axes}
+    if not {static, kinetic} & axes.keys():
+        return ""
+    if static not in axes and plan.device.values()[static] is None:
+        return ""
+    largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
+    if largest >= smallest and not _below_along(plan, static, kinetic):
+        return ""
+    unit = NUMBERS[static]
+    return (
+        f"{static} is below {kinetic} at every point: at most {unit.written(largest)}, "
+        f"{kinetic} at least {unit.written(smallest)}"
+    )
+
+
+def _span(plan: Plan, axes: dict[str, Axis], key: str) -> tuple[float, float]:
+    """The smallest and the largest value of a key."""
+    axis = axes.get(key)
+    if axis is None:
+        value = float(base_value(plan.device, key))
+        return value, value
+    if isinstance(axis, Linked):
+        ends = sorted(axis.times * end for end in _span(plan, axes, axis.of))
+        return ends[0], ends[1]
+    return axis.span
+
+
+def _below_along(plan: Plan, static: str, kinetic: str) -> bool:
+    """Whether two keys that go together never fit, though their ranges overlap."""
+    for dimension in plan.dimensions:
+        if {static, kinetic} <= dimension.axes.keys() and dimension.size <= _MOST_COMPARED:
+            values = dimension.at(np.arange(dimension.size))
+            return bool((values[static] < values[kinetic]).all())
+    return False

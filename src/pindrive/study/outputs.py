@@ -1,0 +1,103 @@
+"""The numbers that a study can keep of each motion, and how a file holds them."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.quantities import ENDING, QUANTITIES, TRANSIENT, refusal
+from pindrive.units import quoted
+
+if TYPE_CHECKING:
+    from pindrive.config import DeviceFile
+    from pindrive.quantity import Quantity
+
+NUMBERS: Final[dict[str, Quantity]] = {
+    quantity.name.replace(".", "_"): quantity for quantity in TRANSIENT + ENDING
+}
+"""By the names of their variables."""
+OUTPUTS: Final = (*NUMBERS, "status", "ending", "events")
+
+_SKIN: Final = ("transient_peak_stretch", "transient_peak_stretch_rate")
+_COUNTS: Final = ("transient_plate_reversals", "transient_finger_reversals")
+_SETTLED: Final = "transient_settled"
+
+MEASURED: Final = tuple(name for name in NUMBERS if name != _SETTLED)
+"""Those that are numbers, not yes or no."""
+
+
+def usual_outputs(device: DeviceFile, keys: set[str]) -> tuple[str, ...]:
+    """All numbers that exist; the skin's only where the finger has any."""
+    rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
+    return tuple(name for name in OUTPUTS if not (rigid and name in _SKIN))
+
+
+def known_output(given: object, place: str) -> str:
+    """The variable that a name means: its own, the table's, or the last part where unique.
+
+    Raises:
+        ValueError: there is none, or more than one.
+    """
+    if not isinstance(given, str):
+        raise ValueError(refusal("an output", "the name of a number", quoted(given), place))
+    name = given.replace(".", "_")
+    shorts = {full: full.partition("_")[2] for full in NUMBERS}
+    found = [full for full in OUTPUTS if name in (full, shorts.get(full))]
+    if found:
+        return found[0]
+    ends = [full for full in OUTPUTS if full.endswith(f"_{name}")]
+    if len(ends) == 1:
+        return ends[0]
+    if ends:
+        raise ValueError(f"{place}: {quoted(given)} may be {' or '.join(ends)}; give it in full")
+    names = {short: short for short in shorts.values()} | {full: full for full in OUTPUTS}
+    near = get_close_matches(name, names, 1)
+    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
+    raise ValueError(f"{place}: unknown number {quoted(given)}; {hint}")
+
+
+def dtype(name: str) -> np.dtype[Any]:
+    """How a variable is held: counts and flags as whole numbers."""
+    if name in ("status", "ending", _SETTLED):
+        return np.dtype("<i1")
+    return np.dtype("<i4" if name in _COUNTS or name == "events" else "<f8")
+
+
+def encoded(name: str, values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Values as a file holds them; -1 for a count that does not exist."""
+    if name in _COUNTS:
+        values = np.where(np.isnan(values), -1.0, values)
+    return np.ascontiguousarray(values, dtype(name))
+
+
+def attributes(name: str) -> dict[str, Any]:
+    """Unit and meaning of a number; xarray reads a missing count as NaN."""
+    if name not in NUMBERS:
+        return {}
+    quantity = NUMBERS[name]
+    found: dict[str, Any] = {"long_name": quantity.meaning}
+    if quantity.symbol:
+        found["symbol"] = quantity.symbol
+    if quantity.unit:
+        found["units"] = quantity.unit
+    if name == _SETTLED:
+        found["dtype"] = "bool"
+    return found
+
+
+def missing(name: str) -> int | None:
+    """The value that stands for none."""
+    return -1 if name in _COUNTS else None
+
+
+def label(name: str) -> str:
+    """A number as a table names it: "settling_time", "plate_dissipated"; an ending's in full."""
+    head, _, tail = name.partition("_")
+    return tail if head == "transient" else name
+
+
+def measured(name: str) -> Quantity:
+    """The quantity that a variable holds, of an input or of a motion."""
+    return NUMBERS[name] if name in NUMBERS else QUANTITIES[name]

@@ -1,0 +1,156 @@
+"""What a study is: a device, the axes along which it changes, and every point in one order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from math import prod
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.study.axis import Axis, Distribution, Grid, Linked
+from pindrive.study.sample import Sample
+from pindrive.template import NUMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from pindrive.config import DeviceFile
+    from pindrive.study.demand import Demand
+
+    Columns = dict[str, NDArray[np.float64]]
+
+CHUNK: Final = 1 << 16
+"""Points of a chunk: half a second's work, 15 MB of numbers."""
+
+
+def variable(key: str) -> str:
+    """What a key of the device file is called in Python and in a NetCDF file."""
+    return NUMBERS[key].name.replace(".", "_")
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """Keys that change together: one grid axis, several in a zip, or all sampled ones."""
+
+    name: str
+    size: int
+    axes: Mapping[str, Grid | Distribution]
+    sample: Sample | None = None
+
+    def at(self, index: NDArray[np.int64]) -> Columns:
+        """The value of each key at these places."""
+        if self.sample:
+            parts = self.sample.parts(index)
+            return {
+                key: axis.ppf(part)
+                for part, (key, axis) in zip(parts, self.axes.items(), strict=True)
+                if isinstance(axis, Distribution)
+            }
+        return {
+            key: axis.at(index)
+            for key, axis in self.axes.items()
+            if not isinstance(axis, Distribution)
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """A study: its points are the product of its dimensions, the last one changing fastest."""
+
+    path: Path
+    name: str
+    text: str
+    """The study file, and the device file where it names one."""
+    device: DeviceFile
+    by_ratio: bool
+    """Whether the device file gives its damping as a ratio, which then stays as it is."""
+    dimensions: tuple[Dimension, ...]
+    links: Mapping[str, Linked]
+    outputs: tuple[str, ...]
+    """Variables to keep, in the order of the file."""
+    chunk: int = CHUNK
+    tolerances: Mapping[str, Distribution]
+    demands: tuple[Demand, ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many points along each dimension."""
+        return tuple(dimension.size for dimension in self.dimensions)
+
+    @property
+    def size(self) -> int:
+        """How many points there are."""
+        return prod(self.shape)
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks they make."""
+        return -(-self.size // self.chunk)
+
+    def bounds(self, chunk: int) -> tuple[int, int]:
+        """The first point of a chunk, and the first of the next."""
+        return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Every swept key with its values, those that follow another last."""
+        found: dict[str, Axis] = {}
+        for dimension in self.dimensions:
+            found.update(dimension.axes)
+        return found | dict(self.links)
+
+    def columns(self, begin: int, end: int) -> Columns:
+        """The value of every swept key at the points from `begin` up to `end`."""
+        places = np.unravel_index(np.arange(begin, end), self.shape)
+        found: Columns = {}
+        for dimension, index in zip(self.dimensions, places, strict=True):
+            found |= dimension.at(index)
+        return self.with_links(found)
+
+    def with_links(self, columns: Columns) -> Columns:
+        """The columns, and those of the keys that follow one of them or a value of the device."""
+        return columns | {
+            key: link.times * self.value(link.of, columns) for key, link in self.links.items()
+        }
+
+    def value(self, key: str, columns: Columns) -> NDArray[np.float64]:
+        """A column, or the device's own value."""
+        return columns[key] if key in columns else np.asarray(base_value(self.device, key))
+
+    def identity(self) -> dict[str, Any]:
+        """All that its numbers follow from: two studies with one identity have one answer."""
+        from pindrive import __version__
+
+        derived = "drive.damping" if self.by_ratio else "drive.damping_ratio"
+        device = {key: value for key, value in self.device.values().items() if key != derived}
+        found: dict[str, Any] = json.loads(
+            json.dumps(
+                {
+                    "pindrive": __version__,
+                    "device": device,
+                    "dimensions": [asdict(dimension) for dimension in self.dimensions],
+                    "links": {key: asdict(link) for key, link in self.links.items()},
+                    "outputs": self.outputs,
+                    "chunk": self.chunk,
+                }
+            )
+        )
+        return found
+
+
+def base_value(device: DeviceFile, key: str) -> Any:
+    """What the device has for a key, in SI; for what it leaves out, what holds then."""
+    value = device.values()[key]
+    if value is not None:
+        return value
+    followed = {
+        "plate.static": "plate.kinetic",
+        "finger.static": "finger.kinetic",
+        "motion.velocity": "motion.mouse_velocity",
+    }
+    return device.values()[followed[key]] if key in followed else None

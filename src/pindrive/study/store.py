@@ -1,0 +1,237 @@
+"""The NetCDF file of a study: laid out whole at once, then filled piece by piece at fixed places.
+
+HDF5 stores a contiguous array as one run of bytes. So the file's own structure is written first,
+for all points, and closed; the numbers of a chunk are then plain bytes at known offsets. A process
+that dies leaves the structure as it was, chunks may come in any order, and nothing is copied when
+the last one is there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from math import prod
+from threading import Lock
+from typing import TYPE_CHECKING, Any, NamedTuple
+from zlib import crc32
+
+import numpy as np
+
+from pindrive.output import naming
+from pindrive.study import outputs
+from pindrive.study.evaluate import evaluate, flags
+from pindrive.study.plan import variable
+from pindrive.template import NUMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+    from types import TracebackType
+
+    from numpy.typing import NDArray
+
+    from pindrive.study.plan import Plan
+
+
+class Piece(NamedTuple):
+    """A run of values of one variable."""
+
+    name: str
+    start: int
+    """Place of the first value in the variable's flat order."""
+    values: NDArray[Any]
+
+
+def work_out(plan: Plan, chunk: int) -> list[Piece]:
+    """The numbers of a chunk's points, and of each coordinate the part that appears there first."""
+    begin, end = plan.bounds(chunk)
+    table = evaluate(plan, plan.columns(begin, end), end - begin, plan.outputs)
+    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in plan.outputs]
+    return [*_coordinates(plan, begin, end), *numbers]
+
+
+def extents(plan: Plan, chunk: int) -> list[tuple[str, int, int]]:
+    """Name, start and length of the pieces of a chunk, in their order."""
+    begin, end = plan.bounds(chunk)
+    coordinates = [
+        (variable(key), first, last - first)
+        for dimension, first, last in _first_seen(plan, begin, end)
+        for key in plan.dimensions[dimension].axes
+    ]
+    return [*coordinates, *((name, begin, end - begin) for name in plan.outputs)]
+
+
+def checksum(pieces: list[Piece]) -> int:
+    """One number for the bytes of a chunk."""
+    found = 0
+    for piece in pieces:
+        found = crc32(piece.values.data.cast("B"), found)
+    return found
+
+
+def _coordinates(plan: Plan, begin: int, end: int) -> Iterator[Piece]:
+    for dimension, first, last in _first_seen(plan, begin, end):
+        values = plan.dimensions[dimension].at(np.arange(first, last))
+        for key in plan.dimensions[dimension].axes:
+            yield Piece(variable(key), first, np.ascontiguousarray(values[key], "<f8"))
+
+
+def _first_seen(plan: Plan, begin: int, end: int) -> Iterator[tuple[int, int, int]]:
+    """For each dimension, the places along it that no point before `begin` has."""
+    for i, size in enumerate(plan.shape):
+        stride = prod(plan.shape[i + 1 :])
+        first, last = (min(-(-point // stride), size) for point in (begin, end))
+        if first < last:
+            yield i, first, last
+
+
+class Store:
+    """An open file of a study, to put pieces in and to read them back."""
+
+    def __init__(self, path: Path, plan: Plan) -> None:
+        """Open a file that `lay_out` made."""
+        import h5py
+
+        self._path, self._lock = path, Lock()
+        names = {variable(key) for d in plan.dimensions for key in d.axes} | {*plan.outputs}
+        with naming(path):
+            with h5py.File(path, "r") as file:
+                self._places = {
+                    name: (file[name].id.get_offset(), file[name].dtype) for name in names
+                }
+            self._file = path.open("r+b", buffering=0)
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._file.close()
+
+    def put(self, pieces: list[Piece]) -> None:
+        """Write the pieces of a chunk.
+
+        Raises:
+            OSError: the disk is full or fails.
+        """
+        for name, start, values in pieces:
+            offset, kind = self._places[name]
+            bytes_left = values.data.cast("B")
+            with self._lock:
+                self._file.seek(offset + start * kind.itemsize)
+                while bytes_left:
+                    bytes_left = bytes_left[self._file.write(bytes_left) :]
+
+    def read(self, plan: Plan, chunk: int) -> list[Piece]:
+        """The pieces of a chunk as they stand in the file."""
+        found = []
+        for name, start, length in extents(plan, chunk):
+            offset, kind = self._places[name]
+            with self._lock:
+                self._file.seek(offset + start * kind.itemsize)
+                content = self._file.read(length * kind.itemsize)
+            found.append(Piece(name, start, np.frombuffer(content, np.uint8)))
+        return found
+
+    def sync(self) -> None:
+        """Return when all is on the disk."""
+        os.fsync(self._file.fileno())
+
+
+def bytes_of(plan: Plan) -> int:
+    """How large the file will be, but for its structure."""
+    each = sum(outputs.dtype(name).itemsize for name in plan.outputs)
+    return plan.size * each + sum(8 * d.size * len(d.axes) for d in plan.dimensions)
+
+
+# ---- the structure -------------------------------------------------------------------------------
+
+
+def lay_out(path: Path, plan: Plan) -> None:
+    """Write the file's structure: dimensions, coordinates, variables, units, the study itself."""
+    import h5netcdf
+
+    from pindrive import __version__
+
+    with h5netcdf.File(path, "w") as file:
+        file.dimensions = {dimension.name: dimension.size for dimension in plan.dimensions}
+        for dimension in plan.dimensions:
+            for key, axis in dimension.axes.items():
+                made = _variable(file, variable(key), (dimension.name,), "<f8")
+                made.attrs.update(_key_attributes(key))
+                if getattr(axis, "log", False):
+                    made.attrs["spacing"] = "log"
+        for key, value in _fixed(plan).items():
+            made = file.create_variable(variable(key), (), "<f8", data=value)
+            made.attrs.update(_key_attributes(key))
+        names = tuple(dimension.name for dimension in plan.dimensions)
+        for name in plan.outputs:
+            made = _variable(file, name, names, outputs.dtype(name), outputs.missing(name))
+            made.attrs.update(_number_attributes(name))
+            beside = [variable(key) for key in (*plan.axes, *_fixed(plan)) if key not in plan.links]
+            made.attrs["coordinates"] = " ".join(v for v in beside if v not in names)
+        file.attrs.update(
+            {
+                "Conventions": "CF-1.11",
+                "title": plan.name or "A study of a pin drive",
+                "source": f"pindrive {__version__}",
+                "study": plan.text,
+                "identity": identity(plan),
+                "links": "; ".join(
+                    f"{key} = {link.times:.12g} * {link.of}" for key, link in plan.links.items()
+                )
+                or "none",
+            }
+        )
+
+
+def _fixed(plan: Plan) -> dict[str, float]:
+    """The values of the device that no axis changes."""
+    swept = {*plan.axes}
+    if swept & {"drive.damping", "drive.damping_ratio"}:
+        swept |= {"drive.damping", "drive.damping_ratio"}
+    derived = "drive.damping" if plan.by_ratio else "drive.damping_ratio"
+    return {
+        key: value
+        for key, value in plan.device.values().items()
+        if isinstance(value, float) and key not in (*swept, derived)
+    }
+
+
+def identity(plan: Plan) -> str:
+    """What the study's numbers follow from, as text."""
+    return json.dumps(plan.identity(), sort_keys=True)
+
+
+def _variable(
+    file: Any, name: str, dims: tuple[str, ...], kind: Any, missing: int | None = None
+) -> Any:
+    """A contiguous variable whose place in the file is fixed, and whose bytes come later."""
+    fill = None if missing is None else np.dtype(kind).type(missing)
+    made = file.create_variable(name, dims, kind, fillvalue=fill, fill_time="never")
+    made[(slice(0, 1),) * len(dims)] = 0  # the first write fixes the place
+    return made
+
+
+def _key_attributes(key: str) -> dict[str, str]:
+    quantity = NUMBERS[key]
+    words = {"long_name": quantity.meaning, "symbol": quantity.symbol, "key": key}
+    return words | ({"units": quantity.unit} if quantity.unit else {})
+
+
+def _number_attributes(name: str) -> dict[str, Any]:
+    if name == "events":
+        return {"long_name": "changes at a contact; of a cycle, those of one round"}
+    if name in ("status", "ending"):
+        meanings = flags(name)
+        first = 0 if name == "status" else -1
+        return {
+            "long_name": {"status": "what was wrong", "ending": "how the motion ends"}[name],
+            "flag_values": np.arange(first, first + len(meanings), dtype=np.int8),
+            "flag_meanings": " ".join(meanings),
+        }
+    return outputs.attributes(name)

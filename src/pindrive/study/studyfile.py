@@ -1,0 +1,263 @@
+"""Study files: a device, axes over its keys, tolerances and a specification, in TOML with units.
+
+Whatever is wrong is found in one pass and said in lines that name file, key, value and bound.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from pindrive.config import TABLES, ConfigError, device_of, read_tables
+from pindrive.quantities import refusal
+from pindrive.study.axes import AxisReader, sweepable, written_axes
+from pindrive.study.axis import Axis, Distribution, Grid, Linked
+from pindrive.study.conflicts import conflicts
+from pindrive.study.demand import demands
+from pindrive.study.outputs import known_output, usual_outputs
+from pindrive.study.plan import CHUNK, Dimension, Plan, base_value, variable
+from pindrive.study.sample import MOST_SOBOL, Sample
+from pindrive.units import quoted
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from os import PathLike
+
+    from pindrive.config import DeviceFile
+
+_OWN: Final = (
+    *("name", "base", "outputs", "zip", "chunk"),
+    *("axes", "sample", "tolerances", "specification"),
+)
+_SAMPLE: Final = ("method", "count", "seed")
+_TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to vary in [axes]'
+MOST_POINTS: Final = 1 << 48
+"""Points of a study: a file of petabytes."""
+
+
+def load_study(path: str | PathLike[str]) -> Plan:
+    """The study file at `path`.
+
+    Raises:
+        ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
+            out of bounds or contradictory.
+    """
+    file = Path(path)
+    tables = read_tables(file, _TEMPLATE)
+    problems = _unknown(tables, file)
+    device, text, by_ratio = _device(tables, file)
+    reader = _Reader(str(file), tables, device, problems)
+    plan = Plan(
+        path=file,
+        name=reader.text("name") or device.name,
+        text=text,
+        device=device,
+        by_ratio=by_ratio,
+        dimensions=reader.dimensions,
+        links=reader.links,
+        outputs=reader.outputs(),
+        chunk=reader.whole("chunk", CHUNK, CHUNK * 64),
+        tolerances=reader.tolerances,
+        demands=demands(reader.table("specification"), str(file), problems),
+    )
+    problems += conflicts(plan, str(file))
+    if plan.size > MOST_POINTS:
+        required = f"at most {MOST_POINTS} points"
+        problems.append(refusal("the product of the axes", required, plan.size, str(file)))
+    if problems:
+        raise ConfigError(list(dict.fromkeys(problems)))
+    return plan
+
+
+def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
+    known = _OWN if "base" in tables else (*_OWN, *TABLES)
+    problems = []
+    for key in tables:
+        if key in known:
+            continue
+        if key in TABLES:
+            problems.append(f"{file}: give base or the table {key}, not both")
+            continue
+        near = get_close_matches(key, known, 1)
+        said = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+        problems.append(f"{file}: unknown key {quoted(key)}; {said}")
+    return problems
+
+
+def _device(tables: Mapping[str, Any], file: Path) -> tuple[DeviceFile, str, bool]:
+    """The device, the text of all files read, and whether damping is given as a ratio."""
+    text = file.read_text("utf-8-sig")
+    given, source = {k: v for k, v in tables.items() if k in TABLES}, file
+    if "base" in tables:
+        if not isinstance(tables["base"], str):
+            required = "the path of a device file in quotes"
+            raise ConfigError([refusal("base", required, quoted(tables["base"]), str(file))])
+        source = file.parent / tables["base"]
+        given = read_tables(source)
+        text = f"{text.rstrip()}\n\n# ---- {tables['base']} ----\n\n{source.read_text('utf-8-sig')}"
+    elif not given:
+        raise ConfigError([f'{file}: has no device; write base = "device.toml" at the top'])
+    device = device_of(source, given)
+    return device, text, "damping_ratio" in given["drive"]
+
+
+class _Reader:
+    """Reads the tables of one study file; what is wrong is appended to `problems`."""
+
+    def __init__(
+        self, file: str, tables: Mapping[str, Any], device: DeviceFile, problems: list[str]
+    ) -> None:
+        self._file, self._tables, self._device = file, tables, device
+        self._problems = problems
+        axes = self._axes("axes")
+        self.links = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
+        tolerances = self._axes("tolerances")
+        self.links |= {key: axis for key, axis in tolerances.items() if isinstance(axis, Linked)}
+        self.tolerances = {
+            k: axis for k, axis in tolerances.items() if isinstance(axis, Distribution)
+        }
+        self._swept = axes.keys() | tolerances.keys()
+        self.dimensions = self._dimensions(axes)
+
+    def table(self, name: str) -> dict[str, Any]:
+        """One of its tables; empty where it is missing."""
+        given = self._tables.get(name, {})
+        if isinstance(given, dict):
+            return given
+        self._problems.append(refusal(name, f"a table, [{name}]", quoted(given), self._file))
+        return {}
+
+    def text(self, name: str) -> str:
+        """Text, empty where it is missing."""
+        given = self._tables.get(name, "")
+        if isinstance(given, str):
+            return given
+        self._problems.append(refusal(name, "text in quotes", quoted(given), self._file))
+        return ""
+
+    def whole(self, name: str, default: int, most: int, least: int = 1) -> int:
+        """A whole number at the top or, as "sample.count", in a table."""
+        table, _, key = name.rpartition(".")
+        given = (self.table(table) if table else self._tables).get(key, default)
+        if type(given) is int and least <= given <= most:
+            return given
+        required = f"a whole number from {least} to {most}"
+        self._problems.append(refusal(name, required, quoted(given), self._file))
+        return max(least, min(default, most))
+
+    def outputs(self) -> tuple[str, ...]:
+        """The variables to keep, each once, with the status of every point."""
+        given = self._tables.get("outputs")
+        if given is None:
+            return usual_outputs(self._device, set(self._swept))
+        if not isinstance(given, list) or not given:
+            required = 'a list of numbers, like ["settling_time", "swing"]'
+            self._problems.append(refusal("outputs", required, quoted(given), self._file))
+            return ("status",)
+        found = []
+        for name in given:
+            try:
+                found.append(known_output(name, f"{self._file}: outputs"))
+            except ValueError as error:
+                self._problems.append(str(error))
+        return tuple(dict.fromkeys((*found, "status")))
+
+    # ---- axes ------------------------------------------------------------------------------------
+
+    def _axes(self, table: str) -> dict[str, Axis]:
+        found: dict[str, Axis] = {}
+        names: dict[str, str] = {}
+        for given, spec in written_axes(self.table(table)):
+            try:
+                key = sweepable(given, f"{self._file}: {table}")
+                if key in names:
+                    raise ValueError(
+                        f"{self._file}: {table}.{key} is given twice, as {names[key]} and {given}"
+                    )
+                names[key] = given
+                base = base_value(self._device, key)
+                number = base if isinstance(base, float) else None
+                found[key] = AxisReader(self._file, table, key, number).read(spec)
+            except ValueError as error:
+                self._problems.append(str(error))
+        return found
+
+    def _dimensions(self, axes: Mapping[str, Axis]) -> tuple[Dimension, ...]:
+        grids = {k: v for k, v in axes.items() if not isinstance(v, Distribution | Linked)}
+        drawn = {k: v for k, v in axes.items() if isinstance(v, Distribution)}
+        groups = self._zips(grids)
+        dimensions: list[Dimension] = []
+        done: set[str] = set()
+        for key in axes:
+            if key in drawn and "sample" not in done:
+                done.add("sample")
+                sample = self._sample(tuple(drawn))
+                dimensions.append(Dimension("sample", sample.count, drawn, sample))
+            elif key in grids and key not in done:
+                group = next((g for g in groups if key in g), (key,))
+                done |= {*group}
+                own: dict[str, Grid] = {name: grids[name] for name in group}
+                dimensions.append(Dimension(variable(group[0]), grids[key].count, own))
+        if not drawn:
+            for name in self.table("sample"):
+                self._check_sample_key(name)
+        return tuple(dimensions)
+
+    def _zips(self, grids: Mapping[str, Grid]) -> list[tuple[str, ...]]:
+        """The groups of keys that go together."""
+        given = self._tables.get("zip", [])
+        if not isinstance(given, list) or not all(isinstance(group, list) for group in given):
+            required = 'a list of groups, like [["drive.mass", "drive.stiffness"]]'
+            self._problems.append(refusal("zip", required, quoted(given), self._file))
+            return []
+        groups: list[tuple[str, ...]] = []
+        for group in given:
+            try:
+                groups.append(self._zipped(group, grids, [key for g in groups for key in g]))
+            except ValueError as error:
+                self._problems.append(str(error))
+        return groups
+
+    def _zipped(
+        self, group: Sequence[object], grids: Mapping[str, Grid], taken: Sequence[str]
+    ) -> tuple[str, ...]:
+        place = f"{self._file}: zip"
+        keys = []
+        for name in group:
+            key = sweepable(str(name), place)
+            if key not in grids:
+                raise ValueError(f"{place}: {key} is no axis of a list or of even steps")
+            if key in taken or key in keys:
+                raise ValueError(f"{place}: {key} is named twice")
+            keys.append(key)
+        if len(keys) < 2:
+            raise ValueError(refusal("a group", "two keys or more", quoted(list(group)), place))
+        if len({grids[key].count for key in keys}) > 1:
+            lengths = ", ".join(f"{key} has {grids[key].count}" for key in keys)
+            raise ValueError(f"{place}: axes that go together must be of one length; {lengths}")
+        return tuple(keys)
+
+    def _sample(self, keys: tuple[str, ...]) -> Sample:
+        table = self.table("sample")
+        for name in table:
+            self._check_sample_key(name)
+        method = table.get("method", "random")
+        if method not in ("random", "sobol"):
+            required = '"random" or "sobol"'
+            self._problems.append(refusal("sample.method", required, quoted(method), self._file))
+            method = "random"
+        if "count" not in table:
+            drawn = ", ".join(keys)
+            self._problems.append(
+                f"{self._file}: sample.count is missing for {drawn}; write count = 1024 in [sample]"
+            )
+        most = MOST_SOBOL if method == "sobol" else MOST_POINTS
+        count = self.whole("sample.count", 1024, most)
+        return Sample(keys, count, self.whole("sample.seed", 1, 2**63 - 1, 0), method)
+
+    def _check_sample_key(self, name: str) -> None:
+        if name not in _SAMPLE:
+            self._problems.append(
+                f"{self._file}: unknown key sample.{name}; there are {', '.join(_SAMPLE)}"
+            )

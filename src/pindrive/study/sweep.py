@@ -1,0 +1,271 @@
+"""A study worked off chunk by chunk into one file; interrupted, it goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pindrive.output import OutputError, naming
+from pindrive.quantities import refusal
+from pindrive.study.journal import Journal, Tally, difference
+from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
+
+if TYPE_CHECKING:
+    from pindrive.study.plan import Plan
+
+Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
+"""Works out chunks of a plan, and hands over each when it is done, in any order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a sweep came to."""
+
+    path: Path
+    points: int
+    """Of the study that are in the file."""
+    worked_out: int
+    """Of them, those of this run."""
+    refused: int
+    settled: int
+    """-1 where the settling time is not among the outputs."""
+    seconds: float
+    complete: bool
+
+
+def sweep(
+    plan: Plan,
+    target: Path,
+    *,
+    resume: bool = False,
+    restart: bool = False,
+    stop_after: int | None = None,
+    work: Work | None = None,
+    tell: Callable[[int, int], None] = lambda done, total: None,
+) -> Result:
+    """Work off all points of a study into the NetCDF file `target`.
+
+    Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
+
+    Args:
+        plan: the study.
+        target: a NetCDF file; one that is there is replaced when the new one is whole.
+        resume: go on with what an interrupted run left, if there is any.
+        restart: throw away what an interrupted run left.
+        stop_after: stop when at least so many points are done; `resume` goes on.
+        work: how chunks are worked out; on all cores unless given.
+        tell: called after each chunk with the points done and the points in all.
+
+    Raises:
+        OutputError: an interrupted run is there and neither `resume` nor `restart` is given, it is
+            of another study, the disk is full or cannot be written. Finished chunks are kept.
+    """
+    started = perf_counter()
+    part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
+    if resume and not notes.exists() and _is_complete(target, plan):
+        return Result(target, plan.size, 0, *_counted(target, plan), 0.0, True)
+    _check_target(target, notes, resume or restart)
+    with _journal(notes, part, plan, restart) as journal:
+        if not (journal.done and part.exists()):
+            journal.done.clear()
+            _begin(part, plan, target)
+        with Store(part, plan) as store, _keeping(part, journal):
+            _drop_damaged(journal, store, plan)
+            done = before = sum(tally.points for _, tally in journal.done.values())
+            tell(done, plan.size)
+            todo = [chunk for chunk in range(plan.chunks) if chunk not in journal.done]
+            if stop_after is not None:
+                todo = todo[: max(0, -(-(stop_after - done) // plan.chunk))]
+            for chunk, pieces in (work or on_threads())(plan, todo):
+                store.put(pieces)
+                tally = _tally(pieces)
+                journal.note(chunk, checksum(pieces), tally)
+                done += tally.points
+                tell(done, plan.size)
+            complete = done == plan.size
+            if complete:
+                store.sync()
+        tallies = [tally for _, tally in journal.done.values()]
+        if complete:
+            with naming(target):
+                os.replace(part, target)
+    if complete:
+        notes.unlink(missing_ok=True)
+    refused, settled = (sum(column) for column in list(zip(*tallies, strict=True))[1:] or ((), ()))
+    return Result(
+        target if complete else part,
+        done,
+        done - before,
+        refused,
+        settled if settled >= 0 else -1,
+        perf_counter() - started,
+        complete,
+    )
+
+
+def on_threads(threads: int | None = None) -> Work:
+    """Chunks side by side on the cores of this machine, as many at a time as there are threads."""
+    count = _cores() if threads is None else threads
+    if type(count) is not int or count < 1:
+        raise ValueError(refusal("threads", "a whole number of at least 1", repr(threads)))
+
+    def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+        pool = ThreadPoolExecutor(count)
+        try:
+            yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+    return work
+
+
+def in_flight(
+    chunks: Iterable[int], most: int, submit: Callable[[int], Future[list[Piece]]]
+) -> Iterator[tuple[int, list[Piece]]]:
+    """The chunks as they get done, never more than `most` begun and not handed over."""
+    waiting = iter(chunks)
+    begun: dict[Future[list[Piece]], int] = {}
+    while True:
+        for chunk in waiting:
+            begun[submit(chunk)] = chunk
+            if len(begun) >= most:
+                break
+        if not begun:
+            return
+        ready, _ = wait(begun, return_when=FIRST_COMPLETED)
+        for future in ready:
+            chunk = begun.pop(future)
+            yield chunk, future.result()
+
+
+def _cores() -> int:
+    of_this_process = getattr(os, "sched_getaffinity", None)
+    return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
+
+
+# ---- beginning and going on ----------------------------------------------------------------------
+
+
+def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
+    if target.exists() and not target.is_file():
+        raise OutputError(f"{target}: cannot be written: not a regular file")
+    if not target.parent.is_dir():
+        raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
+    if notes.exists() and not may_be_there:
+        raise OutputError(
+            f"{notes}: an unfinished run is there; --resume goes on with it, --restart begins anew"
+        )
+
+
+@contextmanager
+def _journal(notes: Path, part: Path, plan: Plan, restart: bool) -> Iterator[Journal]:
+    """The study's journal; where it ends without a finished chunk nothing is left behind."""
+    empty = False
+    try:
+        with Journal(notes, plan.identity(), restart) as journal:
+            try:
+                yield journal
+            finally:
+                empty = not journal.done
+    finally:
+        if empty:
+            for path in (part, notes):
+                path.unlink(missing_ok=True)
+
+
+def _begin(part: Path, plan: Plan, target: Path) -> None:
+    """Lay the file out, where there is room for it."""
+    needed, free = bytes_of(plan), shutil.disk_usage(target.parent).free
+    if needed > free:
+        raise OutputError(
+            f"{target}: needs {_size(needed)}, and the disk has {_size(free)}; "
+            "take fewer points, or fewer outputs"
+        )
+    with naming(part):
+        part.unlink(missing_ok=True)
+        lay_out(part, plan)
+
+
+@contextmanager
+def _keeping(part: Path, journal: Journal) -> Iterator[None]:
+    """Says of a disk that fails which chunks are kept."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            f"{part}: cannot be written: {reason}; {len(journal.done)} finished chunks are kept, "
+            "--resume goes on with them"
+        ) from error
+
+
+def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
+    """Forget chunks whose bytes are not those that were written."""
+    for chunk, (noted, _) in list(journal.done.items()):
+        if not 0 <= chunk < plan.chunks or checksum(store.read(plan, chunk)) != noted:
+            del journal.done[chunk]
+
+
+def _is_complete(target: Path, plan: Plan) -> bool:
+    """Whether the file is the whole of this study; one of another study is refused."""
+    import h5py
+
+    if not target.is_file():
+        return False
+    try:
+        with h5py.File(target, "r") as file:
+            found: Any = file.attrs.get("identity")
+        written = json.loads(found)
+    except (OSError, ValueError, TypeError):
+        raise OutputError(f"{target}: is there and is no study; --restart replaces it") from None
+    if written != plan.identity():
+        what = difference(written, plan.identity())
+        raise OutputError(f"{target}: holds another study: {what}; --restart replaces it")
+    return True
+
+
+def _counted(target: Path, plan: Plan) -> tuple[int, int]:
+    """Refused and settled points of a finished file."""
+    with Store(target, plan) as store:
+        tallies = [_tally(_typed(store.read(plan, k))) for k in range(plan.chunks)]
+    settled = sum(tally.settled for tally in tallies)
+    return sum(tally.refused for tally in tallies), settled if settled >= 0 else -1
+
+
+def _typed(pieces: list[Piece]) -> list[Piece]:
+    from pindrive.study.outputs import OUTPUTS, dtype
+
+    return [
+        Piece(name, start, values.view(dtype(name)) if name in OUTPUTS else values)
+        for name, start, values in pieces
+    ]
+
+
+def _tally(pieces: list[Piece]) -> Tally:
+    values = {piece.name: piece.values for piece in pieces}
+    time = values.get("transient_settling_time")
+    settled = -1 if time is None else int(np.count_nonzero(~np.isnan(time)))
+    status = values["status"]
+    return Tally(len(status), int(np.count_nonzero(status)), settled)
+
+
+def _size(count: int) -> str:
+    """Bytes for a person: "2.7 GB"."""
+    value = float(count)
+    for unit in ("bytes", "kB", "MB", "GB", "TB"):
+        if value < 1000.0 or unit == "TB":
+            break
+        value /= 1000.0
+    return f"{value:.3g} {unit}"
