@@ -164,9 +164,10 @@ def _register() -> None:
     """The commands that have a file of their own."""
     from pindrive.cli_scan import scan
     from pindrive.cli_speed import speed
+    from pindrive.cli_study import sweep
 
-    app.command()(scan)
-    app.command()(speed)
+    for command in (scan, speed, sweep):
+        app.command()(command)
 
 
 _register()

@@ -92,11 +92,13 @@ def load(
         ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
     """
     file = Path(path)
-    return device_of(file, read_tables(file), overrides)
+    return device_of(file, read_tables(file), overrides, whole=whole)
 
 
-def device_of(file: Path, given: Mapping[str, Any], overrides: Iterable[str] = ()) -> DeviceFile:
-    """The device that tables describe; `file`, `overrides` and what it raises as for `load`."""
+def device_of(
+    file: Path, given: Mapping[str, Any], overrides: Iterable[str] = (), *, whole: bool = False
+) -> DeviceFile:
+    """The device that the tables `given` describe; the rest, and what it raises, as for `load`."""
     tables = _with_all_tables(file, given)
     places, problems = _override(tables, overrides)
 

@@ -40,11 +40,11 @@ def check_distinct(paths: Iterable[Path]) -> None:
         seen.add(real)
 
 
-def figure_format(path: Path) -> str:
+def figure_format(path: Path, option: str = "--plot") -> str:
     """The format that the name of a figure asks for."""
     suffix = path.suffix.lower()
     if suffix not in FIGURE_FORMATS:
-        raise ValueError(f"--plot {path}: must end in {', '.join(FIGURE_FORMATS)}")
+        raise ValueError(f"{option} {path}: must end in {', '.join(FIGURE_FORMATS)}")
     return suffix.removeprefix(".")
 
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.config import keys_meant, not_known
+from pindrive.config import TABLES, keys_meant, not_known
 from pindrive.quantities import refusal
 from pindrive.schema import number
 from pindrive.study.axis import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
-from pindrive.template import NUMBERS, usual
+from pindrive.template import DRIVE, WHOLE, usual
 from pindrive.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from pindrive.quantity import Quantity
 
-_TABLES: Final = ("drive", "plate", "finger", "motion")
 _WAYS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}
 
@@ -26,7 +25,7 @@ _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("o
 def written_axes(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """The keys of [axes] and what is written for each, whether under its table or in full."""
     for given, spec in table.items():
-        if given in _TABLES and isinstance(spec, dict):
+        if given in TABLES and isinstance(spec, dict):
             yield from ((f"{given}.{name}", inner) for name, inner in spec.items())
         else:
             yield given, spec
@@ -43,7 +42,9 @@ def sweepable(given: str, place: str) -> str:
         raise ValueError(f"{place}: {not_known(given, tables=False)}")
     if len(keys) > 1:
         raise ValueError(f"{place}: give the key in full, {' or '.join(keys)}")
-    if keys[0] not in NUMBERS or not NUMBERS[keys[0]].may_be_constant:
+    if keys[0] in WHOLE:
+        raise ValueError(f"{place}: {keys[0]} belongs to a scan; a study varies the pin's release")
+    if keys[0] not in DRIVE or not DRIVE[keys[0]].may_be_constant:
         raise ValueError(f"{place}: {keys[0]} is no single number, it cannot be varied")
     return keys[0]
 
@@ -53,7 +54,7 @@ class AxisReader:
 
     def __init__(self, file: str, table: str, key: str, base: float | None) -> None:
         self._file, self._label, self._key = file, f"{table}.{key}", key
-        self._quantity: Quantity = NUMBERS[key]
+        self._quantity: Quantity = DRIVE[key]
         self._base = base
         self._tolerance = table == "tolerances"
 
@@ -138,7 +139,7 @@ class AxisReader:
                 self._refusal('the key that it follows, like of = "plate.kinetic"', of, ".of")
             )
         key = sweepable(of, f"{self._file}: {self._label}.of")
-        if key == self._key or NUMBERS[key].unit != self._quantity.unit:
+        if key == self._key or DRIVE[key].unit != self._quantity.unit:
             required = f"another key in {self._quantity.unit}"
             raise ValueError(self._refusal(required, of, ".of"))
         return Linked(key, self._plain(spec["times"], ".times"))

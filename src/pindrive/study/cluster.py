@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from pindrive.quantities import refusal
 from pindrive.study.store import Piece, work_out
-from pindrive.study.sweep import Work, in_flight
+from pindrive.study.sweeping import Work, in_flight
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

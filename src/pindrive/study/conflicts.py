@@ -8,7 +8,7 @@ import numpy as np
 
 from pindrive.study.axis import Axis, Linked
 from pindrive.study.plan import base_value
-from pindrive.template import NUMBERS
+from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,7 +60,7 @@ def _static_below_kinetic(plan: Plan, contact: str) -> str:
     largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
     if largest >= smallest and not _below_along(plan, static, kinetic):
         return ""
-    unit = NUMBERS[static]
+    unit = DRIVE[static]
     return (
         f"{static} is below {kinetic} at every point: at most {unit.written(largest)}, "
         f"{kinetic} at least {unit.written(smallest)}"

@@ -11,7 +11,7 @@ import numpy as np
 
 from pindrive.study.axis import Axis, Distribution, Grid, Linked
 from pindrive.study.sample import Sample
-from pindrive.template import NUMBERS
+from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,7 +30,7 @@ CHUNK: Final = 1 << 16
 
 def variable(key: str) -> str:
     """What a key of the device file is called in Python and in a NetCDF file."""
-    return NUMBERS[key].name.replace(".", "_")
+    return DRIVE[key].name.replace(".", "_")
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,11 +17,11 @@ from zlib import crc32
 
 import numpy as np
 
-from pindrive.output import naming
+from pindrive.output import OutputError, naming
 from pindrive.study import outputs
 from pindrive.study.evaluate import evaluate, flags
 from pindrive.study.plan import variable
-from pindrive.template import NUMBERS
+from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -94,11 +94,14 @@ class Store:
 
         self._path, self._lock = path, Lock()
         names = {variable(key) for d in plan.dimensions for key in d.axes} | {*plan.outputs}
-        with naming(path):
+        try:
             with h5py.File(path, "r") as file:
-                self._places = {
-                    name: (file[name].id.get_offset(), file[name].dtype) for name in names
-                }
+                found = {name: (file[name].id.get_offset(), file[name].dtype) for name in names}
+        except (OSError, KeyError) as error:
+            reason = str(error).strip("'").replace("\n", " ")
+            raise OutputError(f"{path}: is damaged: {reason}; --restart begins anew") from None
+        self._places = found
+        with naming(path):
             self._file = path.open("r+b", buffering=0)
 
     def __enter__(self) -> Store:
@@ -218,7 +221,7 @@ def _variable(
 
 
 def _key_attributes(key: str) -> dict[str, str]:
-    quantity = NUMBERS[key]
+    quantity = DRIVE[key]
     words = {"long_name": quantity.meaning, "symbol": quantity.symbol, "key": key}
     return words | ({"units": quantity.unit} if quantity.unit else {})
 

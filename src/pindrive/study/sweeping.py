@@ -71,6 +71,8 @@ def sweep(
             of another study, the disk is full or cannot be written. Finished chunks are kept.
     """
     started = perf_counter()
+    if target.exists() and not target.is_file():
+        raise OutputError(f"{target}: cannot be written: not a regular file")
     part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
     if resume and not notes.exists() and _is_complete(target, plan):
         return Result(target, plan.size, 0, *_counted(target, plan), 0.0, True)
@@ -157,8 +159,6 @@ def _cores() -> int:
 
 
 def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
-    if target.exists() and not target.is_file():
-        raise OutputError(f"{target}: cannot be written: not a regular file")
     if not target.parent.is_dir():
         raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
     if notes.exists() and not may_be_there:
@@ -188,7 +188,7 @@ def _begin(part: Path, plan: Plan, target: Path) -> None:
     needed, free = bytes_of(plan), shutil.disk_usage(target.parent).free
     if needed > free:
         raise OutputError(
-            f"{target}: needs {_size(needed)}, and the disk has {_size(free)}; "
+            f"{target}: needs {human_bytes(needed)}, and the disk has {human_bytes(free)}; "
             "take fewer points, or fewer outputs"
         )
     with naming(part):
@@ -261,11 +261,11 @@ def _tally(pieces: list[Piece]) -> Tally:
     return Tally(len(status), int(np.count_nonzero(status)), settled)
 
 
-def _size(count: int) -> str:
-    """Bytes for a person: "2.7 GB"."""
-    value = float(count)
-    for unit in ("bytes", "kB", "MB", "GB", "TB"):
-        if value < 1000.0 or unit == "TB":
-            break
+def human_bytes(number: int) -> str:
+    """Bytes for a person: "2.4 GB"."""
+    value = float(number)
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if value < 1000.0:
+            return f"{value:.3g} {unit}"
         value /= 1000.0
-    return f"{value:.3g} {unit}"
+    return f"{value:.3g} TB"

@@ -1,0 +1,101 @@
+"""The commands of studies: many releases of one device, each with other values."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.refusing import check_distinct, refusing
+
+StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+
+
+def sweep(
+    study: StudyArgument,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="NetCDF; STUDY.nc unless given."),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with a run cut short.")] = False,
+    restart: Annotated[bool, typer.Option("--restart", help="Throw away a run cut short.")] = False,
+    stop_after: Annotated[
+        int | None,
+        typer.Option(metavar="POINTS", min=1, help="Stop there; --resume goes on."),
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Work on a Dask cluster instead.")
+    ] = None,
+) -> None:
+    """Work out all points of a study into one NetCDF file."""
+    from pindrive.study.report import sweep_report
+    from pindrive.study.studyfile import load_study
+    from pindrive.study.sweeping import on_threads
+    from pindrive.study.sweeping import sweep as work_off
+
+    target = output or study.with_suffix(".nc")
+    with refusing():
+        if resume and restart:
+            raise ValueError("give --resume or --restart, not both")
+        if threads and cluster:
+            raise ValueError("give --threads or --cluster, not both: workers have their own")
+        plan = load_study(study)
+        if not plan.dimensions:
+            raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
+        check_distinct([study, plan.device.path, target])
+        if cluster:
+            from pindrive.study.cluster import on_cluster
+
+            work = on_cluster(cluster)
+        else:
+            work = on_threads(threads)
+        try:
+            with _bar() as tell:
+                done = work_off(
+                    plan,
+                    target,
+                    resume=resume,
+                    restart=restart,
+                    stop_after=stop_after,
+                    work=work,
+                    tell=tell,
+                )
+        except KeyboardInterrupt:
+            typer.echo("stopped; finished chunks are kept, --resume goes on with them", err=True)
+            os._exit(130)  # without waiting for the chunks under way
+    for line in sweep_report(plan, done):
+        typer.echo(line)
+
+
+@contextmanager
+def _bar() -> Iterator[Callable[[int, int], None]]:
+    """A progress bar with points per second and time left, where somebody looks on."""
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.percentage:>3.0f} %"),
+        BarColumn(),
+        TextColumn("{task.fields[speed]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None, speed="")
+
+        def tell(done: int, total: int) -> None:
+            speed = bar.tasks[task].speed
+            shown = f"{speed:,.0f} points/s".replace(",", " ") if speed else ""
+            bar.update(task, completed=done, total=total, speed=shown)
+
+        yield tell
