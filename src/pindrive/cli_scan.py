@@ -13,6 +13,7 @@ from pindrive.refusing import (
     DeviceArgument,
     OverridesOption,
     check_distinct,
+    figure_format,
     measures,
     refusing,
 )
@@ -44,6 +45,15 @@ def scan(
         str,
         typer.Option(metavar="strokes|FILE", help="How the hand moves: a CSV of t [s], x, y [mm]."),
     ] = STROKES,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    pin: Annotated[
+        int | None, typer.Option(metavar="NUMBER", help="The pin drawn in detail, from 0.")
+    ] = None,
+    lines: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Each line under each pin, as CSV.")
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="All of it, as NetCDF.")
     ] = None,
@@ -57,29 +67,49 @@ def scan(
         assert device_file.whole
         device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
         inputs = [file, *(given for given in (image, font) if given)]
-        check_distinct([*inputs, *([output] if output else [])])
+        outputs = [given for given in (plot, lines, output) if given]
+        check_distinct([*inputs, *outputs])
+        kind = figure_format(plot) if plot else ""
+        if pin is not None and not (plot and 0 <= pin < len(device.array)):
+            required = f"from 0 to {len(device.array) - 1}, beside --plot"
+            raise ValueError(f"--pin must be {required}, got {pin}")
 
+        from pindrive.device.judging import judge
         from pindrive.device.scanning import scan as follow
         from pindrive.output import atomic_write, naming
 
         scene = _scene(text, image, grating, font, reading, device.array)
         hand = _path(path, reading, scene, device.array)
-        part = stack.enter_context(atomic_write(output)) if output else None
+        parts = {target: stack.enter_context(atomic_write(target)) for target in outputs}
         with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
-        if output and part:
+        judgement = judge(done)
+        if output:
             from pindrive.device.dataset import write_netcdf
 
             with naming(output):
-                write_netcdf(done, part)
+                write_netcdf(done, parts[output])
+        if lines:
+            from pindrive.device.judged import write_lines
+
+            with naming(lines):
+                write_lines(judgement, parts[lines])
+        if plot:
+            from pindrive.device.picture import plot_scan
+            from pindrive.style import save
+
+            with naming(plot):
+                save(plot_scan(judgement, pin), parts[plot], kind)
+    from pindrive.device.judged import judgement_report
     from pindrive.device.report import scan_report
     from pindrive.report import show
 
     for warning in done.warnings:
         typer.echo(f"warning: {warning}", err=True)
     show(scan_report(done))
-    if output:
-        typer.echo(f"Wrote {output}")
+    show(judgement_report(judgement))
+    for target in outputs:
+        typer.echo(f"Wrote {target}")
 
 
 def _scene(

@@ -60,17 +60,17 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
 """The limits that a scan is judged by."""
 
 _FOUND: Final = (
-    ("latency_on", "t_l,on", "s", "from the edge where a line begins until the pin goes along"),
-    ("latency_off", "t_l,off", "s", "from the edge where it ends until the pin comes back"),
-    ("lag_on", "l_on", "m", "what the hand goes meanwhile, where a line begins"),
-    ("lag_off", "l_off", "m", "what the hand goes meanwhile, where it ends"),
+    ("latency_on", "t_l,on", "s", "from a line's first edge until the pin goes along"),
+    ("latency_off", "t_l,off", "s", "from its last edge until the pin comes back"),
+    ("lag_on", "l_on", "m", "what the hand goes until the pin goes along"),
+    ("lag_off", "l_off", "m", "what the hand goes until the pin comes back"),
     ("stroke", "h", "m", "how far the line moves the pin"),
-    ("skin_on", "d_on", "m", "how far the skin moves where a line begins"),
-    ("skin_off", "d_off", "m", "how far the skin moves where it ends"),
+    ("skin_on", "d_on", "m", "how far the skin moves as a line begins"),
+    ("skin_off", "d_off", "m", "how far the skin moves as it ends"),
     ("smear_time", "t_s", "s", "from the pin's release until it has settled"),
-    ("smear", "l_s", "m", "what the hand goes meanwhile"),
-    ("overshoot", "o", "1", "swing beyond the resting place, a part of the way back to it"),
-    ("contrast", "C", "1", "deflection over the line against that over as much way after it"),
+    ("smear", "l_s", "m", "what the hand goes until then: the smear"),
+    ("overshoot", "o", "1", "swing beyond the place of rest, a part of the way"),
+    ("contrast", "C", "1", "crest against trough, (P - T) / (|P| + |T|)"),
 )
 
 LINE: Final[tuple[Quantity, ...]] = tuple(

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pindrive.device.speed import SpeedLimit
     from pindrive.device.verdict import Criteria, Judgement
 
+_MM: Final = 1e3
 PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y")
 
 
@@ -69,16 +70,14 @@ def verdict_words(judgement: Judgement) -> list[str]:
         f"{_number(counts['echoes'], 'false line')}, swings that no line explains.",
     ]
     if counts["shown"]:
-        length, limits = QUANTITIES["direction"], judgement.criteria
-        rigid = judgement.scan.device.drive.finger.rigid
-        moved = "the pin, as far as skin could move, came" if rigid else "the skin moved"
+        limits, rigid = judgement.criteria, judgement.scan.device.drive.finger.rigid
         words += [
-            f"Where a line began {moved} {length.text(limits.direction)} or more, enough for its "
-            f"direction, under {counts['direction']} of them;",
-            f"{length.text(limits.direction_sure)} at "
-            f"{QUANTITIES['direction_speed'].text(limits.direction_speed)}, enough for 95 % right "
-            f"answers, under {counts['sure']}. {counts['unsettled']} had not settled before the "
-            "next line or the hand's stop.",
+            f"Their beginning moved the skin {limits.direction * _MM:g} mm or more, enough for its "
+            f"direction, at {counts['direction']}; {limits.direction_sure * _MM:g} mm at "
+            f"{limits.direction_speed * _MM:g} mm/s, enough for 95 % right answers, at "
+            f"{counts['sure']}"
+            + (" (of a rigid finger: the pin, the most that skin could move)." if rigid else "."),
+            f"{counts['unsettled']} had not settled before the next line or the hand's stop.",
         ]
     return words
 

@@ -33,7 +33,7 @@ from pindrive.device.printed import Printed
 from pindrive.device.scanning import PinState, scan
 from pindrive.device.scene import Scene
 from pindrive.device.verdict import Criteria, Line
-from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.quantities import check, refusal
 
 PART: Final = 0.5
 SLOWEST: Final = 0.005
@@ -270,8 +270,7 @@ def _skin(line: Line) -> float:
 
 def criterion(part: float, direction: float) -> str:
     """When two lines are distinct, in a sentence."""
-    length = QUANTITIES["direction"]
     return (
         f"Two lines are distinct where the pin comes back at least {part:.0%} of its way between "
-        f"them, and each moves the skin by {length.text(direction)} or more."
+        f"them, and each moves the skin {1e3 * direction:g} mm or more."
     )
