@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from PIL import Image
-from typer.testing import CliRunner, Result
 
-from pindrive.cli import app
+from command import GOOD, refused, run
 from pindrive.config import ConfigError, load
 from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
 from pindrive.device.coil import Coil
@@ -22,7 +21,8 @@ from pindrive.quantities import QUANTITIES
 from pindrive.template import WHOLE, template, usual
 from pindrive.units import to_si
 
-GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
 COIL = """
 turns = 300
 pole_area = "6 mm^2"
@@ -35,11 +35,6 @@ supply_voltage = "3 V"
 Write = Callable[[str], Path]
 
 
-@pytest.fixture(autouse=True)
-def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 @pytest.fixture
 def write() -> Write:
     """Write the plain drive with more tables after it."""
@@ -50,22 +45,6 @@ def write() -> Write:
         return path
 
     return write
-
-
-def run(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def refused(*arguments: str | Path) -> str:
-    """The one line of a command that refuses and leaves the folder as it was."""
-    before = {path: path.stat().st_mtime_ns for path in Path().rglob("*")}
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert result.stdout == ""
-    assert isinstance(result.exception, SystemExit), "no traceback"
-    assert {path: path.stat().st_mtime_ns for path in Path().rglob("*")} == before
-    (line,) = result.stderr.splitlines()
-    return line
 
 
 # ---- files ---------------------------------------------------------------------------------------
