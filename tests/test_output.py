@@ -1,10 +1,11 @@
 """Files that are whole or not there, whatever stood in their place."""
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
-from pindrive.output import OutputError, atomic_write
+from pindrive.output import OutputError, atomic_write, check_folder, write_files
 
 
 def test_who_reads_the_old_file_keeps_it_whole(tmp_path: Path) -> None:
@@ -42,3 +43,52 @@ def test_what_goes_wrong_leaves_the_old_file_and_nothing_else(tmp_path: Path) ->
 def test_a_target_that_is_no_file_is_refused_before_anything_is_written(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="not a regular file"), atomic_write(tmp_path):
         pytest.fail("entered all the same")
+
+
+# ---- many files ----------------------------------------------------------------------------------
+
+
+class Interrupted(Mapping[str, bytes]):
+    """Files of which the last is never there: the user lost patience."""
+
+    def __len__(self) -> int:
+        return 3
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("a", "deep/er/b", "c"))
+
+    def __getitem__(self, name: str) -> bytes:
+        if name == "c":
+            raise KeyboardInterrupt
+        return b"new"
+
+
+def test_files_come_in_folders_that_need_not_be_there(tmp_path: Path) -> None:
+    write_files(tmp_path / "new", {"a": b"1", "deep/er/b": b"2"})
+    assert (tmp_path / "new/a").read_bytes() == b"1"
+    assert (tmp_path / "new/deep/er/b").read_bytes() == b"2"
+    assert len([p for p in tmp_path.rglob("*") if p.is_file()]) == 2
+
+
+def test_an_interrupt_leaves_no_file_and_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("old")
+    with pytest.raises(KeyboardInterrupt):
+        write_files(tmp_path, Interrupted())
+    assert [p.name for p in tmp_path.rglob("*")] == ["a"]
+    assert (tmp_path / "a").read_text() == "old"
+    with pytest.raises(KeyboardInterrupt):
+        write_files(tmp_path / "new" / "deep", Interrupted())
+    assert [p.name for p in tmp_path.rglob("*")] == ["a"]
+
+
+def test_a_folder_that_is_none_is_refused_and_nothing_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    for folder in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(OutputError, match="is no folder"):
+            check_folder(folder)
+    check_folder(tmp_path / "new" / "deep")
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+    (tmp_path / "b").mkdir()
+    with pytest.raises(OutputError, match="not a regular file"):
+        write_files(tmp_path, {"a": b"1", "b": b"2"})
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["b", "file"]

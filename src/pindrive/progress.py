@@ -19,3 +19,23 @@ def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
     with Progress(console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what)
         yield lambda done, of: shown.update(task, completed=done, total=of)
+
+
+@contextmanager
+def steps(count: int) -> Iterator[Callable[[str], None]]:
+    """What to tell, as each of so many steps begins, what it is."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (BarColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    screen, looked_at = Console(stderr=True), sys.stderr.isatty()
+    with Progress(*columns, console=screen, transient=True, disable=not looked_at) as shown:
+        task = shown.add_task("", total=count)
+        begun = 0
+
+        def step(what: str) -> None:
+            nonlocal begun
+            shown.update(task, description=what, completed=begun)
+            begun += 1
+
+        yield step
