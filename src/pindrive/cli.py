@@ -162,11 +162,12 @@ def _simulate(device: DeviceFile) -> Motion:
 
 def _register() -> None:
     """The commands that have a file of their own."""
+    from pindrive.cli_paper import paper
     from pindrive.cli_scan import scan
     from pindrive.cli_speed import speed
     from pindrive.cli_study import sweep
 
-    for command in (scan, speed, sweep):
+    for command in (scan, speed, sweep, paper):
         app.command()(command)
 
 

@@ -216,13 +216,21 @@ def first_reversal_time(r: Release) -> Array:
     every case. NaN where friction does not reverse: the velocity does not come up to v_p again, or
     there is no friction.
     """
+    from pindrive import simulate_batch
+
     late = limit_reversal_time(r) * (1 + 1e-9)
-    times = np.full(r.shape, np.nan)
-    for i in np.ndindex(r.shape):
-        if late[i] > 0.0:
-            motion = r.motion(i, duration=float(late[i]))
-            times[i] = motion.transient.first_reversal_time
-    return times
+    found = simulate_batch(
+        mass=r.mass,
+        stiffness=r.stiffness,
+        damping=r.damping,
+        plate_kinetic=r.friction,
+        finger_kinetic=0.0,
+        mouse_velocity=r.mouse_velocity,
+        displacement=r.displacement,
+        duration=np.where(late > 0.0, late, 1.0),
+    )
+    times = found["transient_first_reversal_time"].to_numpy()
+    return np.where(late > 0.0, times, np.nan)
 
 
 def limit_reversal_time(r: Release) -> Array:
@@ -253,14 +261,7 @@ def limit_damping_ratio(r: Release) -> Array:
     low, high = np.zeros(r.shape), np.ones(r.shape)
     for _ in range(53):
         ratio = (low + high) / 2
-        damped = Release(
-            mass=r.mass,
-            stiffness=r.stiffness,
-            damping=2 * ratio * np.sqrt(r.mass * r.stiffness),
-            friction=r.friction,
-            mouse_velocity=r.mouse_velocity,
-            displacement=r.displacement,
-        )
+        damped = r.replace(damping=2 * ratio * np.sqrt(r.mass * r.stiffness))
         reverses = forward_velocity(damped) >= r.mouse_velocity
         low, high = np.where(reverses, ratio, low), np.where(reverses, high, ratio)
     return (low + high) / 2

@@ -20,6 +20,9 @@ RANGES = (
 )
 """What `damped` draws from, in words."""
 
+UNDAMPED_RANGES = "F 5–50 mN, v_p 20–300 mm/s, x_0 0–3 mm"
+"""What else `undamped` draws from."""
+
 
 def damped(count: int = COUNT, seed: int = SEED) -> Release:
     """Releases to which the paper's analysis applies, `RANGES` wide, with x_0 > 0."""
@@ -40,7 +43,7 @@ def damped(count: int = COUNT, seed: int = SEED) -> Release:
 
 
 def undamped(count: int = COUNT, seed: int = SEED) -> Release:
-    """Releases without damping: F 5–50 mN, v_p 20–300 mm/s, x_0 0–3 mm, m and k as in `damped`."""
+    """Releases without damping, `UNDAMPED_RANGES` wide, m and k as in `damped`."""
     draw = np.random.default_rng(seed)
     return Release(
         mass=draw.uniform(2e-3, 20e-3, count),
@@ -55,11 +58,6 @@ def undamped(count: int = COUNT, seed: int = SEED) -> Release:
 def limit_cases(count: int = COUNT, seed: int = SEED) -> Release:
     """The releases of `damped` that lie beyond x_d, each with the damping of its limit case."""
     r = damped(count, seed)
-    beyond = (r.displacement > formulas.friction_offset(r)) & (r.mouse_velocity > 0.0)
-    chosen = {
-        name: getattr(r, name)[beyond]
-        for name in ("mass", "stiffness", "friction", "mouse_velocity", "displacement")
-    }
-    free = Release(**chosen, damping=0.0)
-    ratio = formulas.limit_damping_ratio(free)
-    return Release(**chosen, damping=2 * ratio * np.sqrt(free.mass * free.stiffness))
+    r = r.take((r.displacement > formulas.friction_offset(r)) & (r.mouse_velocity > 0.0))
+    ratio = formulas.limit_damping_ratio(r)
+    return r.replace(damping=2 * ratio * np.sqrt(r.mass * r.stiffness))

@@ -75,6 +75,14 @@ class Release:
         """The shape of every field, and of every answer."""
         return self.mass.shape
 
+    def take(self, index: slice | NDArray[np.bool_]) -> Release:
+        """Some of these releases, by a slice or a mask of their (one-dimensional) arrays."""
+        return Release(**{field.name: getattr(self, field.name)[index] for field in fields(self)})
+
+    def replace(self, **changes: ArrayLike) -> Release:
+        """The same releases with other values for some fields."""
+        return Release(**{f.name: changes.get(f.name, getattr(self, f.name)) for f in fields(self)})
+
     def motion(
         self,
         index: tuple[int, ...] | int = (),

@@ -1,0 +1,45 @@
+"""The command `pindrive paper`: the paper reproduced, mended and answered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.refusing import refusing
+
+
+def paper(
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="The report: a page, figures, data.")
+    ] = None,
+    docs: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="The report as Markdown, with pictures.")
+    ] = None,
+) -> None:
+    """Recompute the paper: its equations, its figures, and what it says."""
+    from pindrive.output import check_folder, write_files
+
+    with refusing():
+        if out is None and docs is None:
+            raise ValueError("say where the report goes: --out DIR, or --docs DIR")
+        for folder in (out, docs):
+            if folder is not None:
+                check_folder(folder)
+        from pindrive.paper import markdown, report
+        from pindrive.progress import steps
+
+        written: dict[Path, dict[str, bytes]] = {}
+        faces = (out is not None) + (docs is not None)
+        with steps(report.STEPS + faces * report.FIGURES) as step:
+            made = report.make(step)
+            if out is not None:
+                written[out / report.PAGE] = made.files(step)
+            if docs is not None:
+                written[docs / markdown.NAME] = markdown.files(made, step)
+        for page, files in written.items():
+            write_files(page.parent, files)
+    typer.echo(made.summary)
+    for page, files in written.items():
+        typer.echo(f"Wrote {page} and {len(files) - 1} files beside it")

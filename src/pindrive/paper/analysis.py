@@ -1,0 +1,375 @@
+"""What the closed-form analysis says, drawn: phase and amplitude, reversal, steady state, slips."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from pindrive import simulate_batch
+from pindrive.paper import formulas, printed
+from pindrive.paper.exhibit import Exhibit, page, tidy
+from pindrive.paper.reading import by_case, trend
+from pindrive.paper.release import Release
+from pindrive.style import GREY, PALETTE, SMALL
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
+
+COLOURS: Final = (PALETTE["curve"], PALETTE["stick"], PALETTE["slip"], PALETTE["gripping"])
+POINTS: Final = 201
+
+
+def release(
+    ratio: ArrayLike, speed: ArrayLike, friction: ArrayLike, displacement: ArrayLike = 1.0
+) -> Release:
+    """A release in units of m and 1/ω_0, and of a length that is 1."""
+    damping = 2 * np.asarray(ratio, dtype=np.float64)
+    return Release(
+        mass=1.0,
+        stiffness=1.0,
+        damping=damping,
+        friction=friction,
+        mouse_velocity=speed,
+        displacement=displacement,
+    )
+
+
+def _plain(x: Any, name: str) -> tuple[str, Any, dict[str, str]]:
+    return (name, x, {"units": "1"})
+
+
+# ---- phase and amplitude: (7), (8) ---------------------------------------------------------------
+
+
+def phase_and_amplitude() -> Exhibit:
+    """φ_0 and X_m,0 against the mouse's speed and against x_d, from either side of x_d."""
+    speed, offset = np.linspace(0.0, 2.0, POINTS), np.linspace(0.0, 1.0, POINTS)
+    ratios = np.array([0.0, 0.16, 0.6])
+    places = np.array([0.0, 0.5, 1.2])  # x_d / x_0
+    by_speed = release(0.16, speed, places[:, None])
+    by_offset = release(ratios[:, None], 0.3, offset)
+    data = xr.Dataset(
+        {
+            "phase_by_speed": (("place", "speed"), formulas.initial_phase(by_speed)),
+            "amplitude_by_speed": (("place", "speed"), formulas.amplitude(by_speed)),
+            "phase_by_offset": (("ratio", "offset"), formulas.initial_phase(by_offset)),
+            "amplitude_by_offset": (("ratio", "offset"), formulas.amplitude(by_offset)),
+        },
+        coords={
+            "speed": _plain(speed, "speed"),
+            "offset": _plain(offset, "offset"),
+            "ratio": _plain(ratios, "ratio"),
+            "place": _plain(places, "place"),
+        },
+    )
+    for name in data:
+        data[name].attrs["units"] = "rad" if str(name).startswith("phase") else "1"
+
+    def over(along: str, name: str, which: str, case: str) -> str:
+        curves = data[f"{name}_by_{along}"]
+        found = {}
+        for value in data[which].values:
+            curve = curves.sel({which: value}).dropna(along).values
+            found[case.format(value).replace("= 0 x_0", "= 0")] = trend(curve)
+        return by_case(found)
+
+    return Exhibit(
+        "phase-and-amplitude",
+        "Initial phase (8) and amplitude (7)",
+        "In units of x_0 and 1/ω_0. Above, against the mouse's speed at ζ = 0.16, for three "
+        "friction "
+        "offsets x_d; below, against x_d at v_p = 0.3 ω_0 x_0, for three damping ratios. Curves "
+        "begin where the plate lets go at once.",
+        data,
+        _draw_phase_and_amplitude,
+        (
+            f"With the mouse's speed the phase {over('speed', 'phase', 'place', 'x_d = {:g} x_0')}"
+            f"; the amplitude {over('speed', 'amplitude', 'place', 'x_d = {:g} x_0')}.",
+            f"With x_d the phase {over('offset', 'phase', 'ratio', 'ζ = {:g}')}; the amplitude "
+            f"{over('offset', 'amplitude', 'ratio', 'ζ = {:g}')}.",
+        ),
+    )
+
+
+def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
+    figure = page(105)
+    panels = figure.subplots(2, 2, sharex="row")
+    rows = (
+        ("speed", "place", r"mouse speed $v_p/\omega_0x_0$", "$x_d = {:g}\\,x_0$"),
+        ("offset", "ratio", "friction offset $x_d/x_0$", r"$\zeta = {:g}$"),
+    )
+    for row, (along, which, label, legend) in zip(panels, rows, strict=True):
+        for axes, name, unit in zip(
+            row, ("phase", "amplitude"), (r"$\varphi_0$ (°)", "$X_{m,0}/x_0$"), strict=True
+        ):
+            scale = 180 / np.pi if name == "phase" else 1.0
+            for value, colour in zip(data[which].values, COLOURS, strict=False):
+                y = scale * data[f"{name}_by_{along}"].sel({which: value})
+                axes.plot(data[along], y, color=colour, label=legend.format(value))
+            axes.set_ylabel(unit)
+            axes.set_xlabel(label)
+            tidy(axes)
+            axes.set_xlim(0.0, float(data[along].max()))
+            axes.set_ylim(0.0, None)
+        row[0].set_yticks([0, 45, 90, 135])
+        row[1].legend(frameon=False)
+    return figure
+
+
+# ---- the first reversal of friction: (21) to (26) ------------------------------------------------
+
+
+def first_reversal() -> Exhibit:
+    """When friction first reverses, and which drives never see it."""
+    ratios = np.array([0.0, 0.04, 0.16])
+    speed = np.linspace(0.005, 2.0, POINTS)
+    r = release(ratios[:, None], speed, 0.2, 1.2)  # d = 1
+    w, phase = formulas.damped_frequency(r), formulas.initial_phase(r)
+    fine = np.linspace(0.0, 0.8, 161)
+    wide = np.linspace(0.01, 2.0, 161)
+    limit = formulas.limit_damping_ratio(release(0.0, wide, 0.2, 1.2))
+    found = simulate_batch(
+        mass=1.0,
+        stiffness=1.0,
+        damping=xr.DataArray(2 * fine, dims="ratio_of_map"),
+        plate_kinetic=0.2,
+        finger_kinetic=0.0,
+        mouse_velocity=xr.DataArray(wide, dims="speed_of_map"),
+        displacement=1.2,
+        duration=20.0,
+    ).transpose("ratio_of_map", "speed_of_map")
+    angles = {"units": "rad"}
+    times = found["transient_first_reversal_time"].to_numpy()
+    data = xr.Dataset(
+        {
+            "angle": (("ratio", "speed"), w * formulas.first_reversal_time(r), angles),
+            "printed_bound": (("ratio", "speed"), np.pi + 2 * phase, angles),
+            "right_bound": (
+                ("ratio", "speed"),
+                np.pi + 2 * (phase - formulas.velocity_phase(r)),
+                angles,
+            ),
+            "limit": ("speed_of_map", limit, {"units": "1"}),
+            "first_reversal": (("ratio_of_map", "speed_of_map"), times, {"units": "1"}),
+        },
+        coords={
+            "ratio": _plain(ratios, "ratio"),
+            "speed": _plain(speed, "speed"),
+            "ratio_of_map": _plain(fine, "ratio_of_map"),
+            "speed_of_map": _plain(wide, "speed_of_map"),
+        },
+    )
+    reverses = ~np.isnan(times)
+    foretold = fine[:, None] < limit
+    below = (data.angle < data.printed_bound) & data.angle.notnull()
+    slow = [float(data.speed[b].max()) if b.any() else 0.0 for b in below.values[1:]]
+    return Exhibit(
+        "first-reversal",
+        "When friction first reverses (21), and where it never does (26)",
+        "In units of x_0 − x_d and 1/ω_0, the finger frictionless. Left: the exact root, the "
+        "paper's bound π + 2φ_0 (dashed) and the right one π + 2(φ_0 − φ′_0) (dotted). Right: "
+        f"{found.sizes['ratio_of_map']} × {found.sizes['speed_of_map']} exact simulations, and "
+        "the limit case (26) as a line.",
+        data,
+        _draw_first_reversal,
+        (
+            "The paper's bound, below which ωt_1 should never be, is above it for mouse speeds up "
+            f"to {slow[0]:.2g} at ζ = 0.04 and {slow[1]:.2g} at ζ = 0.16 (in units of "
+            "ω_0 (x_0 − x_d)).",
+            "The line from (26) parts the simulations that reverse from those that do not: "
+            f"{int((reverses == foretold).sum())} of {reverses.size} lie on its right side.",
+        ),
+    )
+
+
+def _draw_first_reversal(data: xr.Dataset) -> Figure:
+    figure = page(75)
+    left, right = figure.subplots(1, 2)
+    for ratio, colour in zip(data.ratio.values, COLOURS, strict=False):
+        of, scale = data.sel(ratio=ratio), 1 / np.pi
+        left.plot(of.speed, scale * of.angle, color=colour, label=rf"$\zeta = {ratio:g}$")
+        left.plot(of.speed, scale * of.printed_bound, color=colour, lw=0.7, ls=(0, (4, 3)))
+        left.plot(of.speed, scale * of.right_bound, color=colour, lw=0.7, ls=":")
+    left.set_ylabel(r"$\omega t_1/\pi$")
+    left.set_xlim(0.0, 1.0)
+    left.set_ylim(1.0, 1.6)
+    left.legend(frameon=False, loc="lower right")
+    reverses = np.where(data.first_reversal.notnull(), 1.0, np.nan)
+    extent = (0.0, float(data.speed_of_map.max()), 0.0, float(data.ratio_of_map.max()))
+    from matplotlib.colors import ListedColormap
+
+    right.imshow(
+        reverses,
+        origin="lower",
+        extent=extent,
+        aspect="auto",
+        cmap=ListedColormap([PALETTE["carried"]]),
+        alpha=0.55,
+        interpolation="nearest",
+    )
+    right.plot(data.speed_of_map, data.limit, color="black")
+    right.annotate("friction reverses", (0.04, 0.1), fontsize=SMALL)
+    right.annotate("it never does", (1.1, 0.4), fontsize=SMALL)
+    right.annotate("limit case (26)", (0.3, 0.29), fontsize=SMALL)
+    right.set_ylabel(r"damping ratio $\zeta$")
+    for axes in (left, right):
+        axes.set_xlabel(r"mouse speed $v_p/\omega_0(x_0 - x_d)$")
+        tidy(axes)
+    return figure
+
+
+# ---- the steady state, and rest ------------------------------------------------------------------
+
+
+def steady_and_rest() -> Exhibit:
+    """How long the undamped pin takes to its steady oscillation, and to rest on the finger."""
+    places = np.linspace(0.0, 12.0, 601)  # x_0 / x_d
+    speeds = np.array([1.0, 3.0, 10.0])  # v_p / ω_0 x_d
+    r = release(0.0, speeds[:, None], 1.0, places)
+    ratio = np.linspace(0.05, 7.93, 320)  # v_p / ω_0 x_f, nowhere on a step
+    finger = 1 / ratio
+    rest = release(0.0, 1.0, 3.0, 0.0)
+    found = simulate_batch(
+        mass=1.0,
+        stiffness=1.0,
+        damping=0.0,
+        plate_kinetic=3.0 + finger,
+        finger_kinetic=finger,
+        mouse_velocity=1.0,
+        displacement=3.0,  # where the plate lets go: x_p - x_f
+    )
+    period = 2 * np.pi
+    data = xr.Dataset(
+        {
+            "steady_after": (("speed", "place"), formulas.time_to_steady(r) / period),
+            "reversals": ("place", formulas.reversals_to_steady(r)[0]),
+            "printed_steady": ("place", printed.periods_to_steady(r)[0]),
+            "rest_after": ("finger", formulas.periods_to_rest(rest, finger)),
+            "printed_rest": ("finger", printed.periods_to_rest(rest, finger)),
+            "simulated_rest": ("finger", found["ending_since"].to_numpy() / period),
+        },
+        coords={
+            "place": _plain(places, "place"),
+            "speed": _plain(speeds, "speed"),
+            "finger": _plain(ratio, "finger"),
+        },
+    )
+    for name in data:
+        data[name].attrs["units"] = "1"
+    off = np.abs(data.rest_after - data.printed_rest)
+    exact = np.abs(data.simulated_rest - data.rest_after)
+    beyond = data.sel(place=slice(1.001, None))
+    ratio_of_times = beyond.steady_after / beyond.printed_steady
+    return Exhibit(
+        "steady-and-rest",
+        "Without damping: until the oscillation is steady, and until finger friction ends it",
+        "Left, finger frictionless: the time until the steady oscillation begins, for three mouse "
+        "speeds, the reversals of friction until then, and the paper's 0.5 (x_0 / x_d + 1). "
+        "Right: the time from the plate's last letting go to rest, and the paper's "
+        "v_p / 4 x_f ω_0; x_f = F_f / k.",
+        data,
+        _draw_steady_and_rest,
+        (
+            "The whole part of the paper's number counts the reversals of friction. As periods it "
+            f"is wrong: the exact time is {float(ratio_of_times.min()):.2g} to "
+            f"{float(ratio_of_times.max()):.2g} times as long here, and depends on the mouse's "
+            "speed, which the paper's number leaves out.",
+            f"Its time to rest is right to {float(off.max()):.2f} periods, the steps of the exact "
+            f"one; {exact.size} simulations agree with the steps to "
+            f"{'rounding' if float(exact.max()) < 1e-10 else f'{float(exact.max()):.1e}'}.",
+        ),
+    )
+
+
+def _draw_steady_and_rest(data: xr.Dataset) -> Figure:
+    figure = page(75)
+    left, right = figure.subplots(1, 2)
+    printed_style: dict[str, Any] = {"color": GREY, "lw": 0.9, "ls": (0, (4, 3))}
+    for speed, colour in zip(data.speed.values, COLOURS, strict=False):
+        label = rf"$v_p = {speed:g}\,\omega_0x_d$"
+        left.plot(data.place, data.steady_after.sel(speed=speed), color=colour, label=label)
+    left.plot(data.place, data.reversals, color="black", lw=0.7, label="reversals")
+    left.plot(data.place, data.printed_steady, **printed_style, label="as printed")
+    left.set_xlabel("initial deflection $x_0/x_d$")
+    left.set_ylabel("periods until steady")
+    right.plot(data.finger, data.rest_after, color=COLOURS[0], label="exact")
+    right.plot(
+        data.finger[::8],
+        data.simulated_rest[::8],
+        "o",
+        color=COLOURS[1],
+        ms=2.0,
+        label="simulated",
+    )
+    right.plot(data.finger, data.printed_rest, **printed_style, label="as printed")
+    right.set_xlabel(r"mouse speed $v_p/\omega_0x_f$")
+    right.set_ylabel("periods to rest")
+    for axes, x in ((left, data.place), (right, data.finger)):
+        axes.set_xlim(0.0, float(x.max()))
+        axes.set_ylim(0.0, None)
+        axes.legend(frameon=False)
+        tidy(axes)
+    return figure
+
+
+# ---- where the printed forms slip ----------------------------------------------------------------
+
+SLIPS: Final = {
+    "peak_displacement": "(14) $x_{m,a}$",
+    "trough_displacement": "(16) $x_{m,c}$",
+    "swing": "(17) swing",
+    "return_velocity": "(20) $v_{m,b}$",
+}
+
+
+def printed_forms() -> Exhibit:
+    """How far the printed extremes are off, over the damping ratio."""
+    ratios = np.linspace(0.0, 0.97, 195)
+    speeds = np.linspace(0.0, 3.0, 61)
+    r = release(ratios, speeds[:, None], 0.1)
+    size = formulas.amplitude(r)
+    off = {
+        name: np.max(np.abs(getattr(printed, name)(r) - getattr(formulas, name)(r)) / size, axis=0)
+        for name in SLIPS
+    }
+    data = xr.Dataset(
+        {name: ("ratio", values, {"units": "1"}) for name, values in off.items()},
+        coords={"ratio": _plain(ratios, "ratio")},
+    )
+    at = data.interp(ratio=[0.04, 0.16, 0.32])
+    worst = [100 * max(float(at[name][i]) for name in SLIPS) for i in range(3)]
+    return Exhibit(
+        "printed-forms",
+        "How far the printed extremes are off, without the factor cos φ′",
+        "Largest deviation from the mended forms over mouse speeds of 0 to 3 ω_0 x_0, as a part of "
+        "X_m,0 (of ω_0 X_m,0 for the velocity); x_d = 0.1 x_0.",
+        data,
+        _draw_printed_forms,
+        (
+            f"At the paper's damping factors 0.04, 0.16 and 0.32, read as ratios, the worst of the "
+            f"four is off by {worst[0]:.2g} %, {worst[1]:.2g} % and {worst[2]:.2g} % of the "
+            "amplitude.",
+        ),
+    )
+
+
+def _draw_printed_forms(data: xr.Dataset) -> Figure:
+    figure = page(62)
+    axes: Axes = figure.subplots()
+    styles = ("-", "-", (0, (4, 3)), "-")
+    for (name, label), colour, style in zip(SLIPS.items(), COLOURS, styles, strict=True):
+        axes.plot(data.ratio[1:], 100 * data[name][1:], color=colour, ls=style, label=label)
+    for factor in (0.04, 0.16, 0.32):
+        axes.axvline(factor, color=GREY, lw=0.5, ls=":", zorder=0)
+    axes.set_xlabel(r"damping ratio $\zeta$")
+    axes.set_ylabel("off by (% of the amplitude)")
+    axes.set_yscale("log")
+    axes.set_ylim(1e-3, 100)
+    axes.set_xlim(0.0, float(data.ratio.max()))
+    axes.legend(frameon=False, loc="lower right", ncols=2)
+    tidy(axes)
+    return figure

@@ -1,0 +1,292 @@
+"""The sentences of the paper's analysis and results, word for word, each tried."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive.paper import formulas, population
+from pindrive.paper.claim import TINY, Claim, batch, finger_friction, swing
+from pindrive.paper.conclusions import conclusions, steady_state
+from pindrive.paper.reading import at_most, share
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from pindrive.paper.equations import Row
+    from pindrive.paper.facts import Facts
+
+
+def claims(facts: Facts, equations: list[Row]) -> list[Claim]:
+    """Every sentence in the order of the paper."""
+    return [
+        *_of_the_analysis(facts),
+        *_of_the_simulation(facts, equations),
+        *steady_state(),
+        *conclusions(facts),
+    ]
+
+
+# ---- Mathematical analysis -----------------------------------------------------------------------
+
+
+def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
+    place = "Mathematical analysis"
+    r = facts.r
+    back, start = np.abs(facts.number("return_velocity")), r.mouse_velocity
+    t_1 = facts.number("first_reversal_time")
+    reverses = np.isfinite(t_1)
+    yield Claim(
+        place,
+        "The absolutely largest pin velocity value (negative, v_m,b) will be obtained at the "
+        "acceleration being equal to zero.",
+        back >= start,
+        "printed-forms",
+        f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
+        f"releases; of those whose friction reverses, in {share((back >= start)[reverses])}. "
+        "Heavily "
+        "damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
+        "friction reverses afterwards",
+        reverses,
+    )
+    angle = (formulas.damped_frequency(r) * t_1)[reverses]
+    phase, lag = formulas.initial_phase(r)[reverses], formulas.velocity_phase(r)[reverses]
+    above, right = angle > np.pi + 2 * phase, angle >= np.pi + 2 * (phase - lag) - TINY
+    yield Claim(
+        place,
+        "The first friction force direction change will be at oscillation phase angle ωt value "
+        "which is larger, than π + 2φ_0.",
+        above,
+        "first-reversal",
+        f"True of {share(above)} releases that reverse: not of slow mice. ωt_1 ≥ π + 2(φ_0 − φ′_0) "
+        f"is true of {share(right)}.",
+    )
+    exact = np.abs(formulas.velocity(t_1, r) - r.mouse_velocity)[reverses]
+    worst = float((exact / (formulas.natural_frequency(r) * formulas.amplitude(r))[reverses]).max())
+    yield Claim(
+        place,
+        "Becomes clear that the analytical solution is impossible because nor pin acceleration "
+        "neither its displacement at t_1 or at phase angle ωt_1 are known.",
+        np.array([False]),
+        "first-reversal",
+        f"t_1 is a root that can be isolated and found to the last digit: {int(reverses.sum())} of "
+        f"them satisfy (21) to ${at_most(worst)}$ of ω_0 X_m,0. Displacement and acceleration "
+        "there "
+        "follow.",
+    )
+    limit = population.limit_cases()
+    found = {}
+    for name, factor in (("damping", 1.001), ("mouse_velocity", 1.001)):
+        more, less = (
+            limit.replace(**{name: getattr(limit, name) * x}) for x in (factor, 2 - factor)
+        )
+        never = np.isnan(formulas.first_reversal_time(more))
+        found[name] = never & np.isfinite(formulas.first_reversal_time(less))
+    both = found["damping"] & found["mouse_velocity"]
+    yield Claim(
+        place,
+        "It is available only in the limit case when the system damping or the mouse velocity v_p "
+        "are large and the second largest value of the pin velocity at t_1 do not exceed v_p, and "
+        "thus dry friction force do not change its direction.",
+        both,
+        "first-reversal",
+        f"Of {both.size} limit cases, 0.1 % more damping ends the reversal and 0.1 % less does not "
+        f"in {share(found['damping'])}; the same of mouse velocity in "
+        f"{share(found['mouse_velocity'])}. The time is (26), mended.",
+    )
+
+
+# ---- Simulation ----------------------------------------------------------------------------------
+
+
+def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
+    place = "Simulation"
+    r, count = facts.r, len(facts.r.mass)
+    xd, d = formulas.friction_offset(r), r.displacement - formulas.friction_offset(r)
+    finger = finger_friction(count)
+
+    residuals = [r.motion(i, finger=float(finger[i])).certificate() for i in range(0, count, 20)]
+    worst = max(c.kinematics for c in residuals)
+    yield Claim(
+        place,
+        "Model of tactile device pin interaction with finger was created […] and can output "
+        "displacement, velocity and acceleration of the pin during the information transmission "
+        "process.",
+        np.array([c.kinematics < TINY and c.motion_law < TINY for c in residuals]),
+        "figure-3-model",
+        f"Drawn and simulated. In {len(residuals)} motions with a finger, velocity and "
+        "acceleration are the derivatives of the displacement to "
+        f"${at_most(worst)}$, checked without the solver.",
+    )
+
+    more_damped = facts.r.replace(damping=1.5 * r.damping)
+    depth, deeper = (swing(batch(of, finger)) for of in (more_damped, facts.r))
+    yield Claim(
+        place,
+        "The law of damped pin motion and the impact of drive dynamical parameters on it were "
+        "investigated. Some pin displacement curves at different damping factor values are shown "
+        "in Figure 4.",
+        depth <= deeper * (1 + TINY),
+        "figure-4-displacement",
+        "Recomputed in both readings of the damping factor; no other parameter is given. That "
+        "damping takes from the swing, as the figure is to show, is true of "
+        f"{share(depth <= deeper * (1 + TINY))} releases with half as much again.",
+    )
+
+    faster = r.replace(mouse_velocity=1.01 * r.mouse_velocity)
+    grows = formulas.initial_phase(faster) >= formulas.initial_phase(r)
+    yield Claim(
+        place,
+        "It was defined what initial phase angle φ_0 increases when the mouse velocity is "
+        "increasing,",
+        grows,
+        "phase-and-amplitude",
+        f"With 1 % more v_p the phase grows in {share(grows)} releases, in {share(grows[d > 0])} "
+        f"with x_0 > x_d, in {share(grows[d < 0])} with x_0 < x_d.",
+        "x_0 > x_d",
+        d > 0.0,
+    )
+    still = r.replace(mouse_velocity=0.0, damping=np.where(np.arange(count) % 2, r.damping, 0.0))
+    beyond = still.take(formulas.applies(still) & (d > 0.0))
+    phase = formulas.initial_phase(beyond)
+    lag = formulas.velocity_phase(beyond)
+    yield Claim(
+        place,
+        "and φ_0 = 0, when v_p = 0.",
+        phase <= TINY,
+        "phase-and-amplitude",
+        f"φ_0 is φ′_0 then, in {share(np.abs(phase - lag) < TINY)} releases, and so t_a = 0; it is "
+        f"up to {np.degrees(phase.max()):.0f}° for the damping of these.",
+        "there is no damping",
+        beyond.damping == 0.0,
+    )
+
+    faster = r.replace(mouse_velocity=1.1 * r.mouse_velocity)
+    slow, fast = batch(r, finger), batch(faster, finger)
+    higher = (
+        fast["transient_peak_displacement"].to_numpy()
+        >= (1 - TINY) * slow["transient_peak_displacement"].to_numpy()
+    )
+    swings = swing(fast) >= (1 - TINY) * swing(slow)
+    yield Claim(
+        place,
+        "Higher mouse velocity causes greater pin displacements.",
+        higher,
+        "influence-on-displacement",
+        f"With 10 % more v_p the first maximum is greater in {share(higher)} exact motions with "
+        f"finger friction, and the swing after it in {share(swings)}.",
+    )
+
+    rubbed = r.replace(friction=1.01 * r.friction)
+    rubbed = rubbed.take(formulas.applies(rubbed))
+    smooth = r.take(formulas.applies(r.replace(friction=1.01 * r.friction)))
+    names = {
+        "damped_frequency": "ω",
+        "decay_rate": "α",
+        "velocity_phase": "φ′_0",
+        "initial_phase": "φ_0",
+        "amplitude": "X_m,0",
+        "friction_offset": "x_d",
+        "peak_time": "t_a",
+        "peak_displacement": "x_m,a",
+        "return_velocity_time": "t_b",
+        "return_velocity": "v_m,b",
+        "trough_time": "t_c",
+        "trough_displacement": "x_m,c",
+        "swing": "the swing",
+    }
+    moved = np.array(
+        [np.any(getattr(formulas, n)(rubbed) != getattr(formulas, n)(smooth)) for n in names]
+    )
+    untouched = [symbol for symbol, moves in zip(names.values(), moved, strict=True) if not moves]
+    yield Claim(
+        place,
+        "Friction forces are influencing all the parameters of vibrations.",
+        moved,
+        "phase-and-amplitude",
+        f"1 % more friction changes {share(moved)} of them; not {', '.join(untouched)}, which are "
+        "the oscillator's.",
+        "ω, α and φ′_0, which are the oscillator's own, are left out",
+        np.array([n not in ("damped_frequency", "decay_rate", "velocity_phase") for n in names]),
+    )
+    turned = formulas.initial_phase(rubbed) >= formulas.initial_phase(smooth)
+    yield Claim(
+        place,
+        "The greater displacement x_d due to friction displacements of the pin is enlarging "
+        "initial "
+        "phase angle",
+        turned,
+        "phase-and-amplitude",
+        f"With 1 % more friction φ_0 is greater in {share(turned)} releases.",
+    )
+    shrinks = formulas.amplitude(rubbed) <= formulas.amplitude(smooth)
+    w0 = formulas.natural_frequency(smooth)
+    edge = formulas.decay_rate(smooth) * smooth.mouse_velocity / w0**2
+    past = smooth.displacement - 1.01 * formulas.friction_offset(smooth) > edge
+    yield Claim(
+        place,
+        "and reducing the amplitude of vibrations.",
+        shrinks,
+        "phase-and-amplitude",
+        f"X_m,0 falls in {share(shrinks)} releases, in {share(shrinks[past])} of those with "
+        "x_0 − x_d > −ζ v_p / ω_0, in "
+        f"{share(shrinks[~past])} of the others, which lie between that and where the plate still "
+        "carries the pin.",
+        "x_0 − x_d > −ζ v_p / ω_0, so always from beyond x_d",
+        past,
+    )
+
+    wider = r.replace(displacement=1.01 * r.displacement)
+    elastic = np.log(formulas.amplitude(wider) / formulas.amplitude(r)) / np.log(1.01)
+    fast_share = r.mouse_velocity / (formulas.natural_frequency(r) * np.maximum(d, 1e-12))
+    most = elastic > 0.5
+    slow_mouse = (fast_share < 0.5) & (d > 0.0)
+    yield Claim(
+        place,
+        "The initial pin displacement x_0 influences very much the amplitude of vibrations",
+        most,
+        "phase-and-amplitude",
+        "Taking “very much” for more than half as strongly as in proportion: true of "
+        f"{share(most)} releases, of {share(most[slow_mouse])} with v_p < 0.5 ω_0 (x_0 − x_d). "
+        "With a "
+        "fast mouse it is v_p that sets the amplitude.",
+        "v_p < 0.5 ω_0 (x_0 − x_d)",
+        slow_mouse,
+    )
+    far = r.replace(displacement=2 * r.displacement)
+    shrink = [
+        np.abs(formulas.trough_displacement(of) - xd) / (formulas.peak_displacement(of) - xd)
+        for of in (r, far)
+    ]
+    rate_changes = np.abs(shrink[1] / shrink[0] - 1) > TINY
+    near_rest, far_rest = (batch(of, finger + 1e-4)["ending_since"].to_numpy() for of in (r, far))
+    longer = np.abs(far_rest / near_rest - 1) > TINY
+    yield Claim(
+        place,
+        "and their damping.",
+        np.concatenate([rate_changes, longer]),
+        "influence-on-time",
+        "Twice the x_0 changes how much a swing shrinks from one extreme to the next about x_d in "
+        rf"{share(rate_changes)} releases: that is $e^{{\alpha\pi/\omega}}$. How long the "
+        rf"vibration lasts changes "
+        f"in {share(longer)}.",
+        "damping means how long the vibration lasts",
+        np.arange(2 * count) >= count,
+    )
+
+    wrong = [row for row in equations if row.off_printed > TINY]
+    right = max(row.off_right for row in equations)
+    yield Claim(
+        place,
+        "The results of investigation allow us to evaluate quantitatively the influence of x_0 and "
+        "x_d, mouse velocity v_p, damping b and natural frequency ω_0 of the system on the law of "
+        "pin motion in the transient process.",
+        np.array([row.off_printed < TINY for row in equations] + [right < TINY]),
+        "equations",
+        f"As printed, {len(wrong)} of {len(equations)} rows of the table of equations are off by "
+        f"up to {max(row.off_printed for row in wrong):.2g}; mended, all are right to "
+        f"${at_most(right)}$.",
+        "the equations are mended, and until friction first reverses",
+        np.array([False] * len(equations) + [True]),
+    )

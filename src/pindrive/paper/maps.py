@@ -1,0 +1,277 @@
+"""Two parameters at a time, in the dimensionless groups that the six make.
+
+Masses, lengths and times are measured in m, x_0 and 1/ω_0. What is left of the drive are four
+numbers, and so every answer is a function of four numbers.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import LogNorm, Normalize
+
+from pindrive import simulate_batch
+from pindrive.paper import baseline, formulas
+from pindrive.paper.exhibit import Exhibit, page, tidy
+from pindrive.paper.population import SEED
+from pindrive.paper.reading import at_most, trend
+from pindrive.paper.release import Release
+from pindrive.style import GREY, SMALL
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+POINTS: Final = 121
+
+
+class Group(NamedTuple):
+    """A dimensionless number of the drive, its range, and its value at the baseline."""
+
+    name: str
+    symbol: str
+    """TeX."""
+    least: float
+    most: float
+    baseline: float
+
+
+_W0: Final = sqrt(baseline.STIFFNESS / baseline.MASS)
+_X0: Final = baseline.VALUES["displacement"]
+_FORCE: Final = baseline.STIFFNESS * _X0
+
+_SLOW: Final = 0.02
+"""A slower plate takes the pin along for longer than anything else takes."""
+
+GROUPS: Final = {
+    group.name: group
+    for group in (
+        Group("damping", r"\zeta", 0.0, 0.9, baseline.VALUES["damping_ratio"]),
+        Group(
+            "speed", r"v_p/\omega_0x_0", _SLOW, 2.0, baseline.VALUES["mouse_velocity"] / (_W0 * _X0)
+        ),
+        Group("plate", r"F_p/kx_0", 0.0, 0.9, baseline.VALUES["plate.kinetic"] / _FORCE),
+        Group("finger", r"F_f/kx_0", 0.0, 0.4, baseline.VALUES["finger.kinetic"] / _FORCE),
+    )
+}
+MEANING: Final = {
+    "damping": "damping ratio",
+    "speed": "mouse speed",
+    "plate": "surface friction",
+    "finger": "finger friction",
+}
+
+TIME_MAPS: Final = (
+    ("speed", "damping"),
+    ("plate", "damping"),
+    ("plate", "speed"),
+    ("plate", "finger"),
+)
+DISPLACEMENT_MAPS: Final = (("speed", "damping"), ("plate", "speed"), ("plate", "finger"))
+
+
+def numbers(groups: Mapping[str, xr.DataArray | float]) -> xr.Dataset:
+    """What `simulate_batch` says of a drive given by its groups, in units of m, x_0 and 1/ω_0."""
+    values = {name: groups.get(name, group.baseline) for name, group in GROUPS.items()}
+    return simulate_batch(
+        mass=1.0,
+        stiffness=1.0,
+        damping=2 * values["damping"],
+        plate_kinetic=values["plate"],
+        finger_kinetic=values["finger"],
+        mouse_velocity=values["speed"],
+        displacement=1.0,
+    )
+
+
+def plane(across: str, up: str) -> xr.Dataset:
+    """The numbers over two of the groups."""
+    axes = {n: np.linspace(GROUPS[n].least, GROUPS[n].most, POINTS) for n in (across, up)}
+    given = {n: xr.DataArray(x, dims=n) for n, x in axes.items()}
+    found = numbers(given).transpose(up, across)
+    return xr.Dataset(
+        {
+            "periods": (
+                (up, across),
+                found["transient_settling_time"].to_numpy() / (2 * np.pi),
+                {"units": "1", "long_name": "settling time in undamped periods"},
+            ),
+            "peak": (
+                (up, across),
+                found["transient_peak_displacement"].to_numpy(),
+                {"units": "1", "long_name": "largest displacement over x_0"},
+            ),
+        },
+        coords={n: (n, x, {"units": "1", "long_name": MEANING[n]}) for n, x in axes.items()},
+    )
+
+
+def _joined(planes: dict[str, xr.Dataset], name: str) -> xr.Dataset:
+    """One number of several planes, each with axes of its own."""
+    return xr.merge(
+        plane[[name]].rename(
+            {str(v): f"{key}_{v}" for v in plane[[name]].variables},
+        )
+        for key, plane in planes.items()
+    )
+
+
+def time_and_displacement() -> tuple[Exhibit, Exhibit]:
+    """The maps of the settling time, and those of the largest displacement."""
+    wanted = dict.fromkeys((*TIME_MAPS, *DISPLACEMENT_MAPS))
+    planes = {f"{across}_{up}": plane(across, up) for across, up in wanted}
+    at = ", ".join(f"{MEANING[g.name]} {g.baseline:.3g}" for g in GROUPS.values())
+    collapse, reduced = _checks()
+    time = Exhibit(
+        "maps-of-time",
+        "The time of the transitional period over two parameters at a time",
+        "Settling time in undamped periods 2π/ω_0. The groups not on the axes are at the baseline, "
+        f"the dot: {at}. The steps are half swings more or fewer before rest.",
+        _joined({f"{a}_{u}": planes[f"{a}_{u}"] for a, u in TIME_MAPS}, "periods"),
+        _draw_time,
+        (
+            "Dimensional analysis leaves ω_0 t_s and x_max / x_0 as functions of four groups: ζ, "
+            "v_p / ω_0 x_0, F_p / k x_0 and F_f / k x_0. Checked: 500 random drives and the same "
+            f"in units of m, x_0 and 1/ω_0 differ by ${at_most(collapse)}$ "
+            f"(relative, seed {SEED}).",
+            *(_reading(planes[f"{a}_{u}"].periods, a, u, "settling time") for a, u in TIME_MAPS),
+        ),
+    )
+    displacement = Exhibit(
+        "maps-of-displacement",
+        "The largest displacement over two parameters at a time",
+        f"First maximum (14) over x_0. The groups not on the axes are at the baseline: {at}.",
+        _joined({f"{a}_{u}": planes[f"{a}_{u}"] for a, u in DISPLACEMENT_MAPS}, "peak"),
+        _draw_displacement,
+        (
+            "Until the first maximum the pin slides one way on both surfaces, so only the "
+            "difference (F_p − F_f) / k x_0 counts, and three groups are left. Checked: (14) with "
+            f"F_p − F_f for F is the exact peak to ${at_most(reduced)}$ of x_0 on every such "
+            "point of the third map.",
+            *(
+                _reading(planes[f"{a}_{u}"].peak, a, u, "largest displacement")
+                for a, u in DISPLACEMENT_MAPS
+            ),
+        ),
+    )
+    return time, displacement
+
+
+def _reading(values: xr.DataArray, across: str, up: str, name: str) -> str:
+    """How the number goes along each axis through the baseline, and where it is extreme."""
+    middle = {n: GROUPS[n].baseline for n in (across, up)}
+    along = values.sel({up: middle[up]}, method="nearest").values
+    against = values.sel({across: middle[across]}, method="nearest").values
+    low, high = float(values.min()), float(values.max())
+    where = values.where(values == values.max(), drop=True)
+    place = ", ".join(f"{MEANING[n]} {float(where[n][0]):.2g}" for n in (across, up))
+    unit = "periods" if name == "settling time" else "x_0"
+    return (
+        f"{MEANING[across].capitalize()} and {MEANING[up]}: the {name} goes from {low:.3g} to "
+        f"{high:.3g} {unit}, the largest at {place}. Through the baseline it {trend(along)} with "
+        f"{MEANING[across]} and {trend(against)} with {MEANING[up]}."
+    )
+
+
+def _checks() -> tuple[float, float]:
+    """How well the four groups decide, and how well the peak needs but three."""
+    draw = np.random.default_rng(SEED)
+    count = 500
+    groups = {n: xr.DataArray(draw.uniform(0.02, g.most, count)) for n, g in GROUPS.items()}
+    m, k, x0 = draw.uniform(2e-3, 2e-2, count), draw.uniform(20, 400, count), 1e-3
+    w0 = np.sqrt(k / m)
+    real = simulate_batch(
+        mass=m,
+        stiffness=k,
+        damping=2 * groups["damping"].values * np.sqrt(m * k),
+        plate_kinetic=groups["plate"].values * k * x0,
+        finger_kinetic=groups["finger"].values * k * x0,
+        mouse_velocity=groups["speed"].values * w0 * x0,
+        displacement=x0,
+    )
+    unit = numbers(groups)
+    pairs = (
+        (w0 * real["transient_settling_time"].values, unit["transient_settling_time"].values),
+        (real["transient_peak_displacement"].values / x0, unit["transient_peak_displacement"]),
+    )
+    collapse = max(float(np.max(np.abs(a / np.asarray(b) - 1))) for a, b in pairs)
+
+    found = plane("plate", "finger")
+    plate, finger = np.meshgrid(found.plate.values, found.finger.values)
+    g = GROUPS
+    release = Release(
+        mass=1.0,
+        stiffness=1.0,
+        damping=2 * g["damping"].baseline,
+        friction=np.maximum(plate - finger, 0.0),
+        mouse_velocity=g["speed"].baseline,
+        displacement=1.0,
+    )
+    off = np.abs(formulas.peak_displacement(release) - found.peak.values)
+    return collapse, float(np.nanmax(np.where(plate >= finger, off, np.nan)))
+
+
+# ---- drawing -------------------------------------------------------------------------------------
+
+
+def _draw_map(
+    axes: Axes, data: xr.Dataset, across: str, up: str, name: str, levels: list[float]
+) -> object:
+    key = f"{across}_{up}"
+    values = data[f"{key}_{name}"].values
+    low, high = levels[0], levels[-1]
+    x, y = (np.linspace(GROUPS[n].least, GROUPS[n].most, POINTS) for n in (across, up))
+    image = axes.imshow(
+        values,
+        origin="lower",
+        extent=(x[0], x[-1], y[0], y[-1]),
+        aspect="auto",
+        cmap="viridis",
+        norm=LogNorm(low, high) if name == "periods" else Normalize(low, high),
+        interpolation="nearest",
+    )
+    if name == "peak":
+        lines = axes.contour(x, y, values, levels=levels, colors="white", linewidths=0.5)
+        axes.clabel(lines, fontsize=SMALL - 1, fmt="%g")
+    point = GROUPS[across].baseline, GROUPS[up].baseline
+    axes.plot(*point, "o", color="white", mec="black", mew=0.6, ms=4)
+    tidy(axes)
+    axes.set_xlabel(f"{MEANING[across]} ${GROUPS[across].symbol}$")
+    axes.set_ylabel(f"{MEANING[up]} ${GROUPS[up].symbol}$")
+    return image
+
+
+def _draw_time(data: xr.Dataset) -> Figure:
+    figure = page(125)
+    panels = figure.subplots(2, 2)
+    images = [
+        _draw_map(axes, data, across, up, "periods", [0.25, 8.0])
+        for axes, (across, up) in zip(panels.flat, TIME_MAPS, strict=True)
+    ]
+    bar = figure.colorbar(images[0], ax=panels, extend="both", shrink=0.6, pad=0.02)  # type: ignore[arg-type]
+    bar.set_label(r"settling time $\omega_0 t_s/2\pi$ (periods)")
+    bar.set_ticks([0.25, 0.5, 1, 2, 4, 8], labels=["¼", "½", "1", "2", "4", "8"])
+    bar.ax.minorticks_off()
+    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    bar.outline.set_linewidth(0.6)
+    return figure
+
+
+def _draw_displacement(data: xr.Dataset) -> Figure:
+    figure = page(65)
+    panels = figure.subplots(1, 3)
+    levels = [1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2]
+    images = [
+        _draw_map(axes, data, across, up, "peak", levels)
+        for axes, (across, up) in zip(panels, DISPLACEMENT_MAPS, strict=True)
+    ]
+    bar = figure.colorbar(images[0], ax=panels, shrink=0.8, pad=0.02)  # type: ignore[arg-type]
+    bar.set_label(r"$x_{m,a}/x_0$")
+    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5, color=GREY)
+    bar.outline.set_linewidth(0.6)
+    return figure

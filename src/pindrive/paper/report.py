@@ -1,0 +1,199 @@
+"""The whole report: made once, then laid out as a page (`html.py`) or for the docs (`markdown.py`).
+
+Every number in it is computed from stated seeds, so that it comes out the same each time.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+from io import BytesIO
+from typing import TYPE_CHECKING, Final, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from pindrive.paper import analysis, diagram, equations, influence, maps, motions, population
+from pindrive.paper.claim import Claim
+from pindrive.paper.claims import claims
+from pindrive.paper.facts import Facts
+from pindrive.paper.reading import at_most, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pindrive.paper.equations import Row
+    from pindrive.paper.exhibit import Exhibit
+
+__all__ = ["FIGURES", "PAGE", "STEPS", "TITLE", "Report", "make"]
+
+T = TypeVar("T")
+
+TITLE: Final = "“Dynamics of tactile device drive”: reproduced, mended and answered"
+
+PAGE: Final = "paper.html"
+"""The name of the page."""
+
+STEPS, FIGURES = 11, 11
+"""How often `make` tells its progress, and how many exhibits it makes."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading of the report, and what stands under it."""
+
+    title: str
+    text: str
+    exhibits: tuple[Exhibit, ...]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the report says, not yet how it looks."""
+
+    rows: list[Row]
+    claims: list[Claim]
+    sections: tuple[Section, ...]
+
+    @cached_property
+    def exhibits(self) -> tuple[Exhibit, ...]:
+        """All figures, in order."""
+        return tuple(e for section in self.sections for e in section.exhibits)
+
+    @property
+    def summary(self) -> str:
+        """The result in a paragraph."""
+        count = Counter(claim.verdict.split(" when ")[0] for claim in self.claims)
+        whole = sum(c.verdict == "holds" for c in self.claims)
+        wrong = [row.number for row in self.rows if row.right]
+        return (
+            f"Of {len(self.claims)} sentences of its analysis, results and conclusions, {whole} "
+            f"hold, {count['holds'] - whole} hold under a condition that they do not name, and "
+            f"{count['does not hold']} do not hold. Of its equations, ({'), ('.join(wrong)}) need "
+            "mending; mended, all agree with the exact simulator to rounding, until friction first "
+            "reverses. When that is, which the paper calls impossible to say analytically, is the "
+            "exact root of (21)."
+        )
+
+    @property
+    def method(self) -> str:
+        """On what the equations and the sentences were tried."""
+        return (
+            f"Tried on {population.COUNT} random releases, seed {population.SEED}: "
+            f"{population.RANGES}. Undamped ones: {population.UNDAMPED_RANGES}. The finger's "
+            "friction, where there is one, is 0–10 mN. Exact means `pindrive.simulate`: closed "
+            "forms between events, events by root isolation."
+        )
+
+    def equation_cells(self) -> list[tuple[str, ...]]:
+        """The table of equations: headings, and a row each; formulas as TeX between dollars."""
+        headings = ("", "as printed\nright form", "compared", "printed off by", "right off by")
+        table: list[tuple[str, ...]] = [headings]
+        for row in self.rows:
+            forms = f"${row.printed}$\n" + (f"${row.right}$" if row.right else "as printed")
+            off = f"{row.off_printed:.2g}" if row.right else ""
+            table.append(
+                (f"({row.number})", forms, row.against, off, f"${at_most(row.off_right)}$")
+            )
+        return table
+
+    def slips(self) -> str:
+        """What else is wrong with the text around the equations."""
+        return (
+            "Beside these: (1) gives F_1 to the plate and F_2 to the finger, the analysis then "
+            "says "
+            "F_1 = 0 and keeps the plate's friction as F_2; (22) is said to follow from (17) and "
+            "follows from (21); v_p is defined twice."
+        )
+
+    def trials(self) -> xr.Dataset:
+        """The table of equations and the verdicts as data."""
+        return xr.Dataset(
+            {
+                "off_printed": ("equation", [row.off_printed for row in self.rows], {"units": "1"}),
+                "off_right": ("equation", [row.off_right for row in self.rows], {"units": "1"}),
+                "trials": ("sentence", [claim.true.size for claim in self.claims]),
+                "true": ("sentence", [int(np.sum(claim.true)) for claim in self.claims]),
+                "verdict": ("sentence", [claim.verdict for claim in self.claims]),
+            },
+            coords={
+                "equation": [row.number for row in self.rows],
+                "sentence": [claim.sentence for claim in self.claims],
+            },
+            attrs={
+                "title": "Largest deviation of each equation, and verdicts",
+                "comment": self.method,
+            },
+        )
+
+    def files(self, step: Callable[[str], None] = lambda _: None) -> dict[str, bytes]:
+        """Everything that `pindrive paper --out` writes, by its path in the folder.
+
+        Args:
+            step: told what comes next, once for each exhibit.
+        """
+        from pindrive.paper.html import page
+
+        found: dict[str, bytes] = {}
+        pictures: dict[str, bytes] = {}
+        for exhibit in self.exhibits:
+            step(f"drawing {exhibit.name}")
+            drawn = exhibit.pictures()
+            pictures[exhibit.name] = drawn["svg"]
+            for ending, picture in drawn.items():
+                found[f"figures/{exhibit.name}.{ending}"] = picture
+            found[f"data/{exhibit.name}.nc"] = exhibit.netcdf()
+        file = BytesIO()
+        self.trials().to_netcdf(file, engine="h5netcdf")
+        found["data/equations-and-verdicts.nc"] = file.getvalue()
+        found[PAGE] = page(self, pictures).encode()
+        return found
+
+
+def make(step: Callable[[str], None] = lambda _: None) -> Report:
+    """Compute the report.
+
+    Args:
+        step: told what comes next, `STEPS` times.
+    """
+
+    def doing(what: str, how: Callable[[], T]) -> T:
+        step(what)
+        return how()
+
+    facts = Facts(population.damped())
+    rows = doing("trying the equations", lambda: equations.rows(facts))
+    found = doing("trying the sentences", lambda: claims(facts, rows))
+    figure_4 = doing("Figure 4", motions.displacement)
+    figure_2 = doing("Figure 2", motions.velocity)
+    figure_3 = doing("Figure 3", diagram.model)
+    curves = doing("one parameter at a time", influence.curves)
+    of_maps = doing("two parameters at a time", maps.time_and_displacement)
+    phase = doing("phase and amplitude", analysis.phase_and_amplitude)
+    reversal = doing("the first reversal", analysis.first_reversal)
+    steady = doing("steady state and rest", analysis.steady_and_rest)
+    slips = doing("printed forms", analysis.printed_forms)
+    names = [p.name for p in influence.PARAMETERS]
+    return Report(
+        rows,
+        found,
+        (
+            Section(
+                "The paper's figures",
+                "Figure 1 is a sketch of the device and no result.",
+                (figure_2, figure_3, figure_4),
+            ),
+            Section(
+                "The question that the paper poses",
+                "How do the time of the transitional period and the maximum displacement depend on "
+                f"{listed(names)}? The paper sets this as its problem and answers in words.",
+                (influence.settling(curves), influence.displacement(curves), *of_maps),
+            ),
+            Section(
+                "The analysis, drawn",
+                "What equations (7) to (26) and the last paragraph of the results say.",
+                (phase, reversal, steady, slips),
+            ),
+        ),
+    )
