@@ -69,6 +69,7 @@ class Oscillator {
     using std::cos;
     using std::expm1;
     using std::sin;
+    if (tau == 0) return {T(0), tau};
     if (hurry_ * tau < early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
     if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
@@ -241,6 +242,11 @@ struct Flow {
             {x, T(0), T(0), velocity.value, velocity.rate},
             velocity,
             {velocity.rate, T(0), T(0)}};
+  }
+
+  /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
+  Transition<T> after(T tau) const {
+    return velocity.oscillates() ? oscillator.after(tau) : Transition<T>{};
   }
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.

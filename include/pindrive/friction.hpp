@@ -59,6 +59,13 @@ class Friction {
     return sum;
   }
 
+  /// Whether no contact gives way or changes its force with the pin's speed: it neither damps nor
+  /// stiffens.
+  bool constant(Mode mode) const {
+    return mode.finger != Slide::gripping && drive_.plate.regions == 0 &&
+           drive_.finger.regions == 0;
+  }
+
   /// The velocity of the surface that a stuck pin moves with, m/s.
   Line<T> level(Mode stuck, const Instant<T>& now) const {
     return stuck.plate == Slide::stuck ? now.plate_velocity : Line<T>{};

@@ -20,6 +20,7 @@ class Simulation {
       : drive_(drive),
         inputs_(inputs),
         friction_(drive),
+        plain_(drive.mass, drive.damping, drive.stiffness),
         x_(inputs.displacement),
         v_(inputs.velocity) {
     look_ahead();
@@ -91,7 +92,10 @@ class Simulation {
   }
 
   Flow<T> free_flow(const Equation<T>& equation) const {
-    const Oscillator<T> oscillator(drive_.mass, equation.damping, equation.stiffness);
+    const Oscillator<T> oscillator =
+        friction_.constant(mode_)
+            ? plain_
+            : Oscillator<T>(drive_.mass, equation.damping, equation.stiffness);
     const T drift = equation.pull.rate / equation.stiffness;
     if (!follows_) {
       const T acceleration = (equation.pull.value - equation.damping * v_) / drive_.mass;
@@ -122,8 +126,16 @@ class Simulation {
     Exit first, border;
     if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
 
-    const auto consider = [&](const Path<T>& guard, int goes, Exit exit) {
-      exit.tau = exit_time(flow.oscillator, guard, goes, row_ - time_);
+    // Two surfaces that keep different speeds are never reached together: no guard need be followed
+    // beyond what is known to end the mode, and of two that the pin outruns on one side the farther
+    // one hides behind the nearer.
+    const bool apart =
+        friction_.constant(mode) && now_.plate_velocity.rate == 0 && now_.plate_velocity.value != 0;
+    const auto consider = [&](const Path<T>& guard, auto&& goes, Exit exit) {
+      // At its zero already, a guard leaves it to the side where it goes.
+      const bool at_once = !(guard.start > 0) && goes(guard) < 0;
+      exit.tau =
+          at_once ? T(0) : first_root(flow.oscillator, guard, 1, apart ? first.tau : row_ - time_);
       if ((exit.cause == Cause::slower || exit.cause == Cause::faster) && exit.tau < border.tau)
         border = exit;
       if (exit.tau == never || exit.tau > first.tau) return;
@@ -135,7 +147,7 @@ class Simulation {
       }
     };
     const auto sliding = [&](const Contact<T>& contact, Slide slide, int index, Line<T> surface,
-                             bool just_changed, Exit exit) {
+                             bool hidden, bool just_changed, Exit exit) {
       if (!slides(slide)) return;
       const Path<T> level = surface;
       const Path<T> speed = T(sign(slide)) * (flow.velocity + T(-1) * level);
@@ -150,9 +162,13 @@ class Simulation {
       };
       exit.cause = index == 0 ? Cause::arrives : Cause::slower;
       // A pin that stays at its level has arrived there.
-      consider(above, index == 0 && goes(above) == 0 ? -1 : goes(above), exit);
+      const auto arrives = [&](const Path<T>& guard) {
+        const int side = goes(guard);
+        return index == 0 && side == 0 ? -1 : side;
+      };
+      if (!hidden) consider(above, arrives, exit);
       exit.cause = Cause::faster;
-      if (region.to < never) consider(below, goes(below), exit);
+      if (region.to < never) consider(below, goes, exit);
     };
     const auto holding = [&](const Path<T>& force, Line<T> limit, Exit exit) {
       exit.cause = Cause::gives_way;
@@ -160,18 +176,23 @@ class Simulation {
         exit.side = side;
         const Path<T> most = limit, left = most + T(-side) * force;
         // A gripping skin stretches as the pin moves, whose start is exact.
-        const int goes = !mode.stuck() ? -side * side_after_start(flow.oscillator, flow.velocity)
-                         : held_again_ ? 1
-                                       : side_after_zero(flow.oscillator, left);
+        const auto goes = [&](const Path<T>& guard) {
+          return !mode.stuck() ? -side * side_after_start(flow.oscillator, flow.velocity)
+                 : held_again_ ? 1
+                               : side_after_zero(flow.oscillator, guard);
+        };
         consider(left, goes, exit);
       }
     };
 
     const Exit plate{never, Cause::nothing, true, false, 0};
     const Exit finger{never, Cause::nothing, false, true, 0};
-    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, changed_plate_,
-            plate);
-    sliding(drive_.finger, mode.finger, mode.finger_region, {}, changed_finger_, finger);
+    const T nearer =
+        apart && mode.plate == mode.finger ? sign(mode.plate) * segment.plate_velocity.value : T(0);
+    sliding(drive_.finger, mode.finger, mode.finger_region, {}, nearer > 0, changed_finger_,
+            finger);
+    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, nearer < 0,
+            changed_plate_, plate);
     if (mode.finger == Slide::gripping)
       holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
     if (mode.stuck())
@@ -184,13 +205,6 @@ class Simulation {
     return first;
   }
 
-  /// When a guard that is positive in this mode comes to zero. At its zero already, it leaves it to
-  /// the side where it goes.
-  static T exit_time(const Oscillator<T>& oscillator, const Path<T>& guard, int goes, T horizon) {
-    if (!(guard.start > 0) && goes < 0) return T(0);
-    return first_root(oscillator, guard, 1, horizon);
-  }
-
   static int side_after_zero(const Oscillator<T>& oscillator, Path<T> guard) {
     guard.start = T(0);
     return side_after_start(oscillator, guard);
@@ -200,11 +214,11 @@ class Simulation {
 
   /// Ends a segment and brings the state, set exactly at the event, to the next mode.
   void leave(Segment<T>& segment, const Exit& exit) {
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Mode before = mode_;
-    x_ = segment.flow.position.at(oscillator, exit.tau);
-    v_ = segment.flow.velocity.at(oscillator, exit.tau);
-    if (before.finger == Slide::gripping) skin_ = -segment.finger_force.at(oscillator, exit.tau);
+    const Transition<T> moved = segment.flow.after(exit.tau);
+    x_ = segment.flow.position.at(moved, exit.tau);
+    v_ = segment.flow.velocity.at(moved, exit.tau);
+    if (before.finger == Slide::gripping) skin_ = -segment.finger_force.at(moved, exit.tau);
     segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
     advance(exit);
     if (before.stuck()) v_ = friction_.level(before, now_).value;
@@ -385,6 +399,7 @@ class Simulation {
   Drive<T> drive_;
   Inputs<T> inputs_;
   Friction<T> friction_;
+  Oscillator<T> plain_;  ///< of a pin on which no contact acts but with a constant force
 
   T time_{0}, x_, v_;
   T skin_{0};  ///< force in a gripping skin, N

@@ -43,6 +43,7 @@ struct Transient {
 template <class T, class Visitor>
 void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor&& visit) {
   visit(from, path.at(oscillator, from));
+  if (!path.oscillates() && path.straight()) return;  // constant
   const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
   const Path<T> slope = rest.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
@@ -59,11 +60,11 @@ void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
 template <class T, class Visitor>
 void highest_and_lowest(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
                         Visitor&& visit) {
-  const T period = oscillator.period();
-  if (!path.oscillates() || !(to - from > 2 * period)) {
+  if (!path.oscillates() || !(to - from > 2 * oscillator.period())) {
     extrema(oscillator, path, from, to, visit);
     return;
   }
+  const T period = oscillator.period();
   extrema(oscillator, path, from, from + period, visit);
   extrema(oscillator, path, to - period, to, visit);
 }
@@ -99,6 +100,17 @@ class Measurement {
     return std::min(segment.end, duration_) - segment.begin;
   }
 
+  /// A pin that slides on the finger, which is at rest, does not turn back meanwhile.
+  static bool may_turn(const Segment<T>& segment) { return !slides(segment.mode.finger); }
+
+  /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
+  /// short it is beside x.
+  static T moved(const Segment<T>& segment, T from, T to) {
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const Path<T>& x = segment.flow.position;
+    return x.change(oscillator, to) - x.change(oscillator, from);
+  }
+
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
   /// The direction in which the pin moves just after a segment begins; 0 at rest.
@@ -118,7 +130,7 @@ class Measurement {
       if (direction * start < 0 || (direction != 0 && start == 0))
         if (!visit(segment.begin, flow.position.start)) return;
       direction = start;
-      if (direction == 0) continue;
+      if (direction == 0 || !may_turn(segment)) continue;
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
       const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
@@ -232,16 +244,20 @@ class Measurement {
     T since = outcome.since;
     if (outcome.end == End::resting || outcome.end == End::decaying) {
       const T width = band * abs(motion_.begin()->flow.position.start - x_end);
-      since = T(0);
-      for (const Segment<T>& segment : motion_) follow_band(segment, x_end, width, since);
+      // The last time outside the band counts: the segments are looked at from the end.
+      const Segment<T>* segment = motion_.end();
+      do since = entry(*--segment, x_end, width);
+      while (since == 0 && segment != motion_.begin());
     }
     return since <= duration_ && since < never ? since : Transient<T>::none;
   }
 
-  /// Follows |x − x_end| against the width through one segment, from extremum to extremum.
-  void follow_band(const Segment<T>& segment, T x_end, T width, T& since) const {
+  /// When, in a segment, |x − x_end| comes within the width to stay there, followed from extremum
+  /// to extremum: 0 if it is never outside, infinite if it is outside at the end.
+  T entry(const Segment<T>& segment, T x_end, T width) const {
     using std::abs;
     using std::isfinite;
+    T since{0};
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     T low{0}, before = x.start - x_end;
@@ -261,16 +277,18 @@ class Measurement {
     };
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
-      const Stretch last = last_outside(segment, x_end, width);
-      before = x.at(oscillator, last.from) - x_end;
-      extrema(oscillator, x, last.from, last.to, follow_to);
-      return;
+      if (may_turn(segment)) {
+        const Stretch last = last_outside(segment, x_end, width);
+        before = x.at(oscillator, last.from) - x_end;
+        extrema(oscillator, x, last.from, last.to, follow_to);
+      } else {
+        const T to = segment.end - segment.begin;
+        follow_to(to, x.at(oscillator, to));
+      }
+      return since;
     }
-    if (!x.oscillates()) return;  // at x_end
-    if (!(width > 0)) {           // approached for ever
-      since = never;
-      return;
-    }
+    if (!x.oscillates()) return since;  // at x_end
+    if (!(width > 0)) return never;     // approached for ever
     const Zeros<T> turns = oscillator.zeros(x.slope, segment.flow.velocity.slope);
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
@@ -287,6 +305,7 @@ class Measurement {
       while (abs(x.at(oscillator, low + step) - x_end) > width && step < T(1e300)) step *= 2;
       follow_to(low + step, x.at(oscillator, low + step));
     }
+    return since;
   }
 
   struct Stretch {
@@ -319,16 +338,18 @@ class Measurement {
     if (skin) result.peak_stretch = result.peak_stretch_rate = T(0);
     motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
       const bool whole = to >= segment.end - segment.begin;
+      const T distance = moved(segment, from, to);
       use(result.plate, segment, segment.mode.plate, segment.plate_velocity, segment.plate_force,
-          whole && stops(segment.event.plate), from, to, times);
+          whole && stops(segment.event.plate), from, to, distance, times);
       use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
-          whole && stops(segment.event.finger), from, to, times);
-      for (const T tau : {from, to}) {
-        using std::abs;
-        const auto friction = motion_.friction(segment, tau);
-        result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
-        result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
-      }
+          whole && stops(segment.event.finger), from, to, distance, times);
+      if (both_stuck(segment))
+        for (const T tau : {from, to}) {
+          using std::abs;
+          const auto friction = motion_.friction(segment, tau);
+          result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
+          result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
+        }
       if (!skin) return;
       result.finger.dissipated += times * skin_loss(segment, from, to, whole);
       const Oscillator<T>& oscillator = segment.flow.oscillator;
@@ -336,6 +357,10 @@ class Measurement {
       peak(result.peak_stretch, oscillator, stretch, from, to);
       peak(result.peak_stretch_rate, oscillator, stretch.derivative(oscillator), from, to);
     });
+  }
+
+  static bool both_stuck(const Segment<T>& segment) {
+    return segment.mode.plate == Slide::stuck && segment.mode.finger == Slide::stuck;
   }
 
   static void peak(T& largest, const Oscillator<T>& oscillator, const Path<T>& path, T from, T to) {
@@ -346,23 +371,20 @@ class Measurement {
   }
 
   void use(ContactUse<T>& contact, const Segment<T>& segment, Slide slide, Line<T> surface,
-           const Path<T>& force, bool came_to_zero, T from, T to, T times) const {
+           const Path<T>& force, bool came_to_zero, T from, T to, T distance, T times) const {
     using std::abs;
     if (slide == Slide::absent) return;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!(segment.mode.plate == Slide::stuck && segment.mode.finger == Slide::stuck))
-      peak(contact.peak_force, oscillator, force, from, to);
+    if (!both_stuck(segment)) peak(contact.peak_force, oscillator, force, from, to);
     if (!slides(slide)) {
       contact.time_stuck += times * (to - from);
       return;
     }
-    const Path<T>& x = segment.flow.position;
-    const T moved = x.change(oscillator, to) - x.change(oscillator, from);
-    const T distance = abs(moved - (surface.at(from) + surface.at(to)) / 2 * (to - from));
-    contact.distance_slid += times * distance;
+    const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
+    contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
     if (!force.oscillates() && force.straight()) {
-      contact.dissipated += times * abs(force.start) * distance;
+      contact.dissipated += times * abs(force.start) * slid;
     } else {
       const Path<T> level = surface;
       contact.dissipated -=
