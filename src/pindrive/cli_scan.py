@@ -51,6 +51,10 @@ def scan(
     pin: Annotated[
         int | None, typer.Option(metavar="NUMBER", help="The pin drawn in detail, from 0.")
     ] = None,
+    film: Annotated[
+        Path | None, typer.Option("--animate", metavar="FILE", help="Film it: .gif or .mp4.")
+    ] = None,
+    slow: Annotated[float, typer.Option(help="How many times slower the film is.")] = 4.0,
     lines: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Each line under each pin, as CSV.")
     ] = None,
@@ -67,9 +71,13 @@ def scan(
         assert device_file.whole
         device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
         inputs = [file, *(given for given in (image, font) if given)]
-        outputs = [given for given in (plot, lines, output) if given]
+        outputs = [given for given in (plot, film, lines, output) if given]
         check_distinct([*inputs, *outputs])
         kind = figure_format(plot) if plot else ""
+        if film:
+            from pindrive.device.animation import animate, animation_format, frame_times
+
+            film_kind = animation_format(film)
         if pin is not None and not (plot and 0 <= pin < len(device.array)):
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
@@ -80,6 +88,8 @@ def scan(
 
         scene = _scene(text, image, grating, font, reading, device.array)
         hand = _path(path, reading, scene, device.array)
+        if film:
+            frame_times(hand, slow)
         parts = {target: stack.enter_context(atomic_write(target)) for target in outputs}
         with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
@@ -100,6 +110,9 @@ def scan(
 
             with naming(plot):
                 save(plot_scan(judgement, pin), parts[plot], kind)
+        if film:
+            with naming(film), bar("Frames") as progress:
+                animate(judgement, parts[film], film_kind, slow=slow, progress=progress)
     from pindrive.device.judged import judgement_report
     from pindrive.device.report import scan_report
     from pindrive.report import show

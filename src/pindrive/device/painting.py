@@ -23,6 +23,8 @@ CELLS: Final = 1400
 """Cells across the longer side of the page at most."""
 ALONE: Final = 0.00125
 """Half a brush where all pins go on one track, m: as of pins 2.5 mm apart."""
+ROOM: Final = 0.002
+"""About what is drawn of the page, m."""
 FINER: Final = 2.0
 """Places painted in each cell of the way."""
 
@@ -89,3 +91,14 @@ def _brush(scan: Scan) -> float:
     """Half the distance between neighbouring tracks, m."""
     across = np.unique(np.round([y for _, y in scan.device.array.spots], 9))
     return 0.5 * float(np.diff(across).min()) if len(across) > 1 else ALONE
+
+
+def view(scan: Scan) -> tuple[float, float, float, float]:
+    """Left, right, top and bottom of what is worth a look: the print and the pins' tracks, m."""
+    scene = scan.scene
+    left, right, top, bottom = scene.extent
+    spots = scan.spots(np.linspace(scan.path.begin, scan.path.end, 500))
+    rows = np.flatnonzero(scene.dark(scan.device.control.threshold).any(axis=1))
+    ink = top + scene.pixel * rows[[0, -1]] if rows.size else np.zeros(0)
+    down = np.concatenate([spots[..., 1].ravel(), ink])
+    return left, right, max(top, down.min() - ROOM), min(bottom, down.max() + ROOM)

@@ -11,7 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from pindrive.device.history import Moment, draw_history, moment
-from pindrive.device.painting import paint
+from pindrive.device.painting import paint, view
 from pindrive.device.printed import turnings
 from pindrive.quantities import QUANTITIES
 from pindrive.style import PALETTE, SMALL, STYLE
@@ -28,8 +28,6 @@ WIDTH: Final = 180.0
 """Of the page that it is drawn for, mm."""
 WIDE: Final = 1.7
 """A scene so many times as wide as it is high stands above its tactile image, not beside it."""
-ROOM: Final = 0.002
-"""About what is drawn of the page, m."""
 MOST: Final = 99.0
 """Percent of the tactile image within the scale of colours."""
 LABELS: Final = {"lag_on": "lag on", "lag_off": "lag off"}
@@ -62,7 +60,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         ValueError: there is no such pin.
     """
     scan = judgement.scan
-    left, right, top, bottom = _view(scan)
+    left, right, top, bottom = view(scan)
     wide = right - left > WIDE * (bottom - top)
     chosen = moment(judgement, pin)
     with matplotlib.style.context(STYLE, after_reset=True):
@@ -97,17 +95,6 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         draw_history(judgement, chosen, figure, rows[1])
         figure.suptitle(_title(judgement), x=0.008, ha="left", fontsize=8.0)
     return figure
-
-
-def _view(scan: Scan) -> tuple[float, float, float, float]:
-    """Left, right, top and bottom of what is worth a look: the print and the pins' tracks, m."""
-    scene = scan.scene
-    left, right, top, bottom = scene.extent
-    spots = scan.spots(np.linspace(scan.path.begin, scan.path.end, 500))
-    rows = np.flatnonzero(scene.dark(scan.device.control.threshold).any(axis=1))
-    ink = top + scene.pixel * rows[[0, -1]] if rows.size else np.zeros(0)
-    down = np.concatenate([spots[..., 1].ravel(), ink])
-    return left, right, max(top, down.min() - ROOM), min(bottom, down.max() + ROOM)
 
 
 def _draw_print(scan: Scan, axes: Axes, chosen: Moment) -> None:
