@@ -479,5 +479,5 @@ def test_shapes_that_do_not_broadcast_are_named() -> None:
             mouse_velocity=0.1,
             displacement=1e-3,
         )
-    with pytest.raises(ValueError, match="finger_friction"):
+    with pytest.raises(ValueError, match="finger_friction must be at least 0 N, got -1 N"):
         paper.periods_to_rest(population.undamped(3), -1.0)

@@ -18,7 +18,7 @@ def paper(
         Path | None, typer.Option(metavar="DIR", help="The report as Markdown, with pictures.")
     ] = None,
 ) -> None:
-    """Recompute the paper: its equations, its figures, and what it says."""
+    """Recompute the paper, mend it, and judge what it says."""
     from pindrive.output import check_folder, write_files
 
     with refusing():

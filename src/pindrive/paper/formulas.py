@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper.release import Release
+from pindrive.quantities import refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -327,10 +328,14 @@ def periods_to_rest(r: Release, finger_friction: ArrayLike) -> Array:
     Args:
         r: the release, with the plate's friction, which does not matter here.
         finger_friction: kinetic = static friction of the finger, N, at least 0.
+
+    Raises:
+        ValueError: a finger friction is below 0 or no number.
     """
     xf = np.asarray(finger_friction, dtype=np.float64) / r.stiffness
     if not np.all(xf >= 0.0):
-        raise ValueError("finger_friction: must be at least 0 N")
+        least = f"{np.min(np.asarray(finger_friction)):g} N"
+        raise ValueError(refusal("finger_friction", "at least 0 N", least))
     with np.errstate(divide="ignore", invalid="ignore"):
         halves = np.ceil(r.mouse_velocity / (2 * xf * natural_frequency(r)))
     periods = np.where(r.mouse_velocity == 0.0, 0.0, halves / 2 - 0.25)
