@@ -94,7 +94,7 @@ def draw_history(judgement: Judgement, chosen: Moment, figure: Figure, place: Su
     """Draw it: four panels over one time axis, with a key."""
     scan = judgement.scan
     pin = scan.pins[chosen.pin]
-    rows = place.subgridspec(5, 1, height_ratios=(0.8, 0.8, 2.0, 1.0, 0.22))
+    rows = place.subgridspec(5, 1, height_ratios=(0.8, 0.8, 2.0, 1.2, 0.22))
     seen = figure.add_subplot(rows[0], label="seen")
     pull = figure.add_subplot(rows[1], label="pull", sharex=seen)
     x = figure.add_subplot(rows[2], label="x", sharex=seen)

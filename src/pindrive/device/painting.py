@@ -24,7 +24,9 @@ CELLS: Final = 1400
 ALONE: Final = 0.00125
 """Half a brush where all pins go on one track, m: as of pins 2.5 mm apart."""
 ROOM: Final = 0.002
-"""About what is drawn of the page, m."""
+"""Above and below what is drawn of the page, m."""
+AROUND: Final = 0.003
+"""Before the print, m; four times as much after it."""
 FINER: Final = 2.0
 """Places painted in each cell of the way."""
 
@@ -93,12 +95,21 @@ def _brush(scan: Scan) -> float:
     return 0.5 * float(np.diff(across).min()) if len(across) > 1 else ALONE
 
 
-def view(scan: Scan) -> tuple[float, float, float, float]:
-    """Left, right, top and bottom of what is worth a look: the print and the pins' tracks, m."""
+def view(scan: Scan, around: bool = False) -> tuple[float, float, float, float]:
+    """Left, right, top and bottom of what is worth a look: the print and the pins' tracks, m.
+
+    Args:
+        scan: the scan.
+        around: across the page the print alone, with room for what follows it.
+    """
     scene = scan.scene
     left, right, top, bottom = scene.extent
+    dark = scene.dark(scan.device.control.threshold)
+    rows, columns = (np.flatnonzero(dark.any(axis=axis)) for axis in (1, 0))
+    if around and columns.size:
+        right = min(right, left + scene.pixel * columns[-1] + 4.0 * AROUND)
+        left = max(left, left + scene.pixel * columns[0] - AROUND)
     spots = scan.spots(np.linspace(scan.path.begin, scan.path.end, 500))
-    rows = np.flatnonzero(scene.dark(scan.device.control.threshold).any(axis=1))
     ink = top + scene.pixel * rows[[0, -1]] if rows.size else np.zeros(0)
     down = np.concatenate([spots[..., 1].ravel(), ink])
     return left, right, max(top, down.min() - ROOM), min(bottom, down.max() + ROOM)

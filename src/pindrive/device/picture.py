@@ -11,12 +11,14 @@ from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from pindrive.device.history import Moment, draw_history, moment
-from pindrive.device.painting import paint, view
+from pindrive.device.painting import Painting, paint, view
 from pindrive.device.printed import turnings
 from pindrive.quantities import QUANTITIES
 from pindrive.style import PALETTE, SMALL, STYLE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.image import AxesImage
 
@@ -68,7 +70,9 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         page = scale * (bottom - top) + 9.0
         pages = (2.0 * page if wide else page) + 6.0
         figure = Figure(figsize=(WIDTH / 25.4, (pages + 112.0) / 25.4), dpi=250)
-        figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
+        figure.set_layout_engine(
+            "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
+        )
         rows = figure.add_gridspec(2, 1, height_ratios=(pages, 100.0))
         if wide:
             cells = rows[0].subgridspec(2, 2, width_ratios=(1.0, BAR))
@@ -83,9 +87,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         image = _draw_felt(scan, felt, chosen)
         printed.set_xlim(MM * left, MM * right)
         printed.set_ylim(MM * bottom, MM * top)
-        bar = figure.colorbar(image, cax=key, extend="both")
-        bar.set_label("deflection, forward (mm)", fontsize=SMALL)
-        bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+        _scale(figure, image, key)
         if wide:
             printed.set_xlabel("")
             printed.tick_params(labelbottom=False)
@@ -97,7 +99,55 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
     return figure
 
 
-def _draw_print(scan: Scan, axes: Axes, chosen: Moment) -> None:
+def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
+    """Draw what several scans of one scene showed, side by side in one scale, beside the print.
+
+    Args:
+        judgements: of the scans, at least one; what is drawn of the page is as the first has it.
+
+    Returns:
+        A figure that belongs to nobody else.
+    """
+    first = judgements[0].scan
+    left, right, top, bottom = view(first, around=True)
+    with matplotlib.style.context(STYLE, after_reset=True):
+        side = (WIDTH - 26.0) / (len(judgements) + 1)
+        height = side * (bottom - top) / (right - left) + 28.0
+        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4), dpi=250)
+        figure.set_layout_engine(
+            "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
+        )
+        count = len(judgements) + 1
+        cells = figure.add_gridspec(1, count + 1, width_ratios=(*[1.0] * count, 2.0 * BAR))
+        panels = [figure.add_subplot(cells[0, 0], label="print")]
+        panels += [
+            figure.add_subplot(cells[0, i], label=f"felt {i}", sharex=panels[0], sharey=panels[0])
+            for i in range(1, count)
+        ]
+        _draw_print(first, panels[0], None)
+        size = max(_size(paint(judgement.scan)) for judgement in judgements)
+        for axes, judgement in zip(panels[1:], judgements, strict=True):
+            image = _draw_felt(judgement.scan, axes, None, size)
+            axes.set_title(_relief_title(judgement), loc="left", fontsize=SMALL, pad=3.0)
+            axes.set_ylabel("")
+            axes.tick_params(labelleft=False)
+        panels[0].set_xlim(MM * left, MM * right)
+        panels[0].set_ylim(MM * bottom, MM * top)
+        _scale(figure, image, figure.add_subplot(cells[0, count], label="scale"))
+    return figure
+
+
+def _relief_title(judgement: Judgement) -> str:
+    """How fast the hand was, and what came of it."""
+    counts = judgement.counts
+    speed = f"{MM * judgement.scan.path.peak_speed:.4g} mm/s"
+    lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
+    found = f"{counts['judged.shown']} of {counts['judged.lines']} lines shown"
+    smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
+    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm, {smeared}"
+
+
+def _draw_print(scan: Scan, axes: Axes, chosen: Moment | None) -> None:
     left, right, top, bottom = (MM * edge for edge in scan.scene.extent)
     axes.imshow(
         scan.scene.luminance,
@@ -112,7 +162,8 @@ def _draw_print(scan: Scan, axes: Axes, chosen: Moment) -> None:
     _frame(axes, f"printed: {scan.scene.title}")
     spots = MM * scan.spots([scan.path.begin])[:, 0]
     axes.plot(*spots.T, "o", ms=2.6, mfc="white", mec=PALETTE["stick"], mew=0.7, gid="spots")
-    _draw_moment(scan, axes, chosen)
+    if chosen:
+        _draw_moment(scan, axes, chosen)
 
 
 def _draw_way(scan: Scan, axes: Axes) -> None:
@@ -138,11 +189,12 @@ def _draw_way(scan: Scan, axes: Axes) -> None:
             )
 
 
-def _draw_felt(scan: Scan, axes: Axes, chosen: Moment) -> AxesImage:
+def _draw_felt(
+    scan: Scan, axes: Axes, chosen: Moment | None, size: float | None = None
+) -> AxesImage:
     painting = paint(scan)
+    size = _size(painting) if size is None else size
     left, right, top, bottom = (MM * edge for edge in painting.extent)
-    painted = np.abs(painting.deflection[~np.isnan(painting.deflection)])
-    size = max(MM * float(np.percentile(painted, MOST)), 1e-6) if painted.size else 1.0
     image = axes.imshow(
         MM * painting.deflection,
         cmap=RELIEF,
@@ -162,8 +214,21 @@ def _draw_felt(scan: Scan, axes: Axes, chosen: Moment) -> AxesImage:
         outline.set_gid("outline")
     axes.set_facecolor("0.94")
     _frame(axes, "shown to the finger (outline: the print)")
-    _draw_moment(scan, axes, chosen)
+    if chosen:
+        _draw_moment(scan, axes, chosen)
     return image
+
+
+def _size(painting: Painting) -> float:
+    """The deflection at the ends of the scale of colours, mm."""
+    painted = np.abs(painting.deflection[~np.isnan(painting.deflection)])
+    return max(MM * float(np.percentile(painted, MOST)), 1e-6) if painted.size else 1.0
+
+
+def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
+    bar = figure.colorbar(image, cax=place, extend="both")
+    bar.set_label("deflection, forward (mm)", fontsize=SMALL)
+    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:

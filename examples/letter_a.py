@@ -1,0 +1,27 @@
+"""The letter A, read at three hand speeds: what a column of eight pins shows of it.
+
+python examples/letter_a.py [PICTURE]
+"""
+
+import sys
+from pathlib import Path
+
+from pindrive.config import load
+from pindrive.device import judge, scan
+from pindrive.device.picture import plot_reliefs
+from pindrive.style import save
+
+SPEEDS = (30, 60, 120)  # mm/s
+DEVICE = Path(__file__).with_name("tactile-reader.toml")
+COLUMN = ["array.columns=1", "array.rows=8", "array.pitch=1.25 mm"]
+
+judgements = []
+for speed in SPEEDS:
+    file = load(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"], whole=True)
+    device, reading = file.whole.device(file.drive), file.whole.reading()
+    scene = reading.text("A", device.array)
+    judgements.append(judge(scan(device, scene, reading.strokes(scene, device.array))))
+
+picture = sys.argv[1] if len(sys.argv) > 1 else "letter-a.png"
+save(plot_reliefs(judgements), picture)
+print(f"Wrote {picture}")
