@@ -281,15 +281,19 @@ T first_root(const Oscillator<T>& oscillator, Path<T> path, int side, T horizon)
   }
 }
 
-/// The sign of a path just after τ = 0; 0 if it stays zero.
+/// The sign of a path just after τ = 0; 0 if it stays zero. A second derivative that is the rounding
+/// of its terms is none: then the third decides.
 template <class T>
 int side_after_start(const Oscillator<T>& oscillator, const Path<T>& path) {
+  using std::abs;
+  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
   const auto sign = [](T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   if (path.start != 0) return sign(path.start);
   if (path.slope + path.drift != 0) return sign(path.slope + path.drift);
-  const T bend = oscillator.bend(path.value, path.slope) + path.curvature;
-  if (bend != 0) return sign(bend);
-  return sign(oscillator.bend(path.slope, oscillator.bend(path.value, path.slope)));
+  const T pulled = oscillator.bend(path.value, T(0)), damped = oscillator.bend(T(0), path.slope);
+  const T bend = pulled + damped + path.curvature;
+  if (abs(bend) > rounding * (abs(pulled) + abs(damped) + abs(path.curvature))) return sign(bend);
+  return sign(oscillator.bend(path.slope, -path.curvature));
 }
 
 }  // namespace pindrive

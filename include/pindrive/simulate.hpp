@@ -233,8 +233,9 @@ class Simulation {
     const bool same_instant = !(segment.end > segment.begin);
     bounced_ = border && bordering_ && same_instant;
     bordering_ = border;
-    let_go_ = let_go_ && same_instant;
-    held_again_ = let_go_ && exit.cause == Cause::arrives;
+    held_again_ = same_instant && exit.cause == Cause::arrives &&
+                  ((exit.plate && let_go_.plate) || (exit.finger && let_go_.finger));
+    let_go_ = {};
     changed_plate_ = exit.plate || (changed_plate_ && at_once);
     changed_finger_ = exit.finger || (changed_finger_ && at_once);
 
@@ -324,7 +325,7 @@ class Simulation {
     const auto even = [](bool taken, const Contact<T>& contact) {
       return !taken || contact.kinetic == contact.static_limit;
     };
-    let_go_ = true;
+    let_go_ = exit;
     tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
     tangent_ = friction_.level(mode_, now_).rate;
     mode_ = friction_.released(mode_, -exit.side);
@@ -410,9 +411,10 @@ class Simulation {
   bool changed_plate_{false},
       changed_finger_{false};  ///< by the last event: a zero there is no root
   bool bordering_{false},
-      bounced_{false};  ///< came to the border of a region; from another, at once
-  bool let_go_{false}, held_again_{false};  ///< at this instant: then it is rounding that lets go
-  bool follows_{false};                     ///< it sets out along with a level
+      bounced_{false};      ///< came to the border of a region; from another, at once
+  Exit let_go_{};           ///< the last event, where a contact let go …
+  bool held_again_{false};  ///< … and it holds again at once: it was rounding that let go
+  bool follows_{false};     ///< it sets out along with a level
   bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
   T tangent_{0};            ///< … at this acceleration
 
