@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "pindrive/guard.hpp"
+#include "pindrive/let_go.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/quadrature.hpp"
 
@@ -60,7 +61,7 @@ class Certifier {
         next = motion_.locate(motion_.outcome().cycle_begin, Side::right).segment;
       else
         break;
-      junction(segment.event, last, stage_of(*next));
+      junction(segment, last, stage_of(*next));
     }
     const T energy = std::max({stored_, input_, dissipated_});
     worst(result_.energy, unaccounted_, energy);
@@ -351,8 +352,9 @@ class Certifier {
 
   // ---- from segment to segment -------------------------------------------------------------------
 
-  void junction(Event event, const State& left, const Stage& after) {
+  void junction(const Segment<T>& before, const State& left, const Stage& after) {
     const State right = state(after, T(0));
+    const Event event = before.event;
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
     const bool skin_slips = soft() && event.finger == Kind::slip;
@@ -364,31 +366,21 @@ class Certifier {
       raise(gained_, std::min(energy(left) - energy(right), T(0)));
     }
     const auto let_go = [](Kind kind) { return kind == Kind::slip || kind == Kind::cross; };
-    cannot_hold(let_go(event.plate), let_go(event.finger) && !soft(), right, after);
-  }
-
-  /// What contacts that let go would have had to carry to stay, against what they could.
-  void cannot_hold(bool plate, bool finger, const State& now, const Stage& after) {
+    const bool plate = let_go(event.plate), finger = let_go(event.finger) && !soft();
     if (!plate && !finger) return;
-    using std::abs;
-    const Line<T> v_plate = after.plate_velocity;
+    const Aftermath<T> now{
+        right.x,         right.v, right.plate_force, right.finger_force, after.plate_velocity,
+        after.load.value};
+    const auto met = [](Slide slide, Kind kind) { return !slides(slide) || kind != Kind::none; };
     const T still = T(1e-12) * v_scale_;
-    const bool meets_both =
-        abs(now.v) <= still && abs(v_plate.value) <= still && drive_.finger.rigid();
-    if (meets_both && v_plate.rate != 0) return;  // the surfaces part
-    const T follows = plate ? v_plate.rate : T(0);
-    T others{0}, limit{0};
-    if (plate)
-      limit += drive_.plate.static_limit * after.load.value;
-    else
-      others += now.plate_force;
-    if (finger)
-      limit += drive_.finger.static_limit;
-    else
-      others += now.finger_force;
-    const T held = drive_.mass * (follows - v_plate.rate) + drive_.damping * now.v +
-                   drive_.stiffness * now.x - others;
-    worst(result_.transitions, std::max(limit - abs(held), T(0)), force_scale_);
+    if (drive_.finger.rigid() && std::abs(right.v) <= still &&
+        std::abs(now.plate_velocity.value) <= still && now.plate_velocity.rate != 0) {
+      if (met(before.mode.plate, event.plate) && met(before.mode.finger, event.finger))
+        worst(result_.transitions,
+              spare_capacity_parting(drive_, before.mode, after.segment.mode, now), force_scale_);
+    } else {
+      worst(result_.transitions, spare_capacity(drive_, plate, finger, now), force_scale_);
+    }
   }
 
   static constexpr T never = std::numeric_limits<T>::infinity();
