@@ -16,6 +16,7 @@ from pindrive.device import Criteria, Device, Electromagnet, HandPath, Scene, ju
 from pindrive.device.judged import beyond, speed_report
 from pindrive.device.speed import SpeedLimit, largest_speeds, steady, two_lines
 from pindrive.device.speed_picture import plot_speeds
+from pindrive.quantities import QUANTITIES
 from pindrive.report import console
 
 PLATE = Contact(0.022, 0.0265)
@@ -83,6 +84,36 @@ def test_the_limit_lies_between_distinct_and_not(limits: tuple[SpeedLimit, ...])
     assert 0.0 < limit.settled_speed < limit.speed
 
 
+def test_the_settled_limit_is_where_the_transient_of_a_line_alone_just_fits(
+    limits: tuple[SpeedLimit, ...],
+) -> None:
+    """On drawn pages: one line and its settling, two lines and when the second moves the pin."""
+    speed = limits[0].settled_speed
+    lone, two = (
+        Scene.from_grating([0.004], count=count, margin=0.1, height=0.001, pixel=5e-5)
+        for count in (1, 2)
+    )
+    spare = []
+    for phase in range(4):
+        begin = 0.1 - speed * (0.002 + 1e-3 * (1.0 - 0.25 * phase))
+        way = [begin, 0.5 * two.extent[3]]
+        alone, both = (
+            judge(
+                scan(
+                    DEVICE,
+                    page,
+                    HandPath([0.0, 0.09 / speed], [speed] * 2, [0.0] * 2, (way[0], way[1])),
+                    start=[steady(DEVICE)],
+                )
+            )
+            for page in (lone, two)
+        )
+        t = np.linspace(both.lines[1].begin.command, both.lines[1].begin.response, 20001)
+        taken = t[int(np.argmin(both.scan.pins[0].position(t)))]
+        spare.append(taken - alone.lines[0].settled)
+    assert -1e-5 < min(spare) < 1.2e-3, "as sharp as a look"
+
+
 def test_wider_pitches_weaker_demands_and_faster_magnets_allow_more(
     limits: tuple[SpeedLimit, ...],
 ) -> None:
@@ -131,7 +162,7 @@ def test_a_limit_beyond_what_was_tried_is_told_so() -> None:
     assert limits[0].speed == 0.05
     shown = console()
     with shown.capture() as captured:
-        shown.print(speed_report(limits, 0.5, (0.04, 0.05), Criteria()))
+        shown.print(speed_report(limits, 0.5, Criteria()))
     assert "> 50.00" in captured.get()
 
 
@@ -139,11 +170,29 @@ def test_islands_are_told() -> None:
     limit = SpeedLimit(
         pitch=0.002,
         width=0.001,
+        tried=(0.005, 1.0),
         distinct=((0.005, 0.05), (0.07, 0.08)),
         settled=(),
         beyond=None,
     )
     assert beyond(limit, 0.5, 5e-5) == "is distinct again at 70.00-80.00 mm/s"
+
+
+def test_a_pin_that_the_finger_holds_is_distinct_only_for_a_faster_hand() -> None:
+    """Fine lines, slowly: friction of the finger keeps the pin from coming back half its way."""
+    held, part = Device(drive=drive(SKIN, damping=0.64)), 0.46
+    (limit,) = largest_speeds(held, [0.001], part=part, slowest=0.005, fastest=0.05)
+    low, high = limit.distinct[0]
+    assert 0.006 < low < high < 0.03
+    slow = two_lines(held, 0.001, 0.0005, 0.9 * low, Criteria())
+    assert 0.3 < slow.back < part
+    shown = console()
+    with shown.capture() as captured:
+        shown.print(speed_report([limit], part, Criteria()))
+    digits = QUANTITIES["hand_speed"].digits
+    assert f"{digits(low)} to {digits(high)}" in captured.get()
+    gids = [line.get_gid() for line in plot_speeds([limit], part, Criteria()).axes[0].lines]
+    assert "slowest" in gids
 
 
 def test_bad_values_are_refused() -> None:

@@ -84,6 +84,6 @@ def speed(
     from pindrive.device.judged import speed_report
     from pindrive.report import show
 
-    show(speed_report(limits, part, tried, criteria))
+    show(speed_report(limits, part, criteria))
     if plot:
         typer.echo(f"Wrote {plot}")

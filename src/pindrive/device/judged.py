@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from pindrive.device.speed import SpeedLimit
+    from pindrive.device.speed import Band, SpeedLimit
     from pindrive.device.verdict import Criteria, Judgement
 
 _MM: Final = 1e3
@@ -107,9 +107,7 @@ def write_lines(judgement: Judgement, file: Path) -> None:
 # ---- speed ---------------------------------------------------------------------------------------
 
 
-def speed_report(
-    limits: Sequence[SpeedLimit], part: float, tried: tuple[float, float], criteria: Criteria
-) -> RenderableType:
+def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) -> RenderableType:
     """The largest hand speed for each pitch, and by which criterion."""
     length, speed = QUANTITIES["speed.pitch"], QUANTITIES["hand_speed"]
     table = new_table(
@@ -131,21 +129,27 @@ def speed_report(
         table.add_row(
             length.digits(limit.pitch),
             length.digits(limit.width),
-            _fastest(limit.speed, tried),
-            _fastest(limit.settled_speed, tried),
+            _band(limit.distinct, limit),
+            _band(limit.settled, limit),
             beyond(limit, part, criteria.direction),
         )
+    tried = limits[0].tried
     words = [
         criterion(part, criteria.direction),
-        "Settled: the first line's transient is over besides, before the second comes.",
+        "Settled: besides, what the first line alone leaves swinging is over before the second.",
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
     return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in words))
 
 
-def _fastest(value: float, tried: tuple[float, float]) -> str:
-    digits = QUANTITIES["hand_speed"].digits(value)
-    return f"> {digits}" if value >= tried[1] else digits
+def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:
+    """The largest speed of the first band; from where on, unless from the slowest tried."""
+    if not bands:
+        return "-"
+    digits = QUANTITIES["hand_speed"].digits
+    low, high = bands[0]
+    most = f"> {digits(high)}" if high >= limit.tried[1] else digits(high)
+    return most if low <= limit.tried[0] else f"{digits(low)} to {most}"
 
 
 def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
@@ -161,9 +165,8 @@ def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
             words.append(f"has the pin back by {trial.back:.0%}")
         if trial.skin < direction:
             words.append(f"moves the skin {QUANTITIES['direction'].text(trial.skin)}")
-    slowest, again = limit.distinct[0][0], limit.distinct[1:]
     speed = QUANTITIES["hand_speed"]
-    words += [f"is distinct again at {speed.digits(a)}-{speed.text(b)}" for a, b in again]
-    if slowest > 0.0 and trial is None and not again:
-        return ""
+    words += [
+        f"is distinct again at {speed.digits(a)}-{speed.text(b)}" for a, b in limit.distinct[1:]
+    ]
     return ", ".join(words)

@@ -8,10 +8,13 @@ speed if, wherever the control block's looks happen to fall (`PHASES` of them ar
 - each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
   finger: the pin).
 
-They are **settled** if moreover the first line's transient is over before the second line comes
-(see `judging`). Every trial is an exact simulation. Distinct speeds need not be one interval: a
-swing may fit by chance. So all of a geometric grid of speeds is tried first, and the border of each
-interval it shows is found by bisection; intervals between two speeds of the grid may be missed.
+They are **settled** if moreover the transient that the first line alone leaves (see `judging`) is
+over before the second takes the pin along. Every trial is an exact simulation.
+
+Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
+pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and
+the border of each interval it shows is found by bisection; intervals between two speeds of the grid
+may be missed. A border is as sharp as the control block looks: within a look it is chance.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, isnan, nan, pi
+from math import inf, isnan, nan, pi, sqrt
 from typing import Final
 
 import numpy as np
@@ -49,6 +52,9 @@ FINE: Final = 40.0
 MOMENT: Final = 0.002
 """From the begin of a trial to the first line, s, and a look more."""
 
+LONGEST: Final = 200.0
+"""A transient is followed for so many radians of its natural frequency at most."""
+
 Band = tuple[float, float]
 Progress = Callable[[int, int], None]
 """Told after each pitch: how many are done, of how many."""
@@ -64,8 +70,8 @@ class Trial:
     """Part of its way that the pin comes back between the lines; 0 where they merge."""
     skin: float
     """How far the fainter line moves the skin, m."""
-    settled: bool
-    """Whether the pin settles in between."""
+    until: tuple[float, ...]
+    """When the second line takes the pin along, for each phase, s since the trial's begin."""
 
     def distinct(self, part: float, direction: float) -> bool:
         """Whether two lines are felt; direction is in m."""
@@ -79,6 +85,8 @@ class SpeedLimit:
     pitch: float
     width: float
     """Of the lines, m."""
+    tried: Band
+    """The slowest hand and the fastest, m/s."""
     distinct: tuple[Band, ...]
     """From which speed to which the lines are distinct, m/s, the slowest first."""
     settled: tuple[Band, ...]
@@ -88,9 +96,10 @@ class SpeedLimit:
 
     @property
     def speed(self) -> float:
-        """The largest hand speed up to which the lines stay distinct, m/s; NaN: at none they are.
+        """The largest hand speed at which the lines are distinct, m/s; NaN: at none they are.
 
-        Of the first interval: a faster one beyond it is chance.
+        Of the first interval: a faster one beyond it is chance. Where that interval does not begin
+        with the slowest hand tried, `distinct` says from where on.
         """
         return self.distinct[0][1] if self.distinct else nan
 
@@ -156,6 +165,7 @@ def _limit(
     """The limit for one pitch."""
     speeds = np.geomspace(*tried, TRIED).tolist()
     trials = {speed: two_lines(device, pitch, width, speed, criteria) for speed in speeds}
+    calm: dict[float, bool] = {}
 
     def bands(holds: Callable[[Trial], bool]) -> list[Band]:
         """The intervals in which something holds: from the grid, with borders by bisection."""
@@ -183,13 +193,19 @@ def _limit(
     def distinct(trial: Trial) -> bool:
         return trial.distinct(part, criteria.direction)
 
+    def settled(trial: Trial) -> bool:
+        if distinct(trial) and trial.speed not in calm:
+            calm[trial.speed] = settles(device, pitch, width, trial, criteria)
+        return calm.get(trial.speed, False)
+
     apart = bands(distinct)
     faster = [speed for speed in sorted(trials) if apart and speed > apart[0][1]]
     return SpeedLimit(
         pitch=pitch,
         width=width,
+        tried=tried,
         distinct=tuple(apart),
-        settled=tuple(bands(lambda trial: distinct(trial) and trial.settled)),
+        settled=tuple(bands(settled)),
         beyond=trials[faster[0]] if faster else None,
     )
 
@@ -206,33 +222,73 @@ def two_lines(
         speed: m/s.
         criteria: what counts as felt.
     """
+    drive = device.drive
+    after = _clear(device) + 4.0 * pi / drive.natural_frequency
+    worst = Trial(speed, inf, inf, ())
+    for pin in _pass(device, (0.0, pitch), pitch, width, speed, after, criteria):
+        first, second = pin.lines()
+        back = 0.0 if "merged" in (first.fate, second.fate) else _back(device, first)
+        worst = Trial(
+            speed,
+            min(worst.back, back),
+            min(worst.skin, _skin(first), _skin(second)),
+            (*worst.until, pin.pulls[1].dip if len(pin.pulls) > 1 else 0.0),
+        )
+    return worst
+
+
+def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
+    """Whether the first line of a trial, alone, would leave the pin settled before the second.
+
+    Args:
+        device: as in the trial.
+        pitch: m, as in the trial.
+        width: m, as in the trial.
+        trial: as `two_lines` found it.
+        criteria: as in the trial.
+    """
+    drive = device.drive
+    ratio = max(drive.damping_ratio, 1e-3)
+    slowest = drive.natural_frequency * (ratio if ratio <= 1.0 else ratio - sqrt(ratio**2 - 1.0))
+    after = _clear(device) + min(8.0 / slowest, LONGEST / drive.natural_frequency)
+    alone = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
+    times = [line.settled for pin in alone for line in pin.lines()]
+    return all(time <= until for time, until in zip(times, trial.until, strict=True))
+
+
+def _pass(
+    device: Device,
+    begins: Sequence[float],
+    pitch: float,
+    width: float,
+    speed: float,
+    after: float,
+    criteria: Criteria,
+) -> list[JudgedPin]:
+    """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s)."""
     look = 1.0 / device.control.sample_rate
-    drive, magnet = device.drive, device.magnet
-    after = device.control.latency + 8.0 * magnet.fall_constant + 4.0 * pi / drive.natural_frequency
-    begin, end = -speed * (MOMENT + look), pitch + width + speed * after
+    begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
     shifts = [speed * look * i / PHASES for i in range(PHASES)]
     phases = PinArray([(float(i), 0.0) for i in range(PHASES)], [(s, 0.0) for s in shifts])
-    page = _page(pitch, width, begin - pixel, end + speed * look + pixel, pixel)
+    page = _page(begins, width, begin - pixel, end + speed * look + pixel, pixel)
     lasts = (end - begin) / speed
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
     done = scan(
         replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
     )
     stops, way = np.zeros(0), Way(path)
-    worst = Trial(speed, inf, inf, True)
+    judged = []
     for pin, shift in zip(done.pins, shifts, strict=True):
-        edges = [(x - begin - shift) / speed for x in (0.0, width, pitch, pitch + width)]
-        passed = [Printed(edges[0], edges[1], True), Printed(edges[2], edges[3], True)]
-        first, second = JudgedPin(done, pin, passed, stops, way, criteria).lines()
-        back = 0.0 if "merged" in (first.fate, second.fate) else _back(device, first)
-        worst = Trial(
-            speed,
-            min(worst.back, back),
-            min(worst.skin, _skin(first), _skin(second)),
-            worst.settled and not isnan(first.settled),
-        )
-    return worst
+        times = [(x - begin - shift) / speed for x in begins]
+        passed = [Printed(time, time + width / speed, True) for time in times]
+        judged.append(JudgedPin(done, pin, passed, stops, way, criteria))
+    return judged
+
+
+def _clear(device: Device) -> float:
+    """From a line's end until its magnet is as good as off, s."""
+    return device.control.latency + 8.0 * device.magnet.fall_constant
 
 
 def steady(device: Device) -> PinState:
@@ -245,13 +301,13 @@ def steady(device: Device) -> PinState:
     return PinState(position=device.drag, skin_stretch=held / finger.stiffness)
 
 
-def _page(pitch: float, width: float, left: float, right: float, pixel: float) -> Scene:
-    """Two lines that begin at 0 and at `pitch`; a border between pixels is as dark as it covers."""
+def _page(begins: Sequence[float], width: float, left: float, right: float, pixel: float) -> Scene:
+    """Lines that begin at these places; a border between pixels is as dark as it covers."""
     first = int(np.floor(left / pixel))
     borders = pixel * np.arange(first, int(np.ceil(right / pixel)) + 1)
-    covered = sum(np.clip(borders, x, x + width) for x in (0.0, pitch))
+    covered = sum(np.clip(borders, x, x + width) for x in begins)
     row = 1.0 - np.clip(np.diff(covered) / pixel, 0.0, 1.0)
-    return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="two lines")
+    return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="lines")
 
 
 def _back(device: Device, line: Line) -> float:

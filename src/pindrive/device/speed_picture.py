@@ -46,12 +46,12 @@ def plot_speeds(
         settled = np.array([limit.settled_speed for limit in ordered]) * MM
         top = 1.12 * float(np.nanmax([*apart, HANDS[1]]))
         axes.axhspan(*HANDS, color=PALETTE["resting"], alpha=0.13, lw=0.0, zorder=0, gid="hands")
-        axes.fill_between(
-            pitch, 0.0, np.nan_to_num(settled), color=PALETTE["curve"], alpha=0.3, lw=0.0
-        )
-        axes.fill_between(
-            pitch, np.nan_to_num(settled), apart, color=PALETTE["curve"], alpha=0.11, lw=0.0
-        )
+        slowest = np.array([_from(limit) for limit in ordered]) * MM
+        blue = PALETTE["curve"]
+        axes.fill_between(pitch, slowest, apart, alpha=0.12, color=blue, lw=0.0)
+        axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0)
+        if slowest.any():
+            axes.plot(pitch, slowest, color=PALETTE["curve"], lw=0.7, ls=":", gid="slowest")
         _curve(axes, pitch, apart, "o", "distinct")
         _curve(axes, pitch, settled, "s", "settled")
         _bands(axes, ordered)
@@ -67,6 +67,11 @@ def plot_speeds(
     return figure
 
 
+def _from(limit: SpeedLimit) -> float:
+    """From which speed on the lines are distinct, m/s; 0: from the slowest tried."""
+    return limit.distinct[0][0] if limit.distinct and limit.distinct[0][0] > limit.tried[0] else 0.0
+
+
 def _curve(
     axes: Axes, pitch: NDArray[np.float64], speed: NDArray[np.float64], marker: str, name: str
 ) -> None:
@@ -74,7 +79,7 @@ def _curve(
 
 
 def _bands(axes: Axes, limits: Sequence[SpeedLimit]) -> None:
-    """Where the lines are distinct again beyond the limit, or not yet at the slowest."""
+    """Where the lines are distinct again beyond the limit."""
     for limit in limits:
         for low, high in limit.distinct[1:]:
             axes.plot(
