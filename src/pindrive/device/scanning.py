@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
+ROUNDING: Final = 1e-9
+"""So much too low is no sample rate too low."""
 MAX_ANGLE: Final = QUANTITIES["max_angle"].default or 0.0
 
 Progress = Callable[[int, int], None]
@@ -344,7 +346,7 @@ def _warnings(
     found = []
     control, speed = device.control, path.peak_speed
     enough = control.enough_rate(speed, scene.pixel)
-    if control.sample_rate < enough:
+    if control.sample_rate < enough * (1.0 - ROUNDING):
         found.append(
             f"control.sample_rate = {control.sample_rate:g} Hz looks every "
             f"{1e3 * speed / control.sample_rate:.3g} mm at {1e3 * speed:.4g} mm/s, past pixels of "
