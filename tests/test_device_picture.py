@@ -183,6 +183,8 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
         assert 0.0 < lag <= latency * 0.0601
         smear = row["smear [m]"]
         assert not smear or not isnan(float(smear))
+    dull = CliRunner().invoke(app, [*command, "--set", "judge.felt=9 mm"])
+    assert "0 shown, 8 missed" in dull.output
     for bad, words in (
         (["--pin", "1"], "--pin must be from 0 to 1, beside --plot, got 1"),
         (["--plot", str(tmp_path / "b.png"), "--pin", "2"], "--pin must be from 0 to 1"),

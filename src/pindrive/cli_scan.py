@@ -93,7 +93,7 @@ def scan(
         parts = {target: stack.enter_context(atomic_write(target)) for target in outputs}
         with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
-        judgement = judge(done)
+        judgement = judge(done, device_file.whole.criteria())
         if output:
             from pindrive.device.dataset import write_netcdf
 

@@ -59,11 +59,10 @@ def speed(
         kind = figure_format(plot) if plot else ""
 
         from pindrive.device.speed import largest_speeds
-        from pindrive.device.verdict import Criteria
         from pindrive.output import atomic_write, naming
 
         target = stack.enter_context(atomic_write(plot)) if plot else None
-        device, criteria = device_file.whole.device(device_file.drive), Criteria()
+        device, criteria = device_file.whole.device(device_file.drive), device_file.whole.criteria()
         with bar("Pitches") as progress:
             limits = largest_speeds(
                 device,

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pindrive.schema_device import Whole
 
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
-AROUND: Final = ("magnet", "control", "array", "scan")
+AROUND: Final = ("magnet", "control", "array", "scan", "judge")
 TABLES: Final = ("device", "drive", "plate", "finger", "motion", *AROUND)
 
 

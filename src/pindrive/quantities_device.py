@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import radians
 from typing import Final
 
+from pindrive.quantities_judge import CRITERIA
 from pindrive.quantities_magnet import COIL, COUNT, FINE, MAGNET, SHARE
 from pindrive.quantity import FINITE, NON_NEGATIVE, POSITIVE, Bounds, Quantity
 
@@ -251,7 +252,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
     ),
 )
 
-DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + SCAN
+DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
 """What a device file may give beyond the drive, in its order."""
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (

@@ -19,6 +19,9 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         45e-6,
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
         "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
+        "judge",
+        optional=True,
+        remark="0.045 mm unless given",
     ),
     Quantity(
         "direction",
@@ -28,6 +31,9 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         POSITIVE,
         5e-5,
         f"{GLEESON}, from 0.05 mm",
+        "judge",
+        optional=True,
+        remark="0.05 mm unless given",
     ),
     Quantity(
         "direction_sure",
@@ -37,6 +43,9 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         POSITIVE,
         2e-4,
         f"{GLEESON}, 0.2 mm",
+        "judge",
+        optional=True,
+        remark="0.2 mm unless given",
     ),
     Quantity(
         "direction_speed",
@@ -46,6 +55,9 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         POSITIVE,
         2e-3,
         f"{GLEESON}, 2 mm/s",
+        "judge",
+        optional=True,
+        remark="2 mm/s unless given",
     ),
     Quantity(
         "echo",
@@ -55,9 +67,12 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         SHARE,
         0.5,
         "assumed",
+        "judge",
+        optional=True,
+        remark="0.5 unless given",
     ),
 )
-"""The limits that a scan is judged by."""
+"""The limits that a scan is judged by: a table of a device file."""
 
 _FOUND: Final = (
     ("latency_on", "t_l,on", "s", "from a line's first edge until the pin goes along"),
@@ -103,4 +118,5 @@ SPEED: Final[tuple[Quantity, ...]] = (
 )
 """What the largest hand speed is found for."""
 
-JUDGE: Final = CRITERIA + LINE + JUDGED + SPEED
+JUDGE: Final = LINE + JUDGED + SPEED
+"""What is found of scans and speeds."""

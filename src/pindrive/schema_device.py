@@ -16,6 +16,7 @@ from pindrive.device.control import ControlBlock, check_band
 from pindrive.device.device import Device, check_plate
 from pindrive.device.magnet import Electromagnet
 from pindrive.device.reading import Reading
+from pindrive.device.verdict import Criteria
 from pindrive.drive import Drive
 from pindrive.quantities import QUANTITIES, refusal
 from pindrive.quantity import Rows
@@ -95,6 +96,15 @@ class _Scan(Table):
     path_deviation: float = _standard("path_deviation")
 
 
+class _Judge(Table):
+    table = "judge"
+    felt: float = _standard("felt")
+    direction: float = _standard("direction")
+    direction_sure: float = _standard("direction_sure")
+    direction_speed: float = _standard("direction_speed")
+    echo: float = _standard("echo")
+
+
 class Whole(BaseModel):
     """The tables of the whole device, every value in range."""
 
@@ -102,6 +112,7 @@ class Whole(BaseModel):
     control: _Control
     array: _Array
     scan: _Scan
+    judge: _Judge
 
     def device(self, drive: Drive) -> Device:
         """The whole device about a drive."""
@@ -115,6 +126,10 @@ class Whole(BaseModel):
     def reading(self) -> Reading:
         """How a hand reads with it."""
         return Reading(**dict(self.scan))
+
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
+        return Criteria(**dict(self.judge))
 
     def value(self, key: str) -> float | Rows | None:
         """The value of a key, SI, given or not; None where nothing was given and nothing holds."""
