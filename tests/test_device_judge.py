@@ -28,6 +28,8 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.device.printed import printed, turnings
+from pindrive.device.verdict import FATES
+from random_scans import RandomScan
 
 PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)
@@ -357,6 +359,29 @@ def test_a_blank_page_has_false_lines_only_where_the_pin_moves() -> None:
         assert told.lines == ()
         assert len(told.echoes) == false
         assert all(echo.stroke >= 2e-4 for echo in told.echoes)
+
+
+@pytest.mark.parametrize("first", range(0, 60, 12))
+def test_random_devices_are_judged_by_what_can_be(first: int) -> None:
+    """Over decades of every number: nothing comes before its cause, every part is a part."""
+    for seed in range(first, first + 12):
+        drawn = RandomScan.of(seed)
+        told = judge(scan(drawn.device, drawn.scene, drawn.path))
+        latency = drawn.device.control.latency
+        for line in told.lines:
+            found = {name: value for name, value in line.numbers.items() if not isnan(value)}
+            for name, value in found.items():
+                assert value >= (latency if "latency" in name else 0.0) - 1e-12, (seed, name)
+            assert found.get("line.contrast", 1.0) <= 1.0
+            assert (line.fate == "unseen") <= isnan(line.begin.command)
+            if line.fate == "shown":
+                assert line.begin.command <= line.begin.response
+                assert max(line.begin.skin, found.get("line.skin_off", 0.0)) >= told.criteria.felt
+        assert sum(told.counts[f"judged.{fate}"] for fate in FATES) == len(told.lines)
+        for echo in told.echoes:
+            pin = told.scan.pins[echo.pin]
+            assert echo.stroke >= told.criteria.direction
+            assert not pin.commands.on(echo.time)
 
 
 def test_criteria_are_checked() -> None:

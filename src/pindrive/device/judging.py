@@ -198,7 +198,8 @@ class JudgedPin:
             height, returned = peak, peak - low
             contrast = (peak - low) / (abs(peak) + abs(low)) if peak > low else 0.0
             settled, overshoot = self._settling(x, release, peak, low, limit)
-        if fate == "shown" and cue_on == cue_off == CUES[0]:
+        went, felt = on[1] == on[1], (cue_on, cue_off) != (CUES[0], CUES[0])
+        if fate == "shown" and not (went and felt):
             fate = "faint"
         return Line(
             pin=self.pin.number,

@@ -86,7 +86,8 @@ class Line:
     begin: Edge
     end: Edge
     fate: Fate
-    """Shown; or missed: unseen by the control block, merged into the line before, or too faint."""
+    """Shown; or missed: unseen by the control block, merged into the line before, or too faint: the
+    pin did not go along, or the skin did not move enough to be felt."""
     stroke: float
     """How far it moved the pin, m."""
     height: float
