@@ -274,10 +274,10 @@ REFUSED = {
     "drive.damping_ratio, not both",
     '[axes]\nplate.static = { times = 2, of = "mass" }': "axes.plate.static.of must be another "
     'key in N, got "mass"',
-    '[axes]\nplate.static = ["1 mN", "2 mN"]': "plate.static is below plate.kinetic at every "
+    '[axes]\nplate.static = ["1 mN", "2 mN"]': "axes: plate.static is below plate.kinetic at every "
     "point: at most 2 mN, plate.kinetic at least 20 mN",
     'zip = [["plate.static", "plate.kinetic"]]\n[axes]\nplate.static = ["1 mN", "3 mN"]\n'
-    'plate.kinetic = ["2 mN", "4 mN"]': "plate.static is below plate.kinetic at every point: at "
+    'plate.kinetic = ["2 mN", "4 mN"]': "axes: plate.static is below plate.kinetic at every point: at "
     "most 3 mN, plate.kinetic at least 2 mN",
     'zip = [["mass", "drive.stiffness"]]\n[axes]\nmass = ["1 g"]\n'
     'drive.stiffness = ["1 N/m", "2 N/m"]': "zip: "

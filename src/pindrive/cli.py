@@ -165,10 +165,11 @@ def _register() -> None:
     from pindrive.cli_paper import paper
     from pindrive.cli_scan import scan
     from pindrive.cli_speed import speed
-    from pindrive.cli_study import sweep
+    from pindrive.cli_study import map_study, sweep
 
     for command in (scan, speed, sweep, paper):
         app.command()(command)
+    app.command("map")(map_study)
 
 
 _register()

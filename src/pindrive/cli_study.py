@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from pindrive.refusing import check_distinct, refusing
+from pindrive.refusing import check_distinct, figure_format, refusing
 
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 
@@ -99,3 +99,44 @@ def _bar() -> Iterator[Callable[[int, int], None]]:
             bar.update(task, completed=done, total=total, speed=shown)
 
         yield tell
+
+
+def map_study(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="What a sweep wrote (NetCDF).")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FIGURE", help=".png, .svg or .pdf.")
+    ],
+    x: Annotated[str | None, typer.Option("--x", metavar="KEY", help="Along the abscissa.")] = None,
+    y: Annotated[
+        str | None, typer.Option("--y", metavar="KEY", help="Along the ordinate; curves if none.")
+    ] = None,
+    number: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="What to draw; settling_time unless given."),
+    ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option("--at", metavar="KEY=VALUE", help="A slice at the nearest value."),
+    ] = None,
+) -> None:
+    """Draw a study: maps over two keys, curves over one, slices side by side."""
+    from pindrive.output import atomic_write, naming
+
+    with refusing():
+        kind = figure_format(output, "--output")
+        check_distinct([file, output])
+
+        from pindrive.study.view import View
+
+        with View(file) as view:
+            over = [given and view.key(given, option) for given, option in ((x, "--x"), (y, "--y"))]
+            held = view.held(at or ())
+            names = [view.number(name) for name in number or view.usual_numbers()]
+            chosen = view.axes(over[0], over[1], held)
+
+            from pindrive.study.maps import plot_study
+            from pindrive.style import save
+
+            with atomic_write(output) as part, naming(output):
+                save(plot_study(view, names, *chosen, held), part, kind)
+    typer.echo(f"Wrote {output}")

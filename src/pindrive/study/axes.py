@@ -188,7 +188,8 @@ class AxisReader:
         for end in (low, high):
             if end not in self._quantity.bounds:
                 shown = f"{quoted(text)}, which reaches {self._quantity.written(end)}"
-                words = self._quantity.bounds.words(self._quantity.unit)
+                unit = self._quantity.unit
+                words = self._quantity.bounds.words("" if unit == "1" else unit)
                 raise ValueError(refusal(self._label, words, shown, self._file))
         return Distribution("uniform", low, high)
 
@@ -203,7 +204,7 @@ class AxisReader:
         """A deviation in SI, greater than 0; "5 %" is a part of the value that it is about."""
         about = self._base if about is None else about
         quantity, text = self._quantity, given.strip() if isinstance(given, str) else ""
-        relative = text.endswith("%") and quantity.unit != "1"
+        relative = text.endswith("%")
         example = usual(quantity)
         try:
             if relative:

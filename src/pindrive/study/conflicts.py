@@ -11,8 +11,9 @@ from pindrive.study.plan import base_value
 from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
+    from pindrive.config import DeviceFile
     from pindrive.study.plan import Plan
 
 _MOST_COMPARED = 1 << 20
@@ -22,37 +23,39 @@ _MOST_COMPARED = 1 << 20
 def conflicts(plan: Plan, file: str) -> list[str]:
     """A line for each contradiction among the axes, and between them and the device."""
     problems = []
-    for table, keys in (("axes", [*plan.axes]), ("tolerances", [*plan.tolerances])):
-        problems += [f"{file}: {table}: {words}" for words in _among(plan, keys)]
-    for contact in ("plate", "finger"):
-        if words := _static_below_kinetic(plan, contact):
-            problems.append(f"{file}: {words}")
+    tolerances: dict[str, Axis] = {**plan.tolerances, **plan.tolerance_links}
+    for table, axes in (("axes", plan.axes), ("tolerances", tolerances)):
+        problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
+        for contact in ("plate", "finger"):
+            if words := _static_below_kinetic(plan, axes, contact):
+                problems.append(f"{file}: {table}: {words}")
     return problems
 
 
-def _among(plan: Plan, keys: list[str]) -> Iterator[str]:
-    if {"drive.damping", "drive.damping_ratio"} <= {*keys}:
+def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
+    if {"drive.damping", "drive.damping_ratio"} <= axes.keys():
         yield "vary drive.damping or drive.damping_ratio, not both"
-    drive = plan.device.drive
+    drive = device.drive
     for contact, part in (("plate", drive.plate), ("finger", drive.finger)):
-        if part.curve and f"{contact}.kinetic" in keys:
+        if part.curve and f"{contact}.kinetic" in axes:
             yield f"{contact}.kinetic cannot be varied beside {contact}.curve: it is its first row"
-    if drive.finger.curved and "finger.stiffness" in keys:
+    if drive.finger.curved and "finger.stiffness" in axes:
         yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
-    if "motion.skin_stretch" in keys and drive.finger.rigid and "finger.stiffness" not in keys:
+    if "motion.skin_stretch" in axes and drive.finger.rigid and "finger.stiffness" not in axes:
         yield "motion.skin_stretch cannot be varied for a rigid finger; give finger.stiffness"
-    for key in keys:
-        link = plan.links.get(key)
-        if link and link.of in plan.links:
-            yield f"{key} follows {link.of}, which follows {plan.links[link.of].of}; follow that"
-        if link and link.of not in keys and not isinstance(base_value(plan.device, link.of), float):
+    for key, link in axes.items():
+        if not isinstance(link, Linked):
+            continue
+        leader = axes.get(link.of)
+        if isinstance(leader, Linked):
+            yield f"{key} follows {link.of}, which follows {leader.of}; follow that"
+        if leader is None and not isinstance(base_value(device, link.of), float):
             yield f"{key} follows {link.of}, which has no value"
 
 
-def _static_below_kinetic(plan: Plan, contact: str) -> str:
+def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], contact: str) -> str:
     """Words for static friction that is below kinetic friction at every point."""
     static, kinetic = f"{contact}.static", f"{contact}.kinetic"
-    axes: dict[str, Axis] = {**plan.tolerances, **plan.axes}
     if not {static, kinetic} & axes.keys():
         return ""
     if static not in axes and plan.device.values()[static] is None:
@@ -67,7 +70,7 @@ def _static_below_kinetic(plan: Plan, contact: str) -> str:
     )
 
 
-def _span(plan: Plan, axes: dict[str, Axis], key: str) -> tuple[float, float]:
+def _span(plan: Plan, axes: Mapping[str, Axis], key: str) -> tuple[float, float]:
     """The smallest and the largest value of a key."""
     axis = axes.get(key)
     if axis is None:

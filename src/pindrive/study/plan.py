@@ -75,6 +75,7 @@ class Plan:
     """Variables to keep, in the order of the file."""
     chunk: int = CHUNK
     tolerances: Mapping[str, Distribution]
+    tolerance_links: Mapping[str, Linked]
     demands: tuple[Demand, ...] = ()
 
     @property
@@ -110,17 +111,7 @@ class Plan:
         found: Columns = {}
         for dimension, index in zip(self.dimensions, places, strict=True):
             found |= dimension.at(index)
-        return self.with_links(found)
-
-    def with_links(self, columns: Columns) -> Columns:
-        """The columns, and those of the keys that follow one of them or a value of the device."""
-        return columns | {
-            key: link.times * self.value(link.of, columns) for key, link in self.links.items()
-        }
-
-    def value(self, key: str, columns: Columns) -> NDArray[np.float64]:
-        """A column, or the device's own value."""
-        return columns[key] if key in columns else np.asarray(base_value(self.device, key))
+        return with_links(self.device, found, self.links)
 
     def identity(self) -> dict[str, Any]:
         """All that its numbers follow from: two studies with one identity have one answer."""
@@ -141,6 +132,15 @@ class Plan:
             )
         )
         return found
+
+
+def with_links(device: DeviceFile, columns: Columns, links: Mapping[str, Linked]) -> Columns:
+    """The columns, and those of the keys that follow one of them or a value of the device."""
+
+    def followed(key: str) -> NDArray[np.float64]:
+        return columns[key] if key in columns else np.asarray(base_value(device, key))
+
+    return columns | {key: link.times * followed(link.of) for key, link in links.items()}
 
 
 def base_value(device: DeviceFile, key: str) -> Any:

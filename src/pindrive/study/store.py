@@ -184,10 +184,6 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "source": f"pindrive {__version__}",
                 "study": plan.text,
                 "identity": identity(plan),
-                "links": "; ".join(
-                    f"{key} = {link.times:.12g} * {link.of}" for key, link in plan.links.items()
-                )
-                or "none",
             }
         )
 

@@ -59,6 +59,7 @@ def load_study(path: str | PathLike[str]) -> Plan:
         outputs=reader.outputs(),
         chunk=reader.whole("chunk", CHUNK, CHUNK * 64),
         tolerances=reader.tolerances,
+        tolerance_links=reader.tolerance_links,
         demands=demands(reader.table("specification"), str(file), problems),
     )
     problems += conflicts(plan, str(file))
@@ -113,7 +114,7 @@ class _Reader:
         axes = self._axes("axes")
         self.links = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
         tolerances = self._axes("tolerances")
-        self.links |= {key: axis for key, axis in tolerances.items() if isinstance(axis, Linked)}
+        self.tolerance_links = {k: v for k, v in tolerances.items() if isinstance(v, Linked)}
         self.tolerances = {
             k: axis for k, axis in tolerances.items() if isinstance(axis, Distribution)
         }

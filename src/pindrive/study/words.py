@@ -1,0 +1,70 @@
+"""How figures and tables of studies name keys and numbers: words, symbols, units."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final
+
+from pindrive.captions import short
+from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.plan import variable
+from pindrive.template import DRIVE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from pindrive.quantity import Quantity
+
+QUANTITY: Final[dict[str, Quantity]] = {variable(key): q for key, q in DRIVE.items()} | NUMBERS
+"""Inputs and numbers by the names of their variables."""
+
+_WORDS: Final = {
+    "plate_kinetic": "plate friction",
+    "plate_static": "static plate friction",
+    "finger_kinetic": "finger friction",
+    "finger_static": "static finger friction",
+    "finger_stiffness": "skin stiffness",
+    "velocity": "release velocity",
+}
+_TALL: Final = re.compile(r"([A-Za-z'α-ωΑ-Ω]+)_(.+)")
+
+
+def words(name: str) -> str:
+    """A variable in words: "plate friction", "settling time"."""
+    return _WORDS.get(name, label(name).replace("_", " "))
+
+
+def symbol(name: str) -> str:
+    r"""Its symbol for mathtext: "$F_\mathrm{p}$"; empty where it has none."""
+    text = QUANTITY[name].symbol
+    parts = _TALL.fullmatch(text)
+    if parts is None:
+        return f"${text}$" if text else ""
+    if " " in text:
+        return ""
+    return rf"${parts[1]}_\mathrm{{{parts[2].replace('_', ' ')}}}$"
+
+
+def axis_label(name: str) -> str:
+    r"""What stands along an axis: "plate friction $F_\mathrm{p}$ (mN)"."""
+    unit = QUANTITY[name].display_unit
+    said = " ".join(filter(None, (words(name), symbol(name))))
+    return f"{said} ({unit})" if unit else said
+
+
+def value(name: str, number: float) -> str:
+    """A value with its symbol: "$m$ = 10 g"."""
+    return f"{symbol(name) or words(name)} = {short(QUANTITY[name].name, number)}"
+
+
+def values(given: Mapping[str, float], width: int) -> str:
+    """Values one after the other, broken into lines of about so many characters."""
+    lines = [""]
+    for name, number in given.items():
+        said = value(name, number)
+        shown = re.sub(r"[$\\{}_]|mathrm", "", f"{lines[-1]}, {said}")
+        if lines[-1] and len(shown) > width:
+            lines.append(said)
+        else:
+            lines[-1] = f"{lines[-1]}, {said}" if lines[-1] else said
+    return ",\n".join(lines)
