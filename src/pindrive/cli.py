@@ -20,7 +20,6 @@ from pindrive.refusing import (
 )
 
 if TYPE_CHECKING:
-    from pindrive.config import DeviceFile
     from pindrive.motion import Motion
 
 app = typer.Typer(
@@ -117,7 +116,7 @@ def simulate(
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive import export
-    from pindrive.config import load
+    from pindrive.config import load, motion_of
     from pindrive.output import atomic_write, naming
 
     with refusing():
@@ -135,7 +134,7 @@ def simulate(
         check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
         with ExitStack() as stack:
             parts = {path: stack.enter_context(atomic_write(path)) for path in outputs}
-            motion = _simulate(device)
+            motion = motion_of(device)
             for path, write in outputs.items():
                 with naming(path):
                     write(motion, parts[path])
@@ -146,28 +145,14 @@ def simulate(
         typer.echo(f"Wrote {path}")
 
 
-def _simulate(device: DeviceFile) -> Motion:
-    from pindrive import simulate
-
-    return simulate(
-        device.drive,
-        mouse_velocity=device.mouse_velocity,
-        displacement=device.displacement,
-        velocity=device.velocity,
-        plate_load=device.plate_load,
-        skin_stretch=device.skin_stretch,
-        duration=device.duration,
-    )
-
-
 def _register() -> None:
     """The commands that have a file of their own."""
     from pindrive.cli_paper import paper
     from pindrive.cli_scan import scan
     from pindrive.cli_speed import speed
-    from pindrive.cli_study import map_study, sweep
+    from pindrive.cli_study import map_study, sensitivity, sweep
 
-    for command in (scan, speed, sweep, paper):
+    for command in (scan, speed, sweep, sensitivity, paper):
         app.command()(command)
     app.command("map")(map_study)
 

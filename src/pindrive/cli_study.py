@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -140,3 +140,47 @@ def map_study(
             with atomic_write(output) as part, naming(output):
                 save(plot_study(view, names, *chosen, held), part, kind)
     typer.echo(f"Wrote {output}")
+
+
+def sensitivity(
+    study: StudyArgument,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    tolerances: Annotated[
+        bool, typer.Option("--tolerances", help="Over [tolerances] instead of [axes].")
+    ] = False,
+    rows: Annotated[
+        int, typer.Option(metavar="COUNT", help="Rows of the design, a power of 2.")
+    ] = 8192,
+    seed: Annotated[int, typer.Option(min=0, help="Of the design and the bootstrap.")] = 1,
+    threads: Annotated[
+        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
+    ] = None,
+) -> None:
+    """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges."""
+    from pindrive.output import atomic_write, naming
+    from pindrive.study.influence import influence
+    from pindrive.study.studyfile import load_study
+
+    with refusing(), ExitStack() as stack:
+        plan = load_study(study)
+        check_distinct([study, plan.device.path, *([plot] if plot else [])])
+        kind = figure_format(plot) if plot else ""
+        part = stack.enter_context(atomic_write(plot)) if plot else None
+        with _bar() as tell:
+            found = influence(
+                plan, tolerances=tolerances, count=rows, seed=seed, threads=threads, tell=tell
+            )
+        if plot and part:
+            from pindrive.study.charts import plot_influence
+            from pindrive.style import save
+
+            with naming(plot):
+                save(plot_influence(found, plan.name), part, kind)
+    from pindrive.report import show
+    from pindrive.study.report import influence_report
+
+    show(influence_report(found))
+    if plot:
+        typer.echo(f"Wrote {plot}")

@@ -25,6 +25,7 @@ from pindrive.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
+    from pindrive.motion import Motion
     from pindrive.schema_device import Whole
 
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
@@ -126,6 +127,21 @@ def device_of(
     except ValueError as error:  # each value in range, but not all together
         problems.append(f"{file}: {error}")
     raise ConfigError(problems)
+
+
+def motion_of(device: DeviceFile) -> Motion:
+    """The release that a device file describes."""
+    from pindrive.motion import simulate
+
+    return simulate(
+        device.drive,
+        mouse_velocity=device.mouse_velocity,
+        displacement=device.displacement,
+        velocity=device.velocity,
+        plate_load=device.plate_load,
+        skin_stretch=device.skin_stretch,
+        duration=device.duration,
+    )
 
 
 # ---- the file's text -----------------------------------------------------------------------------

@@ -31,7 +31,7 @@ _BATCH = (
 
 
 def evaluate(
-    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], threads: int = 1
+    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], threads: int | None = 1
 ) -> Table:
     """The outputs at `count` points, where the columns stand for what the device has.
 
@@ -44,7 +44,7 @@ def evaluate(
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
         outputs: names of variables.
-        threads: for `simulate_batch`.
+        threads: for `simulate_batch`; None: all cores.
     """
     inputs = _inputs(plan.device, plan.by_ratio, columns)
     if is_slow(plan.device, columns):

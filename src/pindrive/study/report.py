@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pindrive.quantity import significant
 from pindrive.study.evaluate import flags
+from pindrive.study.outputs import label
 from pindrive.study.sweeping import human_bytes
+from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from pindrive.study.influence import Influence
     from pindrive.study.plan import Plan
     from pindrive.study.sweeping import Result
 
@@ -55,6 +64,87 @@ def _reasons(done: Result) -> list[tuple[str, int]]:
     meanings = flags("status")
     named = [(meanings[i], int(found[i])) for i in np.flatnonzero(found) if i]
     return sorted(named, key=lambda pair: -pair[1])
+
+
+def influence_report(found: Influence) -> RenderableType:
+    """Three tables: elasticities, and Sobol' indices of first order and in total."""
+    from rich.console import Group
+
+    names = [name for name in found.over if name != "transient_settled"]
+    shown = [name for name in names if not np.isnan(found.near.values[name])]
+    near = _by_key(
+        "Near the device's values: per cent of change for one per cent more of",
+        found.keys,
+        shown,
+        lambda name, i: elasticity(found.near.table[name][found.keys[i]]),
+    )
+    told = [name for name in found.over if found.over[name].spread > 0.0]
+    tables: list[RenderableType] = [near]
+    for title, order in (
+        ("Over the whole ranges: part of the variance due to, by itself", "first"),
+        ("Over the whole ranges: part of the variance due to, with all interactions", "total"),
+    ):
+        cell = partial(_index, found, order)
+        tables.append(_by_key(title, found.keys, told, cell))
+    return Group(*tables, *_notes(found))
+
+
+def _by_key(
+    title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
+) -> Table:
+    """A line for each number, a column for each key."""
+    from pindrive.report import new_table
+
+    heads = [DRIVE[key].symbol for key in keys]
+    made = new_table(title, "number", *(f">{head}" for head in heads))
+    for name in names:
+        made.add_row(label(name), *(cell(name, i) for i in range(len(keys))))
+    return made
+
+
+def _index(found: Influence, order: str, name: str, i: int) -> str:
+    """An index and half its interval: "0.41 ±.02"; one that may be none is a point."""
+    interval = getattr(found.over[name], order)
+    value, half = interval.value[i], 0.5 * (interval.high[i] - interval.low[i])
+    if np.isnan(value):
+        return "-"
+    if value < 0.005 and half < 0.02:
+        return "·"
+    return f"{max(value, 0.0):.2f} ±{half:.2f}".replace("±0.", "±.")
+
+
+def elasticity(value: float) -> str:
+    """An elasticity to two decimals with its sign: "+0.57"; a point for none to speak of."""
+    if np.isnan(value):
+        return "-"
+    return "·" if abs(value) < 0.005 else f"{value:+.2f}"
+
+
+def _notes(found: Influence) -> list[str]:
+    """What the tables leave out, and from how much they come."""
+    design = f"{count(found.points)} points (Sobol' design of {count(found.count)} rows)"
+    lines = [f"{design}; ± half of the 95 % bootstrap interval; · below 0.005."]
+    if found.refused:
+        lines.append(f"{percent(found.refused, found.points)} of them have no motion: refused.")
+    partly = [
+        f"{label(n)} {100 * x.kept:.3g} %" for n, x in found.over.items() if 0.0 < x.kept < 1.0
+    ]
+    if partly:
+        lines.append(
+            "Rows where a number exists at every point; its indices hold there: "
+            f"{', '.join(partly)}."
+        )
+    nothing = [label(name) for name, x in found.over.items() if x.kept == 0.0]
+    if nothing:
+        lines.append(f"Nowhere: {', '.join(nothing)}.")
+    constant = [label(name) for name, x in found.over.items() if x.spread == 0.0]
+    if constant:
+        lines.append(f"The same everywhere: {', '.join(constant)}.")
+    lines += [
+        f"{DRIVE[key].symbol}: some derivatives do not exist, {why}."
+        for key, why in found.near.gaps.items()
+    ]
+    return lines
 
 
 def count(number: int) -> str:
