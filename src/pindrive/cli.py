@@ -150,9 +150,9 @@ def _register() -> None:
     from pindrive.cli_paper import paper
     from pindrive.cli_scan import scan
     from pindrive.cli_speed import speed
-    from pindrive.cli_study import map_study, sensitivity, sweep
+    from pindrive.cli_study import map_study, robustness, sensitivity, sweep
 
-    for command in (scan, speed, sweep, sensitivity, paper):
+    for command in (scan, speed, sweep, sensitivity, robustness, paper):
         app.command()(command)
     app.command("map")(map_study)
 

@@ -184,3 +184,40 @@ def sensitivity(
     show(influence_report(found))
     if plot:
         typer.echo(f"Wrote {plot}")
+
+
+def robustness(
+    study: StudyArgument,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    draws: Annotated[int, typer.Option(metavar="COUNT", min=1, help="Random designs.")] = 100_000,
+    seed: Annotated[int, typer.Option(min=0, help="Of the draws and the search.")] = 1,
+    threads: Annotated[
+        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
+    ] = None,
+) -> None:
+    """Say how a design fares within its tolerances: spread, yield, worst case."""
+    from pindrive.output import atomic_write, naming
+    from pindrive.study.robust import robustness as judge
+    from pindrive.study.studyfile import load_study
+
+    with refusing(), ExitStack() as stack:
+        plan = load_study(study)
+        check_distinct([study, plan.device.path, *([plot] if plot else [])])
+        kind = figure_format(plot) if plot else ""
+        part = stack.enter_context(atomic_write(plot)) if plot else None
+        with _bar() as tell:
+            found = judge(plan, count=draws, seed=seed, threads=threads, tell=tell)
+        if plot and part:
+            from pindrive.study.histograms import plot_robustness
+            from pindrive.style import save
+
+            with naming(plot):
+                save(plot_robustness(found, plan.name), part, kind)
+    from pindrive.report import show
+    from pindrive.study.report import robustness_report
+
+    show(robustness_report(plan, found))
+    if plot:
+        typer.echo(f"Wrote {plot}")

@@ -62,6 +62,16 @@ def evaluate(
     return {name: table[name] for name in outputs}
 
 
+def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
+    """The motion at one point, which the keys' values say.
+
+    Raises:
+        ValueError: there is none, as for `simulate`.
+    """
+    columns = {key: np.array([value]) for key, value in at.items()}
+    return _motion(_point(_inputs(plan.device, plan.by_ratio, columns), 0))
+
+
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Whether the points of a device must be simulated one by one."""
     changes = {
@@ -105,11 +115,16 @@ def flags(name: str) -> tuple[str, ...]:
 
 
 def _one_by_one(inputs: Mapping[str, Any], count: int) -> Table:
-    rows = [
-        _numbers({k: v[i].item() if isinstance(v, np.ndarray) else v for k, v in inputs.items()})
-        for i in range(count)
-    ]
+    rows = [_numbers(_point(inputs, i)) for i in range(count)]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:
+    """The inputs of one point; where none varies there is a number, not an array."""
+    return {
+        name: value.item(i if value.ndim else 0) if isinstance(value, np.ndarray) else value
+        for name, value in inputs.items()
+    }
 
 
 def _numbers(given: Mapping[str, Any]) -> dict[str, float]:

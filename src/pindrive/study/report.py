@@ -9,7 +9,8 @@ import numpy as np
 
 from pindrive.quantity import significant
 from pindrive.study.evaluate import flags
-from pindrive.study.outputs import label
+from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.plan import base_value
 from pindrive.study.sweeping import human_bytes
 from pindrive.template import DRIVE
 
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 
     from pindrive.study.influence import Influence
     from pindrive.study.plan import Plan
+    from pindrive.study.robust import Robustness, Share
     from pindrive.study.sweeping import Result
 
+QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
 _SLICE = 1 << 24
 """Points of which the status is read at a time."""
 
@@ -144,6 +147,89 @@ def _notes(found: Influence) -> list[str]:
         f"{DRIVE[key].symbol}: some derivatives do not exist, {why}."
         for key, why in found.near.gaps.items()
     ]
+    return lines
+
+
+def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
+    """Spread of the watched numbers, yield, and the worst cases."""
+    from rich.console import Group
+
+    tables: list[RenderableType] = [_spread(found)]
+    if found.all_met:
+        tables.append(_yield(found, found.all_met))
+        tables.append(_worst_cases(plan, found))
+    return Group(*tables, *_draws(plan, found))
+
+
+def _spread(found: Robustness) -> Table:
+    """Quantiles over all designs of which the number exists."""
+    from pindrive.report import new_table
+
+    heads = ("number", ">design", *(f">{100 * q:g} %" for q in QUANTILES), "unit", ">exists in")
+    made = new_table("How the designs scatter: quantiles", *heads)
+    for name, values in found.values.items():
+        quantity = NUMBERS[name]
+        known = values[np.isfinite(values)]
+        ends = np.quantile(known, QUANTILES) if known.size else np.full(len(QUANTILES), np.nan)
+        shown = (quantity.digits(float(x)) for x in (found.own[name], *ends))
+        unit = quantity.display_unit
+        made.add_row(label(name), *shown, unit, percent(known.size, found.count))
+    return made
+
+
+def _yield(found: Robustness, all_met: Share) -> Table:
+    from pindrive.report import new_table
+
+    made = new_table("Yield", "demand", ">met by", "95 % interval")
+    for demand, share in found.shares:
+        made.add_row(demand.text(), *_share(share))
+    if len(found.shares) > 1:
+        made.add_row("all", *_share(all_met), style="bold")
+    return made
+
+
+def _share(share: Share) -> tuple[str, str]:
+    low, high = 100.0 * share.low, 100.0 * share.high
+    return f"{100.0 * share.met / share.of:.3f} %", f"{low:.3f} to {high:.3f} %"
+
+
+def _worst_cases(plan: Plan, found: Robustness) -> Table:
+    """The values at which each demand is missed by the most, beside the design's own."""
+    from pindrive.report import new_table
+
+    heads = (f">{label(case.demand.name)}" for case in found.worst)
+    made = new_table("The worst found for", "key", ">design", *heads, "unit")
+    for key in found.worst[0].keys:
+        quantity, own = DRIVE[key], base_value(plan.device, key)
+        values = [quantity.digits(case.keys[key]) for case in found.worst]
+        shown = quantity.digits(own) if isinstance(own, float) else "-"
+        made.add_row(key, shown, *values, quantity.display_unit)
+    results = []
+    for case in found.worst:
+        quantity = NUMBERS[case.demand.name]
+        results.append("never" if np.isnan(case.value) else quantity.text(case.value))
+    made.add_row("gives", "", *results, "", style="bold")
+    sampled = []
+    for case in found.worst:
+        quantity = NUMBERS[case.demand.name]
+        sampled.append("never" if np.isnan(case.sampled) else quantity.text(case.sampled))
+    made.add_row("among the draws", "", *sampled, "")
+    return made
+
+
+def _draws(plan: Plan, found: Robustness) -> list[str]:
+    lines = [f"{count(found.count)} independent random draws, seed {found.seed}."]
+    if found.refused:
+        lines.append(f"{percent(found.refused, found.count)} of them have no motion: refused.")
+    for case in found.worst:
+        given = " ".join(
+            f'--set {key}="{DRIVE[key].written(value)}"' for key, value in case.keys.items()
+        )
+        lines.append(
+            f"Worst {label(case.demand.name)}: pindrive simulate {plan.device.path} {given}"
+        )
+    if not found.all_met:
+        lines.append("No specification is given: write what is demanded in [specification].")
     return lines
 
 

@@ -1,0 +1,201 @@
+"""How a design fares in all its tolerances: spread, yield against a specification, worst case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.config import motion_of
+from pindrive.study.evaluate import evaluate, follow
+from pindrive.study.influence import Ranges, ranges_of
+from pindrive.study.sample import Sample
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from pindrive.motion import Motion
+    from pindrive.study.demand import Demand
+    from pindrive.study.plan import Plan
+
+    Values = NDArray[np.float64]
+
+USUAL_COUNT: Final = 100_000
+WATCHED: Final = ("transient_settling_time", "transient_swing")
+_AT_A_TIME: Final = 1 << 16
+_CONFIDENCE: Final = 0.95
+_POPULATION: Final = 15
+"""Members for each key of the search for the worst case."""
+_GENERATIONS: Final = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A part of all designs, with its exact 95 % confidence interval (Clopper and Pearson 1934)."""
+
+    met: int
+    of: int
+    low: float
+    high: float
+
+    @classmethod
+    def of_draws(cls, met: int, of: int) -> Share:
+        """Of so many independent draws."""
+        from scipy.stats import binomtest
+
+        interval = binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
+        return cls(met, of, float(interval.low), float(interval.high))
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase:
+    """Where a demand is missed by the most, or met by the least."""
+
+    demand: Demand
+    keys: Mapping[str, float]
+    """SI."""
+    value: float
+    """The number there, NaN where it does not exist."""
+    sampled: float
+    """The worst among the draws, before the search."""
+    motion: Motion
+    """The same point followed by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """What `robustness` found."""
+
+    ranges: Ranges
+    count: int
+    seed: int
+    own: Mapping[str, float]
+    """Numbers of the design itself."""
+    values: Mapping[str, Values]
+    """Watched numbers of every draw; NaN where one does not exist."""
+    refused: int
+    shares: tuple[tuple[Demand, Share], ...]
+    """For each demand, how many designs meet it."""
+    all_met: Share | None
+    """How many meet all of them: the yield."""
+    worst: tuple[WorstCase, ...]
+
+
+def robustness(
+    plan: Plan,
+    *,
+    count: int = USUAL_COUNT,
+    seed: int = 1,
+    threads: int | None = None,
+    tell: Callable[[int, int], None] = lambda done, total: None,
+) -> Robustness:
+    """Draw designs within the tolerances of a study and hold them against its specification.
+
+    Args:
+        plan: a study with tolerances.
+        count: independent random draws, at least 1; the confidence interval rests on them.
+        seed: of the draws and of the search for the worst case.
+        threads: all cores unless given.
+        tell: called with the points done and the points in all.
+
+    Raises:
+        ValueError: there are no tolerances.
+    """
+    if not plan.tolerances:
+        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
+    ranges = ranges_of(plan, tolerances=True)
+    watched = tuple(dict.fromkeys((*WATCHED, *(demand.name for demand in plan.demands))))
+    sample = Sample(tuple(ranges.scatter), count, seed)
+
+    def numbers(points: Values) -> dict[str, Values]:
+        columns = ranges.columns(plan, points)
+        return evaluate(plan, columns, points.shape[1], (*watched, "status"), threads)
+
+    parts, drawn = [], []
+    for begin in range(0, count, _AT_A_TIME):
+        end = min(begin + _AT_A_TIME, count)
+        portions = zip(sample.parts(np.arange(begin, end)), ranges.scatter.values(), strict=True)
+        points = np.array([scatter.ppf(portion) for portion, scatter in portions])
+        drawn.append(points)
+        parts.append(numbers(points))
+        tell(end, count)
+    table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    points = np.concatenate(drawn, axis=1)
+
+    met = {demand: demand.met(table[demand.name]) for demand in plan.demands}
+    every = np.logical_and.reduce([*met.values()]) if met else None
+    own = {k.replace(".", "_"): v for k, v in motion_of(plan.device).numbers().items()}
+    return Robustness(
+        ranges,
+        count,
+        seed,
+        own,
+        {name: table[name] for name in watched},
+        int(np.count_nonzero(table["status"])),
+        tuple((demand, Share.of_draws(int(m.sum()), count)) for demand, m in met.items()),
+        None if every is None else Share.of_draws(int(every.sum()), count),
+        tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
+    )
+
+
+def _worst(
+    plan: Plan,
+    ranges: Ranges,
+    demand: Demand,
+    points: Values,
+    table: Mapping[str, Values],
+    numbers: Callable[[Values], Mapping[str, Values]],
+    seed: int,
+) -> WorstCase:
+    """The worst of the draws, made worse by differential evolution within the ranges.
+
+    A range ends where its distribution does, or three standard deviations off.
+    """
+    from scipy.optimize import differential_evolution
+
+    spans = np.array([scatter.span for scatter in ranges.scatter.values()])
+    low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
+
+    def badness(excess: Values, status: Values) -> Values:
+        """Lower is worse; what never happens is worst, what has no motion does not count."""
+        far = 1e6 * abs(demand.limit or 1.0)
+        return np.where(status != 0, far, -np.minimum(excess, far))
+
+    def at(parts: Values) -> Values:
+        found = numbers(low + width * parts.reshape(len(spans), -1))
+        return badness(demand.excess(found[demand.name]), found["status"])
+
+    inside = ((points >= spans[:, :1]) & (points <= spans[:, 1:])).all(axis=0)
+    first = badness(demand.excess(table[demand.name]), table["status"])
+    order = np.argsort(np.where(inside, first, np.inf), kind="stable")
+    members = points[:, order[: max(5, _POPULATION * len(spans))]]
+    started = ((members - low) / width).T
+    if len(started) < 5:
+        rng = np.random.default_rng(seed)
+        started = np.concatenate([started, rng.random((5 - len(started), len(spans)))])
+    search = differential_evolution(
+        at,
+        [(0.0, 1.0)] * len(spans),
+        init=np.clip(started, 0.0, 1.0),
+        maxiter=_GENERATIONS,
+        vectorized=True,
+        updating="deferred",
+        polish=False,
+        tol=1e-10,
+        rng=np.random.default_rng(seed),
+    )
+    best = members[:, :1] if first[order[0]] <= search.fun else low + width * search.x[:, None]
+    columns = {key: values.item() for key, values in ranges.columns(plan, best).items()}
+    motion = follow(plan, columns)
+    value = motion.numbers()[_table_name(demand.name)]
+    return WorstCase(demand, columns, value, float(table[demand.name][order[0]]), motion)
+
+
+def _table_name(name: str) -> str:
+    """The name in the table of quantities of a variable."""
+    from pindrive.study.outputs import NUMBERS
+
+    return NUMBERS[name].name
