@@ -277,8 +277,8 @@ REFUSED = {
     '[axes]\nplate.static = ["1 mN", "2 mN"]': "axes: plate.static is below plate.kinetic at every "
     "point: at most 2 mN, plate.kinetic at least 20 mN",
     'zip = [["plate.static", "plate.kinetic"]]\n[axes]\nplate.static = ["1 mN", "3 mN"]\n'
-    'plate.kinetic = ["2 mN", "4 mN"]': "axes: plate.static is below plate.kinetic at every point: at "
-    "most 3 mN, plate.kinetic at least 2 mN",
+    'plate.kinetic = ["2 mN", "4 mN"]': "axes: plate.static is below plate.kinetic at every "
+    "point: at most 3 mN, plate.kinetic at least 2 mN",
     'zip = [["mass", "drive.stiffness"]]\n[axes]\nmass = ["1 g"]\n'
     'drive.stiffness = ["1 N/m", "2 N/m"]': "zip: "
     "axes that go together must be of one length; drive.mass has 1, drive.stiffness has 2",

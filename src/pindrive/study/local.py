@@ -25,6 +25,8 @@ class Elasticities:
     """The numbers themselves, by their variables, SI."""
     table: Mapping[str, Mapping[str, float]]
     """d ln N / d ln p by number and key; NaN where it does not exist."""
+    duration: float
+    """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
     """Why, for each key with numbers that have no derivative."""
 
@@ -66,7 +68,7 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return float(change / value)
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(tuple(keys), numbers, table, gaps)
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps)
 
 
 def _shares(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:

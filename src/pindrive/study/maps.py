@@ -188,8 +188,14 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
             band: dict[str, Any] = {"color": colour, "alpha": 0.18, "lw": 0.0}
             axes.fill_between(x, scale * panel.low, scale * panel.high, **band)
         few = len(x) <= 40
-        axes.plot(x, scale * panel.values, color=colour, label=label, marker="." if few else "")
+        marker = "." if few else ""
+        settled = np.where(panel.unsettled, np.nan, scale * panel.values)
+        axes.plot(x, settled, color=colour, label=label, marker=marker, gid="settled")
+        if panel.unsettled.any() and len(panels) > 1:
+            loose: dict[str, Any] = {"color": colour, "lw": 0.7, "ls": (0, (1, 1.5)), "zorder": 1}
+            axes.plot(x, scale * panel.values, **loose, gid="unsettled")
         if len(panels) == 1:
+            axes.plot(x, scale * panel.values, color=colour, zorder=1, gid="unsettled")
             _shade_gaps(axes, x, panel)
     axes.margins(x=0.0)
     axes.set_ylabel(axis_label(panels[0].number))
@@ -217,6 +223,10 @@ def _key(panels: Sequence[Panel]) -> list[Artist]:
         handles.append(Patch(**_HATCH, label=f"not settled{most} in the time followed"))
     if marked and any(panel.refused.any() for panel in panels):
         handles.append(Patch(color=_REFUSED, label="no motion: contradictory values"))
+    if not marked and any((p.unsettled & ~np.isnan(p.values)).any() for p in panels):
+        handles.append(
+            Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled in the time followed")
+        )
     if median and not maps:
         handles.append(Line2D([], [], color=GREY, label="median"))
         handles.append(

@@ -126,7 +126,10 @@ def elasticity(value: float) -> str:
 def _notes(found: Influence) -> list[str]:
     """What the tables leave out, and from how much they come."""
     design = f"{count(found.points)} points (Sobol' design of {count(found.count)} rows)"
-    lines = [f"{design}; ± half of the 95 % bootstrap interval; · below 0.005."]
+    lines = [
+        f"{design}; ± half of the 95 % bootstrap interval; · below 0.005.",
+        f"Elasticities hold over a fixed time, the {found.near.duration:.4g} s followed.",
+    ]
     if found.refused:
         lines.append(f"{percent(found.refused, found.points)} of them have no motion: refused.")
     partly = [

@@ -64,11 +64,14 @@ class View:
 
         self.path = str(path)
         try:
+            with open(path, "rb"):
+                pass  # says more of what is wrong than HDF5 does
             self.data: xr.Dataset = xr.open_dataset(path, engine="h5netcdf")
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
             raise ValueError(f"{self.path}: cannot be read: {reason}") from None
         if "identity" not in self.data.attrs:
+            self.data.close()
             raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
         self.keys = [
             str(name)
