@@ -217,9 +217,12 @@ def test_the_command_prints_tables_and_draws(tmp_path: Path) -> None:
     assert said.exit_code == 0, said.output
     lines = [line.split() for line in said.stdout.splitlines()]
     assert ["number", "F_p", "F_f", "m", "k", "ζ", "v_p"] in lines
-    (near, first, total) = (line[1:] for line in lines if line[:1] == ["settling_time"])
+    near, first, total = (line[1:] for line in lines if line[:1] == ["settling_time"])
     row = elasticities(load_study(STUDY), KEYS, LINKS).table["transient_settling_time"]
     assert near[2] == f"{row['drive.mass']:+.2f}"
+    over = influence(load_study(STUDY), tolerances=True, count=128).over["transient_settling_time"]
+    assert f"{over.first.value[1]:.2f}" in first
+    assert f"{over.total.value[1]:.2f}" in total
     assert "1 024 points (Sobol' design of 128 rows)" in said.stdout
     assert "Nowhere: peak_stretch" in said.stdout
     assert "which parameter matters" in target.read_text("utf-8")

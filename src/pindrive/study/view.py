@@ -163,7 +163,7 @@ class View:
             ):
                 chosen.append(key)
         if x is None and y:
-            chosen = [key for key in chosen if key != y][:1] + [y]
+            chosen = [*[key for key in chosen if key != y][:1], y]
         if not chosen or (x is None and chosen == [y]):
             raise ValueError(f"{self.path}: nothing is left to draw over; leave out --at or --y")
         return chosen[0], chosen[1] if len(chosen) > 1 else ""
