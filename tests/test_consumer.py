@@ -91,6 +91,23 @@ def test_add_subdirectory(tmp_path: Path) -> None:
 def test_ctest(tmp_path: Path) -> None:
     build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release")
     run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
+    same_however_it_is_run(tmp_path / "fuzz", tmp_path / "fuzz.log")
+
+
+def same_however_it_is_run(fuzz: Path, log: Path) -> None:
+    """Fuzz finds the same on one thread, on three, and in two goes from its log."""
+
+    def found(*options: str | Path) -> str:
+        return re.sub(r"seconds .*", "", run(fuzz, *options))
+
+    once = found("3000", "5")
+    assert "drives 3000 of 3000" in once
+    assert found("3000", "5", "--threads", "3") == once
+    found("1000", "5", "--log", log)
+    assert found("3000", "5", "--log", log) == once
+    other = attempt(fuzz, "3000", "6", "--log", log)
+    assert other.returncode == 2
+    assert "is not the log of seed 6" in other.stderr
 
 
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
