@@ -115,6 +115,15 @@ def test_the_file_says_everything() -> None:
         assert "transient_peak_stretch" not in data, "the finger is rigid"
 
 
+def test_the_device_may_stand_in_the_study() -> None:
+    device = (HERE / "minimal.toml").read_text()
+    Path("whole.toml").write_text(f'{device}\n[axes]\ndrive.mass = ["2 g", "3 g"]\n')
+    plan('[axes]\nmass = ["2 g", "3 g"]\n')
+    assert run("whole.toml").exit_code == run("study.toml").exit_code == 0
+    with xr.open_dataset("whole.nc") as one, xr.open_dataset("study.nc") as other:
+        xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+
+
 def test_points_without_numbers_are_marked_and_counted() -> None:
     plan('[axes]\nplate.kinetic = ["1 mN", "20 mN"]\nplate.static = ["2 mN", "30 mN"]\n')
     said = run("study.toml").stdout.splitlines()

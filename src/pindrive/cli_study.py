@@ -50,7 +50,7 @@ def sweep(
         plan = load_study(study)
         if not plan.dimensions:
             raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
-        check_distinct([study, plan.device.path, target])
+        check_distinct([*{study, plan.device.path}, target])
         if cluster:
             from pindrive.study.cluster import on_cluster
 
@@ -165,7 +165,7 @@ def sensitivity(
 
     with refusing(), ExitStack() as stack:
         plan = load_study(study)
-        check_distinct([study, plan.device.path, *([plot] if plot else [])])
+        check_distinct([*{study, plan.device.path}, *([plot] if plot else [])])
         kind = figure_format(plot) if plot else ""
         part = stack.enter_context(atomic_write(plot)) if plot else None
         with _bar() as tell:
@@ -204,7 +204,7 @@ def robustness(
 
     with refusing(), ExitStack() as stack:
         plan = load_study(study)
-        check_distinct([study, plan.device.path, *([plot] if plot else [])])
+        check_distinct([*{study, plan.device.path}, *([plot] if plot else [])])
         kind = figure_format(plot) if plot else ""
         part = stack.enter_context(atomic_write(plot)) if plot else None
         with _bar() as tell:
