@@ -69,7 +69,9 @@ def sweep(
                     tell=tell,
                 )
         except KeyboardInterrupt:
-            typer.echo("stopped; finished chunks are kept, --resume goes on with them", err=True)
+            kept = target.with_name(f"{target.name}.journal").exists()
+            words = "finished chunks are kept, --resume goes on with them"
+            typer.echo(f"stopped; {words if kept else 'no chunk was finished yet'}", err=True)
             os._exit(130)  # without waiting for the chunks under way
     for line in sweep_report(plan, done):
         typer.echo(line)
