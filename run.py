@@ -316,9 +316,9 @@ def simulate() -> int:
 
 
 def test(arguments: list[str]) -> int:
-    """The tests."""
+    """The tests, on all cores; `-n 0` keeps them in one process."""
     install({"test"})
-    return run("python", "-m", "pytest", *arguments)
+    return run("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal", *arguments)
 
 
 def bench(arguments: list[str]) -> int:

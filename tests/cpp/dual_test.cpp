@@ -17,7 +17,28 @@ using Dual = pd::Dual<double>;
 constexpr double followed = 0.4;
 /// Mass, stiffness, damping, kinetic and static friction of plate and finger, skin stiffness, four
 /// rows (time, value) of mouse velocity, three of load, start.
-enum Parameter { m, k, b, fp, sp, ff, sf, skin, t1, t2, v0, v1, v2, l0, l1, x, v, fall, knee, all };
+enum Parameter : unsigned char {
+  m,
+  k,
+  b,
+  fp,
+  sp,
+  ff,
+  sf,
+  skin,
+  t1,
+  t2,
+  v0,
+  v1,
+  v2,
+  l0,
+  l1,
+  x,
+  v,
+  fall,
+  knee,
+  all
+};
 
 template <class T>
 struct Run {
