@@ -247,8 +247,9 @@ class Certifier {
       low = high;
     }
     worst(result_.motion_law, errors.law, force_scale_);
-    // In the velocity of a mode, an error of the position counts by its fastest rate.
-    worst(result_.kinematics, errors.velocity, std::max(v_scale_, x_scale_ * fastest));
+    // An error in the rate of the position counts by how far it moves the pin in a mode.
+    const T moves = x_scale_ * std::max(fastest, 1 / stage.span);
+    worst(result_.kinematics, errors.velocity, std::max(v_scale_, moves));
     worst(result_.kinematics, errors.acceleration * drive_.mass, force_scale_);
     worst(result_.friction_law, errors.friction, force_scale_);
     worst(result_.sticking, errors.sticking, v_scale_);
