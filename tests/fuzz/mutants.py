@@ -43,10 +43,10 @@ MUTANTS = (
         "overload(stuck, now, x, skin_force) == 7 * side ?",
     ),
     Mutant(
-        "never sticks on arrival",
+        "crosses where a tenth of the capacity is left",
         "friction.hpp",
-        "overload(stuck, now, x, skin_force) == side ?",
-        "overload(stuck, now, x, skin_force) != 7 * side ?",
+        "capacity(stuck, now).value + blur",
+        "T(0.9) * capacity(stuck, now).value + blur",
     ),
     Mutant(
         "static friction of the plate is its kinetic friction",
