@@ -1,10 +1,8 @@
 """Throughput of `simulate_batch` beside a compiled Moreau-Jean stepper, on one thread, in one run.
 
-The stepper is the set-valued one at its best: the midpoint rule for spring and damper, friction
-implicit and solved exactly in a few comparisons (no iteration, no regularisation), the coefficients
-of a step computed once for a drive, compiled by numba. It is timed twice: keeping nothing but the
-last state, and measuring on the way what a stepper can of the numbers that `simulate_batch` gives.
-Its error is the largest |x - x_exact| over its steps, as a part of the release displacement.
+The stepper (racing/moreau_jean.py) is timed twice: keeping nothing but the last state, and
+measuring on the way what a stepper can of the numbers that `simulate_batch` gives. Its error is the
+largest |x - x_exact| over its steps, as a part of the release displacement.
 """
 
 from __future__ import annotations
@@ -20,132 +18,20 @@ from typing import Any
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from pindrive import Contact, Drive, Motion, simulate, simulate_batch
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
+sys.path.insert(0, str(ROOT))
 
-DURATION = 0.3  # s
-ORDER = (
-    "mass",
-    "stiffness",
-    "damping",
-    "plate_kinetic",
-    "finger_kinetic",
-    "mouse_velocity",
-    "displacement",
+from benchmarks.racing.moreau_jean import last_states, numbers, trajectory  # noqa: E402
+from benchmarks.racing.releases import (  # noqa: E402
+    DURATION,
+    Floats,
+    columns,
+    drawn,
+    exact_positions,
 )
-Floats = NDArray[np.float64]
-
-
-def drawn(count: int, seed: int) -> dict[str, Floats]:
-    """Drives and releases, even over the ranges of a tactile mouse; SI."""
-    uniform = np.random.default_rng(seed).uniform
-    mass, stiffness = uniform(2e-3, 20e-3, count), uniform(20.0, 400.0, count)
-    return {
-        "mass": mass,
-        "stiffness": stiffness,
-        "damping": 2.0 * uniform(0.01, 0.5, count) * np.sqrt(mass * stiffness),
-        "plate_kinetic": uniform(5e-3, 100e-3, count),
-        "finger_kinetic": uniform(1e-3, 50e-3, count),
-        "mouse_velocity": uniform(20e-3, 300e-3, count),
-        "displacement": uniform(0.5e-3, 3e-3, count),
-    }
-
-
-# ---- the stepper ---------------------------------------------------------------------------------
-
-
-@numba.njit(inline="always")
-def friction_step(free: float, weight: float, plate: float, finger: float, level: float) -> float:
-    """The w with  weight w + plate Sgn(w - level) + finger Sgn(w) ∋ free,  level >= 0."""
-    if free < -plate - finger:
-        return (free + plate + finger) / weight
-    if free <= finger - plate:
-        return 0.0
-    if free < weight * level + finger - plate:
-        return (free + plate - finger) / weight
-    if free <= weight * level + finger + plate:
-        return level
-    return (free - plate - finger) / weight
-
-
-@numba.njit(inline="always")
-def coefficients(m: float, k: float, b: float, h: float) -> tuple[float, float, float]:
-    """Of the step  weight w + impulses = of_v v + of_x x,  by the midpoint rule."""
-    return m + h * b / 2 + h * h * k / 4, m - h * b / 2 - h * h * k / 4, -h * k
-
-
-@numba.njit
-def last_states(drives: Floats, h: float, steps: int, out: Floats) -> None:
-    """Position and velocity of every drive after so many steps."""
-    for i in range(drives.shape[1]):
-        m, k, b, plate, finger, level, x = drives[:, i]
-        weight, of_v, of_x = coefficients(m, k, b, h)
-        v = level
-        for _ in range(steps):
-            w = friction_step(of_v * v + of_x * x, weight, h * plate, h * finger, level)
-            x += h / 2 * (v + w)
-            v = w
-        out[i, 0] = x
-        out[i, 1] = v
-
-
-@numba.njit
-def trajectory(drive: Floats, h: float, steps: int, out: Floats) -> None:
-    """The position of one drive at every step."""
-    m, k, b, plate, finger, level, x = drive
-    weight, of_v, of_x = coefficients(m, k, b, h)
-    v = level
-    out[0] = x
-    for n in range(steps):
-        w = friction_step(of_v * v + of_x * x, weight, h * plate, h * finger, level)
-        x += h / 2 * (v + w)
-        v = w
-        out[n + 1] = x
-
-
-@numba.njit
-def numbers(drives: Floats, h: float, steps: int, out: Floats) -> None:
-    """Peak, trough, return velocity and settling time; use of each contact."""
-    path = np.empty(steps + 1)
-    for i in range(drives.shape[1]):
-        m, k, b, plate, finger, level, x = drives[:, i]
-        weight, of_v, of_x = coefficients(m, k, b, h)
-        v = level
-        out[i] = 0.0
-        out[i, 0] = out[i, 2] = path[0] = x
-        for n in range(steps):
-            w = friction_step(of_v * v + of_x * x, weight, h * plate, h * finger, level)
-            middle = (v + w) / 2
-            x += h * middle
-            path[n + 1] = x
-            if x > out[i, 0]:
-                out[i, 0], out[i, 1] = x, n * h
-            if x < out[i, 2]:
-                out[i, 2], out[i, 3] = x, n * h
-            if w < out[i, 4]:
-                out[i, 4], out[i, 5] = w, n * h
-            if w == 0.0:
-                out[i, 6] += h
-            if w == level:
-                out[i, 7] += h
-            out[i, 8] += h * abs(middle)
-            out[i, 9] += h * abs(middle - level)
-            if v * w < 0.0 or (w == 0.0 and v != 0.0):
-                out[i, 10] += 1.0
-            if (v - level) * (w - level) < 0.0 or (w == level and v != level):
-                out[i, 11] += 1.0
-            v = w
-        band = 0.05 * abs(path[0] - x)
-        n = steps
-        while n > 0 and abs(path[n] - x) <= band:
-            n -= 1
-        out[i, 12] = n * h
-        out[i, 13], out[i, 14] = finger * out[i, 8], plate * out[i, 9]
-
 
 # ---- truth ---------------------------------------------------------------------------------------
 
@@ -165,25 +51,17 @@ def stepper_errors(drives: Floats, h: float, steps: int) -> Floats:
     times = h * np.arange(steps + 1)
     errors, path = np.empty(drives.shape[1]), np.empty(steps + 1)
     for i, drive in enumerate(drives.T):
-        trajectory(drive, h, steps, path)
+        trajectory(drive, h, 1, path)
         errors[i] = np.abs(path - alone(drive).position(times)).max() / drive[-1]
     return errors
 
 
 def exact_errors(drives: Floats, count: int = 31) -> Floats:
     """The same of pindrive against thirty digits, at so many times."""
-    from oracle import mp_oracle
-
     times = np.linspace(0.0, DURATION, count)
-    errors = np.empty(drives.shape[1])
-    for i, drive in enumerate(drives.T):
-        m, k, b, plate, finger, level, x = (float(value) for value in drive)
-        pin = mp_oracle.Pin(m, k, b, plate, plate, finger, finger, level, x)
-        path = mp_oracle.solve(pin, DURATION)
-        true = [path.state(float(time))[0] for time in times]
-        ours = alone(drive).position(times)
-        errors[i] = max(abs(float(a - b)) for a, b in zip(ours.tolist(), true, strict=True)) / x
-    return errors
+    ours = np.array([alone(drive).position(times) for drive in drives.T])
+    off = np.abs(ours - exact_positions(drives, times)).astype(np.float64)
+    return np.asarray(off.max(axis=1) / drives[-1])
 
 
 # ---- the race ------------------------------------------------------------------------------------
@@ -217,7 +95,7 @@ def main() -> None:
     from benchmarks.simulate import machine
 
     points = drawn(given.count, given.seed)
-    drives = np.array([points[name] for name in ORDER])
+    drives = columns(points)
     steps = round(DURATION / given.step)
     fewer = drives[:, : max(1, given.count // 20)]  # the stepper is slow
     states, table = np.empty((fewer.shape[1], 2)), np.empty((fewer.shape[1], 15))
