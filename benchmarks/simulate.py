@@ -1,9 +1,8 @@
 """Time of one `simulate` beside SciPy's event location on the same drive.
 
 SciPy gets the modes spelled out, so that it never integrates across a jump: each slide is a smooth
-problem ended by an event, and stuck phases cost it nothing. Its steps are kept to a thirtieth of a
-period: with longer ones a short slide fits into one step, which then finds only the event that the
-slide began with, for ever. This is the careful way to use a general solver, not the naive one.
+problem ended by an event, and stuck phases cost it nothing (racing/modes.py). This is the careful
+way to use a general solver, not the naive one; `peers` has more of them.
 """
 
 from __future__ import annotations
@@ -11,18 +10,23 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
-from math import copysign, sqrt
 from pathlib import Path
 from statistics import median
 from timeit import Timer
 
-from scipy.integrate import solve_ivp
+import numpy as np
 
 from pindrive import Drive, Motion, simulate
 from pindrive.config import load
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from benchmarks.racing.modes import Pin, follow
+from benchmarks.racing.with_scipy import slider
 
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "tactile-mouse.toml"
 
@@ -39,50 +43,18 @@ class Release:
 def with_scipy(release: Release, method: str, rtol: float) -> tuple[float, float]:
     """When and where the pin comes to rest on the finger, mode by mode."""
     drive = release.drive
-    m, k, b = drive.mass, drive.stiffness, drive.damping
-    kinetic = (drive.plate.kinetic, drive.finger.kinetic)
-    static = (drive.plate.static_friction, drive.finger.static_friction)
-    levels = (release.mouse_velocity, 0.0)
-    t, x, v = 0.0, release.displacement, levels[0]
-    sliding = [0.0, copysign(1.0, v)]  # at plate and finger; 0 is stuck
-
-    while True:
-        if 0.0 in sliding:
-            stuck = sliding.index(0.0)
-            need = k * x + b * v + kinetic[1 - stuck] * sliding[1 - stuck]
-            if abs(need) <= static[stuck]:
-                if v == 0.0:
-                    return t, x
-                hold = (copysign(static[stuck], v) - need) / (k * v)
-                t, x, need = t + hold, x + hold * v, copysign(static[stuck], v)
-            sliding[stuck] = -copysign(1.0, need)
-        friction = -sum(f * s for f, s in zip(kinetic, sliding, strict=True))
-
-        def slide(_t: float, y: list[float], friction: float = friction) -> tuple[float, float]:
-            return y[1], (friction - b * y[1] - k * y[0]) / m
-
-        guards = []
-        for level, side in zip(levels, sliding, strict=True):
-
-            def guard(_t: float, y: list[float], level: float = level) -> float:
-                return y[1] - level
-
-            guard.terminal, guard.direction = True, -side  # type: ignore[attr-defined]
-            guards.append(guard)
-        atol = [rtol * abs(release.displacement), rtol * abs(release.mouse_velocity)]
-        out = solve_ivp(
-            slide,
-            (t, t + 10.0),
-            [x, v],
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            max_step=0.2 * sqrt(m / k),
-            events=guards,
-        )
-        reached = next(i for i, times in enumerate(out.t_events) if len(times))
-        t, x, v = float(out.t[-1]), float(out.y[0, -1]), levels[reached]
-        sliding[reached] = 0.0
+    pin = Pin(
+        drive.mass,
+        drive.stiffness,
+        drive.damping,
+        (drive.plate.kinetic, drive.finger.kinetic),
+        (drive.plate.static_friction, drive.finger.static_friction),
+        (release.mouse_velocity, 0.0),
+        release.displacement,
+    )
+    rest = follow(pin, slider(method, rtol, part=30), np.empty(0), 10.0).rest
+    assert rest is not None
+    return rest
 
 
 def per_call(call: Callable[[], object], rounds: int) -> float:

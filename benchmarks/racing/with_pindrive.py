@@ -1,0 +1,48 @@
+"""Pindrive: one drive at a time as the others, and many at once with all their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from time import process_time
+
+import numpy as np
+
+from benchmarks.racing.race import TIMES, Lap, Racer, one_by_one
+from benchmarks.racing.releases import DURATION, ORDER, Floats, drawn, exact
+from pindrive import Contact, Drive, simulate, simulate_batch
+
+MANY = 20_000  # other drives of the same distribution, for the time of a batch
+
+
+def racers(_everything: bool) -> Iterator[Racer]:
+    """Single and batch; there is nothing to set."""
+    yield Racer("pindrive", "simulate", "", one_by_one(single))
+    yield Racer("pindrive", "simulate_batch", "", batch)
+
+
+def single(drive: Floats) -> Floats:
+    """Positions of one drive."""
+    m, k, b, plate, finger, level, x = drive.tolist()
+    pin = Drive(mass=m, stiffness=k, damping=b, plate=Contact(plate), finger=Contact(finger))
+    motion = simulate(pin, mouse_velocity=level, displacement=x, duration=DURATION)
+    return np.asarray(motion.position(TIMES))
+
+
+def batch(drives: Floats) -> Lap:
+    """All numbers on one thread; its error is that of its largest and smallest position."""
+    points = drawn(MANY, seed=2)
+    begin = process_time()
+    simulate_batch(**points, duration=DURATION, threads=1)
+    seconds = (process_time() - begin) / MANY
+    given = dict(zip(ORDER, drives, strict=True))
+    numbers = simulate_batch(**given, duration=DURATION, threads=1)
+    errors = np.zeros(drives.shape[1])
+    for i, drive in enumerate(drives.T.tolist()):
+        path = exact(*drive)
+        for name in ("peak", "trough"):
+            time = float(numbers[f"transient_{name}_time"][i])
+            told = float(numbers[f"transient_{name}_displacement"][i])
+            if np.isfinite(time):
+                off = abs(float(path.state(time)[0] - told)) / drive[-1]
+                errors[i] = max(errors[i], off)
+    return Lap(np.empty(0), {}, seconds, errors)
