@@ -199,7 +199,10 @@ int main(int argc, char** argv) {
                  "       fuzz --replay FILE...\n");
     return 2;
   }
-  const auto interrupt = [](int) { interrupted = 1; };
+  const auto interrupt = [](int signal) {
+    interrupted = 1;
+    std::signal(signal, SIG_DFL);  // asked twice, it does not wait for the drives at work
+  };
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   return run(options);
