@@ -70,6 +70,8 @@ def entered(
         from benchmarks.racing import with_siconos
 
         program = with_siconos.python(siconos)
+        if program is None and siconos:
+            raise ValueError(f"--siconos: {siconos!r} is no Python that has siconos.kernel")
         if program is None:
             absent.append("Siconos")
         else:
@@ -124,17 +126,23 @@ def main() -> None:
     parser.add_argument("--laps", type=int, default=7, help="of which the median counts, at most")
     parser.add_argument("--budget", type=float, default=1.0, help="for more laps of a racer, s")
     parser.add_argument(
-        "--only", action="append", default=[], metavar="PEER", help="again and again"
+        "--only", action="append", default=[], choices=[*PEERS, "Siconos"], help="may be repeated"
     )
     parser.add_argument("--tried", action="store_true", help="whatever else was tried, too")
     parser.add_argument("--siconos", metavar="PYTHON", help="a Python that has Siconos")
     parser.add_argument("--figure", type=Path, help="draw error against time into this file")
     given = parser.parse_args()
 
+    if min(given.count, given.laps) < 1:
+        parser.error("--count and --laps must be at least 1")
+
     from benchmarks.simulate import machine
 
     console, absent = Console(width=115, highlight=False), list[str]()
-    racers = list(entered(given.tried, given.siconos, given.only, absent))
+    try:
+        racers = list(entered(given.tried, given.siconos, given.only, absent))
+    except ValueError as error:
+        parser.error(str(error))
     drives = columns(drawn(given.count, given.seed))
     with console.status("thirty digits") as status:
         truth = exact_positions(drives, TIMES).astype(np.float64)
