@@ -190,7 +190,8 @@ def test_random_motions_against_differences(release: Release) -> None:
         wide, narrow = (up - down) / (2 * step), (near_up - near_down) / (step / 2)
         size = np.maximum(np.abs(at), 1e-15)  # less is what has died away
         size[: len(times)] = max(1e-15, np.abs(at[: len(times)]).max())
-        near = 1e-4 * np.maximum(np.abs(narrow), size / abs(values[name]))
+        rounding = 1e-15 * np.abs(at[: len(times)]).max() / step  # of two positions
+        near = rounding + 1e-4 * np.maximum(np.abs(narrow), size / abs(values[name]))
         bent = near_up + near_down - 2 * at
         # Where two differences agree, and both sides do, the derivative is theirs.
         tells = (np.abs(wide - narrow) <= near / 4) & (np.abs(bent) <= step * near)
