@@ -53,7 +53,7 @@ def main() -> None:
     done.to_dataset()
     numbers = perf_counter() - begin
 
-    print(f"{platform.platform()}, {os.cpu_count()} processors, Python {platform.python_version()}")
+    print(f"{platform.system()}, {os.cpu_count()} processors, Python {platform.python_version()}")
     pins = done.pins
     print(
         f"{len(pins)} pins, {path.end - path.begin:.2f} s of hand motion: "

@@ -72,7 +72,7 @@ def machine() -> str:
     processor = models[0] if models else platform.processor() or platform.machine()
     packages = ", ".join(f"{name} {version(name)}" for name in ("pindrive", "scipy", "numpy"))
     return (
-        f"{processor}, {os.cpu_count()} cores, {platform.system()} {platform.release()}\n"
+        f"{processor}, {os.cpu_count()} cores, {platform.system()}\n"
         f"Python {platform.python_version()}, {packages}"
     )
 
