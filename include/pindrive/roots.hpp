@@ -29,6 +29,7 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   constexpr T rounding = 2 * std::numeric_limits<T>::epsilon();
   const Path<T> first = path.derivative(oscillator), second = first.derivative(oscillator);
   T tau = guess > low && guess < high ? guess : low + (high - low) / 2;
+  T step = high - low, step_before = step;
   for (;;) {
     const Transition<T> moved = oscillator.after(tau);
     const T value = path.at(moved, tau), slope = first.at(moved, tau);
@@ -36,8 +37,12 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
     const T newton = value / slope, bend = newton * second.at(moved, tau) / (2 * slope);
     T next = tau - (abs(bend) < T(0.5) ? newton / (1 - bend) : newton);
     if (abs(newton) <= rounding * tau) return next;
-    if (!(next > low && next < high)) next = low + (high - low) / 2;
+    // Steps that do not shrink creep through rounding: halving the bracket comes to an end.
+    const bool creeps = 2 * abs(next - tau) > step_before;
+    if (creeps || !(next > low && next < high)) next = low + (high - low) / 2;
     if (next <= low || next >= high) return next;
+    step_before = step;
+    step = abs(next - tau);
     tau = next;
   }
 }
