@@ -1,4 +1,4 @@
-"""Each example of the README runs by its one command, and its picture is in the docs."""
+"""The README's examples of the whole device: each runs by its one command, its picture is in the docs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from pindrive.cli import app
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = re.findall(
-    r"^\.venv/bin/(.*examples/.*)$", (ROOT / "README.md").read_text("utf-8"), re.M
+    r"^\.venv/bin/(.*examples/(?:letter_a|tactile-reader).*)$",
+    (ROOT / "README.md").read_text("utf-8"),
+    re.M,
 )
 SHORTER = {"speed": ["--pitch", "4 mm", "--slowest", "0.05 m/s", "--fastest", "0.2 m/s"]}
 """What each adds here, to be quick; it changes nothing in what the command takes."""
