@@ -138,6 +138,7 @@ class Simulation {
           at_once ? T(0) : first_root(flow.oscillator, guard, 1, apart ? first.tau : row_ - time_);
       if ((exit.cause == Cause::slower || exit.cause == Cause::faster) && exit.tau < border.tau)
         border = exit;
+      if (exit.cause == Cause::gives_way && turns_back(flow, guard, exit)) return;
       if (exit.tau == never || exit.tau > first.tau) return;
       if (exit.tau == first.tau && exit.cause == first.cause) {
         first.plate = first.plate || exit.plate;
@@ -203,6 +204,19 @@ class Simulation {
     if (first.cause == Cause::gives_way && border.tau - first.tau <= rounding * (time_ + first.tau))
       return border;
     return first;
+  }
+
+  /// Gripping skin whose vibration reaches its limit by no more than rounding turns back there and,
+  /// with nothing that drives it, never goes beyond.
+  static bool turns_back(const Flow<T>& flow, const Path<T>& guard, const Exit& exit) {
+    using std::abs;
+    const Oscillator<T>& oscillator = flow.oscillator;
+    const bool vibrates = flow.position.oscillates() && guard.straight() &&
+                          oscillator.oscillates() && !(oscillator.alpha() > 0);
+    if (!vibrates || exit.tau == T(0) || exit.tau == never) return false;
+    const T v = flow.velocity.at(oscillator, exit.tau);
+    const T swing = oscillator.omega() * flow.amplitude();
+    return exit.side * v * abs(v) <= rounding * swing * swing;
   }
 
   static int side_after_zero(const Oscillator<T>& oscillator, Path<T> guard) {
