@@ -88,7 +88,7 @@ class Certifier {
     Line<T> plate_velocity, load;
     T span;
     bool waves;
-    Path<T> x_rate, v_rate, finger_rate;
+    Path<T> x_rate, acceleration, finger_rate;
     std::array<Watch, 4> watches;
     int count{0};
   };
@@ -107,10 +107,9 @@ class Certifier {
                 motion_.inputs().plate_load.from(segment.begin),
                 std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
                 flow.position.oscillates() || flow.velocity.oscillates() ||
-                    flow.acceleration.oscillates() || segment.plate_force.oscillates() ||
-                    segment.finger_force.oscillates(),
+                    segment.plate_force.oscillates() || segment.finger_force.oscillates(),
                 flow.position.derivative(flow.oscillator),
-                flow.velocity.derivative(flow.oscillator),
+                flow.acceleration(),
                 segment.finger_force.derivative(flow.oscillator),
                 {}};
     const Mode mode = segment.mode;
@@ -159,7 +158,7 @@ class Certifier {
             moved,
             flow.position.at(moved, tau),
             flow.velocity.at(moved, tau),
-            flow.acceleration.at(moved, tau),
+            stage.acceleration.at(moved, tau),
             segment.plate_force.at(moved, tau),
             segment.finger_force.at(moved, tau)};
   }
@@ -213,7 +212,7 @@ class Certifier {
 
   /// The largest error of each law in a segment, in its own unit.
   struct Errors {
-    T law{0}, velocity{0}, acceleration{0}, friction{0}, sticking{0};
+    T law{0}, velocity{0}, friction{0}, sticking{0};
   };
 
   /// Powers, and the sums of them and of v and a over a panel.
@@ -250,7 +249,6 @@ class Certifier {
     // An error in the rate of the position counts by how far it moves the pin in a mode.
     const T moves = x_scale_ * std::max(fastest, 1 / stage.span);
     worst(result_.kinematics, errors.velocity, std::max(v_scale_, moves));
-    worst(result_.kinematics, errors.acceleration * drive_.mass, force_scale_);
     worst(result_.friction_law, errors.friction, force_scale_);
     worst(result_.sticking, errors.sticking, v_scale_);
     return from;
@@ -312,7 +310,6 @@ class Certifier {
     using std::abs;
     const Mode mode = stage.segment.mode;
     raise(errors.velocity, stage.x_rate.at(s.moved, s.tau) - s.v);
-    raise(errors.acceleration, stage.v_rate.at(s.moved, s.tau) - s.a);
     if (mode.finger == Slide::gripping)
       raise(errors.velocity, stage.finger_rate.at(s.moved, s.tau) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +

@@ -43,22 +43,18 @@ class Oscillator {
     const T omega0 = sqrt(omega0_squared_);
     discriminant_ = (omega0 - abs(alpha_)) * (omega0 + abs(alpha_));
     omega_ = sqrt(abs(discriminant_));
-    hurry_ = omega0 + abs(alpha_);
-    if (discriminant_ <= 0) {
-      // The root that needs no subtraction first; the other from their product ω₀².
-      const T large = alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_;
-      gentle_ = omega0_squared_ / large;
-    }
   }
 
   T alpha() const { return alpha_; }                    ///< α = −c/2m, 1/s
   T omega0_squared() const { return omega0_squared_; }  ///< ω₀² = κ/m, 1/s²
   T omega() const { return omega_; }                    ///< |ω₀² − α²|^½, rad/s
   bool oscillates() const { return discriminant_ > 0; }
+  /// No part of the motion changes at more than twice the root of this rate, 1/s².
+  T hurry_squared() const { return omega0_squared_ + alpha_ * alpha_; }
   T period() const { return oscillates() ? 2 * pi / omega_ : std::numeric_limits<T>::infinity(); }
 
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
-  T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle_ : alpha_ + omega_; }
+  T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
 
   /// The second derivative of a free oscillation from its value and slope.
   T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
@@ -70,7 +66,7 @@ class Oscillator {
     using std::expm1;
     using std::sin;
     if (tau == 0) return {T(0), tau};
-    if (hurry_ * tau < early) return soon_after(tau);
+    if (hurry_squared() * tau * tau < early * early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
     if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
       return damped(tau, cosine_series(z), tau * sine_series(z));
@@ -78,10 +74,16 @@ class Oscillator {
       const T angle = omega_ * tau;
       return damped(tau, cos(angle) - 1, sin(angle) / omega_);
     }
-    const auto [gentle, gentle_change] = exponential(gentle_ * tau);
-    const T apart = to_other_root();
-    const T gain = gentle * expm1(apart * tau) / apart;
-    return {gentle_change - gentle_ * gain, gain};
+    const T rate = gentle(), apart = to_other_root();
+    const auto [decay, decay_change] = exponential(rate * tau);
+    const T gain = decay * expm1(apart * tau) / apart;
+    return {decay_change - rate * gain, gain};
+  }
+
+  /// The same for half a period: where a velocity has come from zero to zero again.
+  Transition<T> half_turn() const {
+    using std::exp;
+    return {-1 - exp(alpha_ * (pi / omega_)), T(0)};
   }
 
   /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
@@ -93,12 +95,12 @@ class Oscillator {
       // The phase in (0, π], by one formula for an oscillation and its mirror image.
       const T cosine = slope - alpha_ * value;
       const int mirror = cosine < 0 ? -1 : 1;
-      T angle = atan2(-mirror * value * omega_, mirror * cosine);
+      T angle = value == 0 ? T(0) : atan2(-mirror * value * omega_, mirror * cosine);
       if (angle <= 0) angle += pi;
       if (alpha_ * angle < -extinct * omega_) return {never, never};
       return {angle / omega_, pi / omega_};
     }
-    const T ratio = value / (gentle_ * value - slope), apart = to_other_root();
+    const T ratio = value / (gentle() * value - slope), apart = to_other_root();
     if (!(ratio > 0) || apart * ratio <= -1) return {never, never};
     return {omega_ > 0 ? log1p(apart * ratio) / apart : ratio, never};
   }
@@ -137,7 +139,9 @@ class Oscillator {
                                      (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
   }
 
-  /// From the gentle one of two real rates to the other: −2ω in a decay, 2ω in a growth.
+  /// The gentle one of two real rates: from the other, which needs no subtraction, and ω₀².
+  T gentle() const { return omega0_squared_ / (alpha_ < 0 ? alpha_ - omega_ : alpha_ + omega_); }
+  /// From it to the other: −2ω in a decay, 2ω in a growth.
   T to_other_root() const { return alpha_ < 0 ? -2 * omega_ : 2 * omega_; }
 
   struct Exponential {
@@ -162,7 +166,7 @@ class Oscillator {
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
   }
 
-  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{}, gentle_{}, hurry_{};
+  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{};
 };
 
 /// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
@@ -186,6 +190,16 @@ struct Path {
 
   Path derivative(const Oscillator<T>& oscillator) const {
     return {slope + drift, slope, oscillator.bend(value, slope), curvature, T(0)};
+  }
+  struct Rates {
+    T first, second, third;
+  };
+  /// Its first three derivatives at τ.
+  Rates rates(const Oscillator<T>& oscillator, const Transition<T>& moved, T tau) const {
+    const T wave = value + value * moved.decline + slope * moved.gain;
+    const T rate = slope + slope * moved.decline + oscillator.bend(value, slope) * moved.gain;
+    const T bend = oscillator.bend(wave, rate);
+    return {rate + drift + curvature * tau, bend + curvature, oscillator.bend(rate, bend)};
   }
   /// The same path with its time counted from τ on.
   Path from(const Oscillator<T>& oscillator, T tau) const {
@@ -220,29 +234,25 @@ struct Line {
   operator Path<T>() const { return {value, T(0), T(0), rate, T(0)}; }
 };
 
-/// Position, velocity and acceleration in one mode as functions of the time τ since it began.
+/// Position and velocity in one mode as functions of the time τ since it began.
 template <class T>
 struct Flow {
   Oscillator<T> oscillator;
-  Path<T> position, velocity, acceleration;
+  Path<T> position, velocity;
 
   /// Free to move from x, v, at y from a rest that drifts; the acceleration at τ = 0 is given, so
   /// that a start which is exactly tangential can say so.
   static Flow free(const Oscillator<T>& oscillator, T x, T v, T acceleration, T y, T drift) {
     const T y_rate = v - drift;
-    const T jerk = oscillator.bend(y_rate, acceleration);
-    return {oscillator,
-            {x, y, y_rate, drift},
-            {v, y_rate, acceleration},
-            {acceleration, acceleration, jerk}};
+    return {oscillator, {x, y, y_rate, drift}, {v, y_rate, acceleration}};
   }
   /// Stuck to a surface that moves with the given velocity.
   static Flow stuck(T x, Line<T> velocity) {
-    return {Oscillator<T>(T(1), T(0), T(1)),
-            {x, T(0), T(0), velocity.value, velocity.rate},
-            velocity,
-            {velocity.rate, T(0), T(0)}};
+    return {
+        Oscillator<T>(T(1), T(0), T(1)), {x, T(0), T(0), velocity.value, velocity.rate}, velocity};
   }
+
+  Path<T> acceleration() const { return velocity.derivative(oscillator); }
 
   /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
   Transition<T> after(T tau) const {

@@ -30,17 +30,12 @@ struct Equation {
   }
 };
 
-template <class T>
-struct Forces {
-  Path<T> plate, finger;
-};
-
 /// Set-valued friction of a pin between the plate (surface velocity v_p) and the finger (surface
 /// velocity 0), as MODEL.md §2–§4 states it. A force in the skin counts like its stretch.
-template <class T>
+template <class T, class Surface = Contact<T>>
 class Friction {
  public:
-  explicit Friction(const Drive<T>& drive) : drive_(drive) {}
+  explicit Friction(const Drive<T, Surface>& drive) : drive_(drive) {}
 
   /// The motion of a pin at x whose sliding and gripping contacts act on it.
   Equation<T> equation(Mode mode, const Instant<T>& now, T x, T skin_force) const {
@@ -85,7 +80,7 @@ class Friction {
     Path<T> moved = flow.position;
     moved.start = T(0);
     const Path<T> pull = equation.pull;
-    return drive_.mass * flow.acceleration + equation.damping * flow.velocity +
+    return drive_.mass * flow.acceleration() + equation.damping * flow.velocity +
            equation.stiffness * moved + T(-1) * pull;
   }
   /// The same at the start of a mode, with the velocity and acceleration of a level, N.
@@ -93,20 +88,23 @@ class Friction {
     return drive_.mass * level.rate + equation.damping * level.value - equation.pull.value;
   }
 
-  /// Friction on the pin along the flow of a mode, N; of two stuck contacts the sum, at the plate.
-  Forces<T> forces(Mode mode, const Instant<T>& now, const Equation<T>& equation,
-                   const Flow<T>& flow, T skin_force) const {
-    Forces<T> on_pin{sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
-                                   now.plate_velocity, now.load),
-                     sliding_force(drive_.finger, mode.finger, mode.finger_region, flow.velocity,
-                                   {}, {T(1), T(0)})};
-    if (mode.finger == Slide::gripping) {
-      on_pin.finger = T(-1) * (drive_.finger.stiffness * flow.position);
-      on_pin.finger.start = -skin_force;
-    }
-    if (!mode.stuck()) return on_pin;
-    (mode.plate == Slide::stuck ? on_pin.plate : on_pin.finger) = needed(equation, flow);
-    return on_pin;
+  /// Friction of the plate on the pin along the flow of a mode, N; of two stuck contacts the sum.
+  Path<T> plate_force(Mode mode, const Instant<T>& now, const Equation<T>& equation,
+                      const Flow<T>& flow) const {
+    if (mode.plate == Slide::stuck) return needed(equation, flow);
+    return sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
+                         now.plate_velocity, now.load);
+  }
+  /// Friction of the finger, N, beside it.
+  Path<T> finger_force(Mode mode, const Equation<T>& equation, const Flow<T>& flow,
+                       T skin_force) const {
+    if (mode.finger == Slide::stuck && mode.plate != Slide::stuck) return needed(equation, flow);
+    if (mode.finger != Slide::gripping)
+      return sliding_force(drive_.finger, mode.finger, mode.finger_region, flow.velocity, {},
+                           {T(1), T(0)});
+    Path<T> force = -drive_.finger.stiffness * flow.position;
+    force.start = -skin_force;
+    return force;
   }
 
   /// Mode of a pin that starts at x, v, with or without a stretched skin.
@@ -188,14 +186,14 @@ class Friction {
     return abs(force) <= capacity(stuck, now).value + blur ? 0 : force > 0 ? 1 : -1;
   }
 
-  static Slide touch(const Contact<T>& contact, T u) {
+  static Slide touch(const Surface& contact, T u) {
     if (!contact.present()) return Slide::absent;
     return u > 0 ? Slide::forward : u < 0 ? Slide::backward : Slide::stuck;
   }
 
   /// R = −s (F + c (s u − from)) λ with u = x' − surface, brought to the other side where it acts
   /// on x'. A slope and a changing load do not come together.
-  static void add_sliding(Equation<T>& sum, const Contact<T>& contact, Slide slide, int index,
+  static void add_sliding(Equation<T>& sum, const Surface& contact, Slide slide, int index,
                           Line<T> surface, Line<T> load) {
     if (!slides(slide)) return;
     const Region<T> region = contact.region(index);
@@ -208,7 +206,7 @@ class Friction {
     sum.pull.rate += drag * surface.rate - force * load.rate;
   }
 
-  static Path<T> sliding_force(const Contact<T>& contact, Slide slide, int index,
+  static Path<T> sliding_force(const Surface& contact, Slide slide, int index,
                                const Path<T>& velocity, Line<T> surface, Line<T> load) {
     Path<T> force{};
     if (!slides(slide)) return force;
@@ -220,7 +218,7 @@ class Friction {
     return drag == 0 ? force : force + (-drag) * velocity;
   }
 
-  Drive<T> drive_;
+  const Drive<T, Surface>& drive_;
 };
 
 }  // namespace pindrive

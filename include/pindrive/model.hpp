@@ -73,12 +73,26 @@ struct Contact {
   bool present() const { return static_limit > 0 || regions > 1; }
 };
 
+/// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,
+/// so that nothing is computed for it.
 template <class T>
+struct Coulomb {
+  T kinetic{0}, static_limit{0};
+
+  static constexpr int regions = 0;
+  static constexpr T stiffness = std::numeric_limits<T>::infinity();
+  static constexpr bool rigid() { return true; }
+  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0)}; }
+  static constexpr int region_of(T) { return 0; }
+  bool present() const { return static_limit > 0; }
+};
+
+template <class T, class Surface = Contact<T>>
 struct Drive {
-  T mass;                    ///< electromagnet and pin, kg; > 0
-  T stiffness;               ///< spring, N/m; > 0
-  T damping;                 ///< damper, N s/m; >= 0
-  Contact<T> plate, finger;  ///< the plate is rigid
+  T mass;                 ///< electromagnet and pin, kg; > 0
+  T stiffness;            ///< spring, N/m; > 0
+  T damping;              ///< damper, N s/m; >= 0
+  Surface plate, finger;  ///< the plate is rigid
 };
 
 /// An input over time: linear between its rows, constant outside. It owns nothing.
@@ -116,14 +130,24 @@ class Profile {
   std::size_t count_{0};
 };
 
-/// The release at t = 0 and what happens after it.
+/// An input that stays as it is.
 template <class T>
+struct Constant {
+  T value;
+
+  Line<T> from(T) const { return {value, T(0)}; }
+  static constexpr T next_row(T) { return std::numeric_limits<T>::infinity(); }
+  static constexpr bool constant() { return true; }
+};
+
+/// The release at t = 0 and what happens after it.
+template <class T, class Input = Profile<T>>
 struct Inputs {
-  Profile<T> mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
-  T displacement;             ///< x(0), m
-  T velocity;                 ///< x'(0), m/s
+  Input mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
+  T displacement;        ///< x(0), m
+  T velocity;            ///< x'(0), m/s
   T duration{std::numeric_limits<T>::infinity()};  ///< s; infinite: until the ending is known
-  Profile<T> plate_load{T(1)};                     ///< factor on the plate's friction; >= 0
+  Input plate_load{T(1)};                          ///< factor on the plate's friction; >= 0
   /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
 };
@@ -163,11 +187,12 @@ template <class T>
 struct Segment {
   T begin, end;  ///< s
   Mode mode;
+  Event event;  ///< at the end
   Flow<T> flow;
-  Line<T> plate_velocity, load;       ///< the inputs: m/s, 1
+  Transition<T> moved;                ///< of its oscillation, from begin to a finite end
+  Line<T> plate_velocity;             ///< m/s
   Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
                                       ///< is what they carry together
-  Event event;                        ///< at the end
 };
 
 /// How a motion ends.

@@ -13,14 +13,16 @@
 namespace pindrive {
 
 /// Follows one pin from its release and hands each segment to the sink, in order of time.
-template <class T>
+template <class T, class Surface = Contact<T>, class Input = Profile<T>>
 class Simulation {
  public:
-  Simulation(const Drive<T>& drive, const Inputs<T>& inputs)
+  Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
       : drive_(drive),
         inputs_(inputs),
         friction_(drive),
         plain_(drive.mass, drive.damping, drive.stiffness),
+        half_period_(plain_.zeros(T(0), T(1)).spacing),
+        half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
         x_(inputs.displacement),
         v_(inputs.velocity) {
     look_ahead();
@@ -60,7 +62,8 @@ class Simulation {
     T tau{never};
     Cause cause{Cause::nothing};
     bool plate{false}, finger{false};
-    int side{0};  ///< of the force that the contact cannot hold
+    int side{0};            ///< of the force that the contact cannot hold
+    bool half_turn{false};  ///< the pin has swung from one zero of its velocity to the next
   };
 
   // ---- one mode ----------------------------------------------------------------------------------
@@ -68,26 +71,30 @@ class Simulation {
   Segment<T> next() {
     const Equation<T> equation = friction_.equation(mode_, now_, x_, skin_);
     follows_ = !mode_.stuck() && follows(equation);
-    const Flow<T> flow =
+    Segment<T> segment;
+    segment.begin = time_;
+    segment.end = never;
+    segment.mode = mode_;
+    segment.flow =
         mode_.stuck() ? Flow<T>::stuck(x_, friction_.level(mode_, now_)) : free_flow(equation);
-    const auto forces = friction_.forces(mode_, now_, equation, flow, skin_);
-    Segment<T> segment{time_,     never,        mode_,         flow, now_.plate_velocity,
-                       now_.load, forces.plate, forces.finger, {}};
+    segment.plate_velocity = now_.plate_velocity;
+    segment.plate_force = friction_.plate_force(mode_, now_, equation, segment.flow);
+    segment.finger_force = friction_.finger_force(mode_, equation, segment.flow, skin_);
 
-    Exit exit = first_exit(segment, equation);
+    Exit exit = comes_to_rest(segment) ? rest(segment.flow) : first_exit(segment);
     // What happens at the row of an input to rounding is judged with what the row brings.
     if (exit.tau < never && row_ < never && row_ - (time_ + exit.tau) <= rounding * row_)
       exit = {row_ - time_, Cause::input, false, false, 0};
     finished_ = exit.tau == never || time_ + exit.tau >= inputs_.duration;
-    if (exit.tau == never) {
-      outcome_.end = ending(flow);
-      if (outcome_.end == End::moving) segment.end = inputs_.duration;
+    if (!finished_) {
+      leave(segment, exit);
       return segment;
     }
-    if (finished_)
+    if (exit.tau == never) outcome_.end = ending(segment.flow);
+    if (outcome_.end == End::moving && inputs_.duration < never) {
       segment.end = inputs_.duration;
-    else
-      leave(segment, exit);
+      segment.moved = segment.flow.after(segment.end - segment.begin);
+    }
     return segment;
   }
 
@@ -120,7 +127,7 @@ class Simulation {
 
   // ---- how it ends -------------------------------------------------------------------------------
 
-  Exit first_exit(const Segment<T>& segment, const Equation<T>& equation) const {
+  Exit first_exit(const Segment<T>& segment) const {
     const Flow<T>& flow = segment.flow;
     const Mode mode = segment.mode;
     Exit first, border;
@@ -132,6 +139,7 @@ class Simulation {
     const bool apart =
         friction_.constant(mode) && now_.plate_velocity.rate == 0 && now_.plate_velocity.value != 0;
     const auto consider = [&](const Path<T>& guard, auto&& goes, Exit exit) {
+      if (guard.start > 0 && !guard.oscillates() && guard.straight()) return;
       // At its zero already, a guard leaves it to the side where it goes.
       const bool at_once = !(guard.start > 0) && goes(guard) < 0;
       exit.tau =
@@ -147,7 +155,7 @@ class Simulation {
         first = exit;
       }
     };
-    const auto sliding = [&](const Contact<T>& contact, Slide slide, int index, Line<T> surface,
+    const auto sliding = [&](const Surface& contact, Slide slide, int index, Line<T> surface,
                              bool hidden, bool just_changed, Exit exit) {
       if (!slides(slide)) return;
       const Path<T> level = surface;
@@ -197,7 +205,8 @@ class Simulation {
     if (mode.finger == Slide::gripping)
       holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
     if (mode.stuck())
-      holding(friction_.needed(equation, flow), friction_.capacity(mode, now_),
+      holding(mode.plate == Slide::stuck ? segment.plate_force : segment.finger_force,
+              friction_.capacity(mode, now_),
               {never, Cause::nothing, mode.plate == Slide::stuck, mode.finger == Slide::stuck, 0});
     // A force that comes to its limit as another contact comes to a row of its curve is judged with
     // what the row brings.
@@ -219,6 +228,36 @@ class Simulation {
     return exit.side * v * abs(v) <= rounding * swing * swing;
   }
 
+  /// Whether a pin that slides under constant friction comes to rest on the finger before anything
+  /// else can end the mode. Its velocity oscillates about zero: once it falls, it falls to there.
+  bool comes_to_rest(const Segment<T>& segment) const {
+    const Mode mode = segment.mode;
+    const Path<T>& velocity = segment.flow.velocity;
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    if (!slides(mode.finger) || !friction_.constant(mode) || velocity.centre() != 0 ||
+        row_ < never || !oscillator.oscillates())
+      return false;
+    const int side = sign(mode.finger);
+    const T speed = side * velocity.value, rising = side * velocity.slope;
+    if (!(speed > 0) && !(speed == 0 && rising > 0)) return false;
+    if (!slides(mode.plate)) return true;
+    const T plate = side * segment.plate_velocity.value;
+    if (mode.plate == mode.finger) return plate < 0;
+    if (!(speed <= plate)) return false;
+    if (!(rising > 0)) return true;
+    const T sine = velocity.slope - oscillator.alpha() * velocity.value;
+    const T cosine = oscillator.omega() * velocity.value, reach = oscillator.omega() * plate;
+    return speed < plate && sine * sine + cosine * cosine < reach * reach;
+  }
+
+  /// When it does.
+  Exit rest(const Flow<T>& flow) const {
+    const Path<T>& velocity = flow.velocity;
+    if (velocity.value == 0) return {half_period_, Cause::arrives, false, true, 0, true};
+    const T tau = flow.oscillator.zeros(velocity.value, velocity.slope).first;
+    return {Rooted<T>::at(flow.oscillator, velocity, tau), Cause::arrives, false, true};
+  }
+
   static int side_after_zero(const Oscillator<T>& oscillator, Path<T> guard) {
     guard.start = T(0);
     return side_after_start(oscillator, guard);
@@ -229,7 +268,8 @@ class Simulation {
   /// Ends a segment and brings the state, set exactly at the event, to the next mode.
   void leave(Segment<T>& segment, const Exit& exit) {
     const Mode before = mode_;
-    const Transition<T> moved = segment.flow.after(exit.tau);
+    const Transition<T> moved = exit.half_turn ? half_turn_ : segment.flow.after(exit.tau);
+    segment.moved = moved;
     x_ = segment.flow.position.at(moved, exit.tau);
     v_ = segment.flow.velocity.at(moved, exit.tau);
     if (before.finger == Slide::gripping) skin_ = -segment.finger_force.at(moved, exit.tau);
@@ -313,7 +353,7 @@ class Simulation {
 
   void change_region(const Exit& exit) {
     const int step = exit.cause == Cause::faster ? 1 : -1;
-    const auto border = [&](const Contact<T>& contact, Slide slide, int& index) {
+    const auto border = [&](const Surface& contact, Slide slide, int& index) {
       const Region<T> region = contact.region(index);
       index += step;
       return sign(slide) * (step > 0 ? region.to : region.from);
@@ -336,7 +376,7 @@ class Simulation {
       changed_plate_ = !mode_.stuck();
       return;
     }
-    const auto even = [](bool taken, const Contact<T>& contact) {
+    const auto even = [](bool taken, const Surface& contact) {
       return !taken || contact.kinetic == contact.static_limit;
     };
     let_go_ = exit;
@@ -411,10 +451,12 @@ class Simulation {
     bool released;
   };
 
-  Drive<T> drive_;
-  Inputs<T> inputs_;
-  Friction<T> friction_;
-  Oscillator<T> plain_;  ///< of a pin on which no contact acts but with a constant force
+  const Drive<T, Surface>& drive_;
+  const Inputs<T, Input>& inputs_;
+  Friction<T, Surface> friction_;
+  Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
+  T half_period_;            ///< from one zero of its velocity to the next,
+  Transition<T> half_turn_;  ///< and how it has moved on there
 
   T time_{0}, x_, v_;
   T skin_{0};  ///< force in a gripping skin, N
@@ -441,7 +483,24 @@ class Simulation {
 
 template <class T, class Sink>
 Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink) {
-  return Simulation<T>(drive, inputs).run(sink);
+  const auto plain = [](const Contact<T>& contact) {
+    return contact.regions == 0 && (contact.rigid() || !contact.present());
+  };
+  using std::isnan;
+  if (!plain(drive.plate) || !plain(drive.finger) || !inputs.mouse_velocity.constant() ||
+      !inputs.plate_load.constant() || !isnan(inputs.skin_stretch))
+    return Simulation<T>(drive, inputs).run(sink);
+  // The usual case, with nothing in it of what it does not need.
+  const auto coulomb = [](const Contact<T>& contact) {
+    return Coulomb<T>{contact.kinetic, contact.static_limit};
+  };
+  const auto constant = [](const Profile<T>& input) { return Constant<T>{input.from(T(0)).value}; };
+  const Drive<T, Coulomb<T>> slim{drive.mass, drive.stiffness, drive.damping, coulomb(drive.plate),
+                                  coulomb(drive.finger)};
+  const Inputs<T, Constant<T>> steady{constant(inputs.mouse_velocity), inputs.displacement,
+                                      inputs.velocity, inputs.duration,
+                                      constant(inputs.plate_load)};
+  return Simulation<T, Coulomb<T>, Constant<T>>(slim, steady).run(sink);
 }
 
 }  // namespace pindrive

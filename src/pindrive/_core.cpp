@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <tuple>
 #include <type_traits>
@@ -157,10 +158,11 @@ Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool rig
   return to_array(std::move(values));
 }
 
-template <class T, pd::Path<T> pd::Flow<T>::* path>
+/// The position, velocity or acceleration of a flow.
+template <class T, auto path>
 Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
   return at_times(motion, times, right, [](const pd::Segment<T>& segment, T tau) {
-    return (segment.flow.*path).at(segment.flow.oscillator, tau);
+    return std::invoke(path, segment.flow).at(segment.flow.oscillator, tau);
   });
 }
 
@@ -203,7 +205,7 @@ nb::dict segments(const CoreMotion<T>& motion) {
   table["velocity"] =
       column<double>(motion, [](const Segment& s) { return result(s.flow.velocity.start); });
   table["acceleration"] =
-      column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration.start); });
+      column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration().start); });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
   table["plate_region"] =
