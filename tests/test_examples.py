@@ -1,4 +1,4 @@
-"""The README's examples of the whole device: each runs by its one command, its picture is in the docs."""
+"""Examples of the whole device in the README: each runs by its command, its picture is there."""
 
 from __future__ import annotations
 
