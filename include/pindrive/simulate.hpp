@@ -500,7 +500,8 @@ Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink)
   const Inputs<T, Constant<T>> steady{constant(inputs.mouse_velocity), inputs.displacement,
                                       inputs.velocity, inputs.duration,
                                       constant(inputs.plate_load)};
-  return Simulation<T, Coulomb<T>, Constant<T>>(slim, steady).run(sink);
+  Simulation<T, Coulomb<T>, Constant<T>> simulation(slim, steady);
+  return simulation.run(sink);
 }
 
 }  // namespace pindrive
