@@ -501,7 +501,7 @@ Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink)
                                       inputs.velocity, inputs.duration,
                                       constant(inputs.plate_load)};
   Simulation<T, Coulomb<T>, Constant<T>> simulation(slim, steady);
-  return simulation.run(sink);
+  return simulation.run(sink);  // NOLINT(clang-analyzer-core.StackAddressEscape): a value
 }
 
 }  // namespace pindrive
