@@ -51,14 +51,20 @@ double time_of(const std::vector<Point>& points, Work&& work) {
 
 }  // namespace
 
+/// Simulates alone. Not in main, which compilers make small, not fast: it runs once.
+[[gnu::noinline]] void follow(const Point& point,
+                              std::vector<pindrive::Segment<double>>& segments) {
+  segments.clear();
+  pindrive::simulate(point.drive, point.inputs, [&](const auto& s) { segments.push_back(s); });
+}
+
 int main(int argc, char** argv) {
   const auto points = drawn(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 100'000, 1);
   std::vector<pindrive::Segment<double>> segments;
   double sum = 0;  // printed, so that no work can be left out
   std::size_t count = 0;
   const double simulated = time_of(points, [&](const Point& point) {
-    segments.clear();
-    pindrive::simulate(point.drive, point.inputs, [&](const auto& s) { segments.push_back(s); });
+    follow(point, segments);
     sum += segments.back().begin;
     count += segments.size();
   });

@@ -211,6 +211,7 @@ struct Path {
   }
   bool oscillates() const { return value != 0 || slope != 0; }
   bool straight() const { return drift == 0 && curvature == 0; }
+  bool constant() const { return straight() && !oscillates(); }
 
   /// Where a straight path oscillates about and, if it decays, ends.
   T centre() const { return start - value; }

@@ -38,7 +38,7 @@ class Friction {
   explicit Friction(const Drive<T, Surface>& drive) : drive_(drive) {}
 
   /// The motion of a pin at x whose sliding and gripping contacts act on it.
-  Equation<T> equation(Mode mode, const Instant<T>& now, T x, T skin_force) const {
+  Equation<T> equation(const Mode& mode, const Instant<T>& now, T x, T skin_force) const {
     using std::abs;
     const T inertia = drive_.mass * now.plate_velocity.rate, spring = drive_.stiffness * x;
     Equation<T> sum{
@@ -56,18 +56,18 @@ class Friction {
 
   /// Whether no contact gives way or changes its force with the pin's speed: it neither damps nor
   /// stiffens.
-  bool constant(Mode mode) const {
+  bool constant(const Mode& mode) const {
     return mode.finger != Slide::gripping && drive_.plate.regions == 0 &&
            drive_.finger.regions == 0;
   }
 
   /// The velocity of the surface that a stuck pin moves with, m/s.
-  Line<T> level(Mode stuck, const Instant<T>& now) const {
+  Line<T> level(const Mode& stuck, const Instant<T>& now) const {
     return stuck.plate == Slide::stuck ? now.plate_velocity : Line<T>{};
   }
 
   /// The largest force that the stuck contacts can carry together, N.
-  Line<T> capacity(Mode stuck, const Instant<T>& now) const {
+  Line<T> capacity(const Mode& stuck, const Instant<T>& now) const {
     Line<T> sum{};
     if (stuck.plate == Slide::stuck)
       sum = {drive_.plate.static_limit * now.load.value, drive_.plate.static_limit * now.load.rate};
@@ -89,14 +89,14 @@ class Friction {
   }
 
   /// Friction of the plate on the pin along the flow of a mode, N; of two stuck contacts the sum.
-  Path<T> plate_force(Mode mode, const Instant<T>& now, const Equation<T>& equation,
+  Path<T> plate_force(const Mode& mode, const Instant<T>& now, const Equation<T>& equation,
                       const Flow<T>& flow) const {
     if (mode.plate == Slide::stuck) return needed(equation, flow);
     return sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
                          now.plate_velocity, now.load);
   }
   /// Friction of the finger, N, beside it.
-  Path<T> finger_force(Mode mode, const Equation<T>& equation, const Flow<T>& flow,
+  Path<T> finger_force(const Mode& mode, const Equation<T>& equation, const Flow<T>& flow,
                        T skin_force) const {
     if (mode.finger == Slide::stuck && mode.plate != Slide::stuck) return needed(equation, flow);
     if (mode.finger != Slide::gripping)
@@ -119,13 +119,14 @@ class Friction {
   /// Mode of a pin that, sliding, has brought one rigid contact to its level at x. It came with a
   /// force that pushed it there, so it sticks or crosses; it cannot turn back. What is as large as
   /// the capacity to rounding holds: the mode that holds asks where it goes from there.
-  Mode arriving(Mode stuck, int side, const Instant<T>& now, T x, T skin_force) const {
+  Mode arriving(const Mode& stuck, int side, const Instant<T>& now, T x, T skin_force) const {
     return overload(stuck, now, x, skin_force) == side ? released(stuck, -side) : stuck;
   }
 
   /// Mode of a pin at rest against the surface of every contact marked stuck, of which those of
   /// `before` held it until now: it stays where it can, or goes where the force takes it.
-  Mode holding(Mode stuck, Mode before, const Instant<T>& now, T x, T skin_force) const {
+  Mode holding(const Mode& stuck, const Mode& before, const Instant<T>& now, T x,
+               T skin_force) const {
     const T w = now.plate_velocity.rate;
     if (stuck.plate != Slide::stuck || stuck.finger != Slide::stuck || w == 0) {
       const int side = overload(stuck, now, x, skin_force);
@@ -141,7 +142,7 @@ class Friction {
          {plate_first ? with_plate : with_finger, plate_first ? with_finger : with_plate})
       if (overload(mode, now, x, skin_force) == 0) return mode;
     // Neither holds: the pin is thrown ahead of both or behind both, or slides between them.
-    const auto acceleration = [&](Mode mode) {
+    const auto acceleration = [&](const Mode& mode) {
       return -needed(equation(mode, now, x, skin_force), Line<T>{}) / drive_.mass;
     };
     const Mode ahead = released(stuck, 1), behind = released(stuck, -1);
@@ -177,7 +178,7 @@ class Friction {
 
  private:
   /// The sign of the force that the stuck contacts cannot carry; 0 if they can.
-  int overload(Mode stuck, const Instant<T>& now, T x, T skin_force) const {
+  int overload(const Mode& stuck, const Instant<T>& now, T x, T skin_force) const {
     using std::abs;
     const Equation<T> sum = equation(stuck, now, x, skin_force);
     const Line<T> held = level(stuck, now);

@@ -118,6 +118,7 @@ class Profile {
     return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
   }
   bool constant() const { return count_ == 0; }
+  T first() const { return constant_; }  ///< its value until its first row
 
  private:
   std::size_t rows_until(T t) const {
@@ -193,6 +194,9 @@ struct Segment {
   Line<T> plate_velocity;             ///< m/s
   Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
                                       ///< is what they carry together
+
+  /// How its oscillation has moved on after τ.
+  Transition<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
 };
 
 /// How a motion ends.

@@ -139,7 +139,7 @@ class Simulation {
     const bool apart =
         friction_.constant(mode) && now_.plate_velocity.rate == 0 && now_.plate_velocity.value != 0;
     const auto consider = [&](const Path<T>& guard, auto&& goes, Exit exit) {
-      if (guard.start > 0 && !guard.oscillates() && guard.straight()) return;
+      if (guard.start > 0 && guard.constant()) return;
       // At its zero already, a guard leaves it to the side where it goes.
       const bool at_once = !(guard.start > 0) && goes(guard) < 0;
       exit.tau =
@@ -333,9 +333,8 @@ class Simulation {
     if (exit.finger && !drive_.finger.rigid()) grip();
     const bool finger = exit.finger && drive_.finger.rigid();
     if (!exit.plate && !finger) return;
-    Mode stuck = mode_;
-    if (exit.plate) stuck.plate = Slide::stuck;
-    if (finger) stuck.finger = Slide::stuck;
+    const Mode stuck{exit.plate ? Slide::stuck : mode_.plate, finger ? Slide::stuck : mode_.finger,
+                     mode_.plate_region, mode_.finger_region};
     const bool parting = stuck.plate == Slide::stuck && stuck.finger == Slide::stuck &&
                          now_.plate_velocity.rate != 0;
     const int side = sign(exit.plate ? mode_.plate : mode_.finger);
@@ -494,7 +493,7 @@ Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink)
   const auto coulomb = [](const Contact<T>& contact) {
     return Coulomb<T>{contact.kinetic, contact.static_limit};
   };
-  const auto constant = [](const Profile<T>& input) { return Constant<T>{input.from(T(0)).value}; };
+  const auto constant = [](const Profile<T>& input) { return Constant<T>{input.first()}; };
   const Drive<T, Coulomb<T>> slim{drive.mass, drive.stiffness, drive.damping, coulomb(drive.plate),
                                   coulomb(drive.finger)};
   const Inputs<T, Constant<T>> steady{constant(inputs.mouse_velocity), inputs.displacement,

@@ -43,7 +43,7 @@ struct Transient {
 template <class T, class Visitor>
 void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor&& visit) {
   visit(from, path.at(oscillator, from));
-  if (!path.oscillates() && path.straight()) return;  // constant
+  if (path.constant() || !(to > from)) return;
   const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
   const Path<T> slope = rest.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
@@ -106,9 +106,8 @@ class Measurement {
   /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
   /// short it is beside x.
   static T moved(const Segment<T>& segment, T from, T to) {
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
-    return x.change(oscillator, to) - x.change(oscillator, from);
+    return x.change(segment.after(to), to) - x.change(segment.after(from), from);
   }
 
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
@@ -182,7 +181,7 @@ class Measurement {
       if (segment.begin > until) break;
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
-      if (from > to) continue;
+      if (from > to || (from > 0 && from == to)) continue;
       const auto compare = [&](T tau, T velocity) {
         if (-outward * velocity <= 0) return;
         if (outward * velocity >= outward * result.return_velocity) return;
@@ -269,7 +268,11 @@ class Measurement {
         const int side = sign_of(before);
         Path<T> distance = x;
         distance.start -= x_end + side * width;
-        const T root = root_between(oscillator, distance, low, high, side);
+        // Between two turning points it is near a cosine.
+        using std::sqrt;
+        const T part = (side * width - after) / (before - after);
+        const T guess = high - (high - low) * T(0.64) * sqrt(part) * (1 + part / 6);
+        const T root = root_between(oscillator, distance, low, high, side, guess);
         since = segment.begin + Rooted<T>::at(oscillator, distance, root);
       }
       low = high;
@@ -283,7 +286,7 @@ class Measurement {
         extrema(oscillator, x, last.from, last.to, follow_to);
       } else {
         const T to = segment.end - segment.begin;
-        follow_to(to, x.at(oscillator, to));
+        follow_to(to, x.at(segment.after(to), to));
       }
       return since;
     }
@@ -364,10 +367,14 @@ class Measurement {
   }
 
   static void peak(T& largest, const Oscillator<T>& oscillator, const Path<T>& path, T from, T to) {
-    highest_and_lowest(oscillator, path, from, to, [&](T, T value) {
+    const auto compare = [&](T, T value) {
       using std::abs;
       largest = std::max(largest, abs(value));
-    });
+    };
+    if (path.constant())
+      compare(from, path.start);
+    else
+      highest_and_lowest(oscillator, path, from, to, compare);
   }
 
   void use(ContactUse<T>& contact, const Segment<T>& segment, Slide slide, Line<T> surface,
@@ -383,7 +390,7 @@ class Measurement {
     const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
     contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
-    if (!force.oscillates() && force.straight()) {
+    if (force.constant()) {
       contact.dissipated += times * abs(force.start) * slid;
     } else {
       const Path<T> level = surface;
