@@ -56,6 +56,12 @@ class Oscillator {
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
 
+  /// How long a start of rounded numbers serves: where two growing waves draw apart, so does what
+  /// rounding put into the faster one, by e⁶ in this time.
+  T serves_for() const {
+    return alpha_ > 0 && discriminant_ < 0 ? 3 / omega_ : std::numeric_limits<T>::infinity();
+  }
+
   /// The second derivative of a free oscillation from its value and slope.
   T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
 

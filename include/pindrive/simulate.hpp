@@ -55,8 +55,9 @@ class Simulation {
   static constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
   /// Why a mode ends: a sliding velocity comes to zero, or to the lower or upper end of a region
-  /// of a friction curve; a contact cannot hold any longer; or an input has its next row.
-  enum class Cause : signed char { nothing, arrives, slower, faster, gives_way, input };
+  /// of a friction curve; a contact cannot hold any longer; or an input has its next row. And a
+  /// mode that grows is written anew from its state before its rounding has grown.
+  enum class Cause : signed char { nothing, arrives, slower, faster, gives_way, input, grown };
 
   struct Exit {
     T tau{never};
@@ -132,6 +133,8 @@ class Simulation {
     const Mode mode = segment.mode;
     Exit first, border;
     if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
+    if (flow.velocity.oscillates() && flow.oscillator.serves_for() < first.tau)
+      first = {flow.oscillator.serves_for(), Cause::grown, false, false, 0};
 
     // Two surfaces that keep different speeds are never reached together: no guard need be followed
     // beyond what is known to end the mode, and of two that the pin outruns on one side the farther
@@ -151,7 +154,8 @@ class Simulation {
       if (exit.tau == first.tau && exit.cause == first.cause) {
         first.plate = first.plate || exit.plate;
         first.finger = first.finger || exit.finger;
-      } else if (exit.tau < first.tau || first.cause == Cause::input) {
+      } else if (exit.tau < first.tau || first.cause == Cause::input ||
+                 first.cause == Cause::grown) {
         first = exit;
       }
     };
@@ -307,6 +311,8 @@ class Simulation {
       case Cause::input:
       case Cause::nothing:
         meet_input();
+        break;
+      case Cause::grown:
         break;
     }
     segment.event = {change(before.plate, mode_.plate), change(before.finger, mode_.finger)};
