@@ -33,6 +33,7 @@ struct Zeros {
 template <class T>
 class Oscillator {
  public:
+  /// y'' = −y
   Oscillator() = default;
 
   /// m x'' + c x' + κ x; mass and stiffness > 0, damping of either sign.
@@ -51,7 +52,10 @@ class Oscillator {
   bool oscillates() const { return discriminant_ > 0; }
   /// No part of the motion changes at more than twice the root of this rate, 1/s².
   T hurry_squared() const { return omega0_squared_ + alpha_ * alpha_; }
-  T period() const { return oscillates() ? 2 * pi / omega_ : std::numeric_limits<T>::infinity(); }
+  T period() const { return 2 * half_period(); }
+  T half_period() const {
+    return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity();
+  }
 
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
@@ -89,7 +93,7 @@ class Oscillator {
   /// The same for half a period: where a velocity has come from zero to zero again.
   Transition<T> half_turn() const {
     using std::exp;
-    return {-1 - exp(alpha_ * (pi / omega_)), T(0)};
+    return {-1 - exp(alpha_ * half_period()), T(0)};
   }
 
   /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
@@ -172,7 +176,7 @@ class Oscillator {
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
   }
 
-  T alpha_{}, omega0_squared_{}, discriminant_{}, omega_{};
+  T alpha_{0}, omega0_squared_{1}, discriminant_{1}, omega_{1};
 };
 
 /// One quantity along a mode: start + value·(Φ − 1) + slope·Ψ + drift·τ + curvature·τ²/2.
@@ -255,8 +259,7 @@ struct Flow {
   }
   /// Stuck to a surface that moves with the given velocity.
   static Flow stuck(T x, Line<T> velocity) {
-    return {
-        Oscillator<T>(T(1), T(0), T(1)), {x, T(0), T(0), velocity.value, velocity.rate}, velocity};
+    return {{}, {x, T(0), T(0), velocity.value, velocity.rate}, velocity};
   }
 
   Path<T> acceleration() const { return velocity.derivative(oscillator); }

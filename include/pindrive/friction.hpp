@@ -198,25 +198,28 @@ class Friction {
                           Line<T> surface, Line<T> load) {
     if (!slides(slide)) return;
     const Region<T> region = contact.region(index);
-    const T drag = region.slope * load.value;
-    const T force = sign(slide) * (region.force - region.slope * region.from);
+    const T force = along(slide, region.force - region.slope * region.from);
     using std::abs;
+    sum.size += abs(force * load.value);
+    sum.pull.value -= force * load.value;
+    sum.pull.rate -= force * load.rate;
+    if (region.slope == 0) return;
+    const T drag = region.slope * load.value;
     sum.damping += drag;
-    sum.size += abs(drag * surface.value) + abs(force * load.value);
-    sum.pull.value += drag * surface.value - force * load.value;
-    sum.pull.rate += drag * surface.rate - force * load.rate;
+    sum.size += abs(drag * surface.value);
+    sum.pull.value += drag * surface.value;
+    sum.pull.rate += drag * surface.rate;
   }
 
   static Path<T> sliding_force(const Surface& contact, Slide slide, int index,
                                const Path<T>& velocity, Line<T> surface, Line<T> load) {
-    Path<T> force{};
-    if (!slides(slide)) return force;
+    if (!slides(slide)) return {};
     const Region<T> region = contact.region(index);
+    const T constant = -along(slide, region.force - region.slope * region.from);
+    const Path<T> force = Line<T>{constant * load.value, constant * load.rate};
+    if (region.slope == 0) return force;
     const T drag = region.slope * load.value;
-    const T constant = -sign(slide) * (region.force - region.slope * region.from);
-    force = Line<T>{constant * load.value + drag * surface.value,
-                    constant * load.rate + drag * surface.rate};
-    return drag == 0 ? force : force + (-drag) * velocity;
+    return force + Line<T>{drag * surface.value, drag * surface.rate} + (-drag) * velocity;
   }
 
   const Drive<T, Surface>& drive_;

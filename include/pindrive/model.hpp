@@ -158,6 +158,11 @@ enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent =
 
 inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
 inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
+/// A value in the direction of sliding.
+template <class T>
+T along(Slide slide, T value) {
+  return slide == Slide::forward ? value : -value;
+}
 
 struct Mode {
   Slide plate, finger;
@@ -175,9 +180,9 @@ struct Event {
 };
 
 inline Kind change(Slide before, Slide after) {
-  if (slides(before) && !slides(after)) return Kind::stick;
-  if (!slides(before) && slides(after)) return Kind::slip;
-  return before == after ? Kind::none : Kind::cross;
+  if (before == after) return Kind::none;
+  if (slides(before) == slides(after)) return Kind::cross;
+  return slides(before) ? Kind::stick : Kind::slip;
 }
 
 /// Whether the sliding velocity came to zero.

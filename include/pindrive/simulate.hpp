@@ -21,7 +21,7 @@ class Simulation {
         inputs_(inputs),
         friction_(drive),
         plain_(drive.mass, drive.damping, drive.stiffness),
-        half_period_(plain_.zeros(T(0), T(1)).spacing),
+        half_period_(plain_.half_period()),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
         x_(inputs.displacement),
         v_(inputs.velocity) {
@@ -118,8 +118,9 @@ class Simulation {
   /// of a region with no more than rounding against it.
   bool follows(const Equation<T>& equation) const {
     using std::abs;
+    if (tangential_ || !bordering_) return tangential_;
     const T against = equation.pull.value - equation.damping * v_ - drive_.mass * followed();
-    return tangential_ || (bordering_ && abs(against) <= equation.blur(v_));
+    return abs(against) <= equation.blur(v_);
   }
   /// The acceleration of that level.
   T followed() const {
@@ -133,7 +134,8 @@ class Simulation {
     const Mode mode = segment.mode;
     Exit first, border;
     if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
-    if (flow.velocity.oscillates() && flow.oscillator.serves_for() < first.tau)
+    if (!friction_.constant(mode) && flow.velocity.oscillates() &&
+        flow.oscillator.serves_for() < first.tau)
       first = {flow.oscillator.serves_for(), Cause::grown, false, false, 0};
 
     // Two surfaces that keep different speeds are never reached together: no guard need be followed
@@ -163,11 +165,10 @@ class Simulation {
                              bool hidden, bool just_changed, Exit exit) {
       if (!slides(slide)) return;
       const Path<T> level = surface;
-      const Path<T> speed = T(sign(slide)) * (flow.velocity + T(-1) * level);
+      const Path<T> speed = along(slide, T(1)) * (flow.velocity + T(-1) * level);
       const Region<T> region = contact.region(index);
-      Path<T> above = speed, below = T(-1) * speed;
+      Path<T> above = speed;
       above.start -= region.from;
-      below.start += region.to;
       // A pin that goes along with the border of a region may be sent back, but not twice.
       const bool away = just_changed && (!follows_ || tangential_ || bounced_);
       const auto goes = [&](const Path<T>& guard) {
@@ -180,8 +181,11 @@ class Simulation {
         return index == 0 && side == 0 ? -1 : side;
       };
       if (!hidden) consider(above, arrives, exit);
+      if (!(region.to < never)) return;
+      Path<T> below = T(-1) * speed;
+      below.start += region.to;
       exit.cause = Cause::faster;
-      if (region.to < never) consider(below, goes, exit);
+      consider(below, goes, exit);
     };
     const auto holding = [&](const Path<T>& force, Line<T> limit, Exit exit) {
       exit.cause = Cause::gives_way;
@@ -384,7 +388,7 @@ class Simulation {
     const auto even = [](bool taken, const Surface& contact) {
       return !taken || contact.kinetic == contact.static_limit;
     };
-    let_go_ = exit;
+    let_go_ = {exit.plate, exit.finger};
     tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
     tangent_ = friction_.level(mode_, now_).rate;
     mode_ = friction_.released(mode_, -exit.side);
@@ -416,7 +420,7 @@ class Simulation {
     const T alpha = flow.oscillator.alpha();
     if (alpha < 0) return End::decaying;
     if (alpha > 0) return End::moving;
-    outcome_.period = flow.oscillator.zeros(T(0), T(1)).spacing * 2;
+    outcome_.period = flow.oscillator.period();
     return tangential_ ? End::grazing : End::free;
   }
 
@@ -473,7 +477,9 @@ class Simulation {
       changed_finger_{false};  ///< by the last event: a zero there is no root
   bool bordering_{false},
       bounced_{false};      ///< came to the border of a region; from another, at once
-  Exit let_go_{};           ///< the last event, where a contact let go …
+  struct {
+    bool plate{false}, finger{false};
+  } let_go_;                ///< at the last event …
   bool held_again_{false};  ///< … and it holds again at once: it was rounding that let go
   bool follows_{false};     ///< it sets out along with a level
   bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
