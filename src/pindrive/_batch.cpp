@@ -13,6 +13,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "pindrive/batch.hpp"
@@ -118,7 +119,7 @@ constexpr Number numbers[] = {
 };
 constexpr std::size_t number_count = std::size(numbers);
 
-/// One column over all points, each of which is written once.
+/// A column of flags or counts over all points, each of which is written once.
 template <class T>
 class Column {
  public:
@@ -141,9 +142,14 @@ class Batch {
  public:
   /// A point whose status is not 0 is bad: it is left out, and marked.
   Batch(const Inputs& inputs, const Statuses& given)
-      : inputs_(inputs), given_(given), status_(size()), ending_(size()), events_(size()) {
-    for (std::size_t k = 0; k < number_count; ++k) columns_.emplace_back(size());
-  }
+      : inputs_(inputs),
+        given_(given),
+        // One block, which NumPy asks the system for in large pages.
+        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(number_count, size()))),
+        numbers_(nb::cast<nb::ndarray<double, nb::c_contig, nb::device::cpu>>(block_).data()),
+        status_(size()),
+        ending_(size()),
+        events_(size()) {}
 
   std::size_t size() const { return given_.size(); }
 
@@ -171,7 +177,7 @@ class Batch {
 
   nb::dict table() {
     nb::dict columns;
-    for (std::size_t k = 0; k < number_count; ++k) columns[numbers[k].name] = columns_[k].array();
+    for (std::size_t k = 0; k < number_count; ++k) columns[numbers[k].name] = block_[k];
     columns["status"] = status_.array();
     columns["ending"] = ending_.array();
     columns["events"] = events_.array();
@@ -203,19 +209,27 @@ class Batch {
       status_[i] = given_.data()[i];
       ending_[i] = -1;
       events_[i] = 0;
-      for (auto& column : columns_) column[i] = std::numeric_limits<double>::quiet_NaN();
+      for (std::size_t k = 0; k < number_count; ++k)
+        numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
       return;
     }
     const Summary summary = summarise(point(inputs_, i), segments);
     status_[i] = static_cast<std::int8_t>(summary.outcome.status);
     ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
     events_[i] = static_cast<std::int32_t>(summary.events);
-    for (std::size_t k = 0; k < number_count; ++k) columns_[k][i] = numbers[k].of(summary);
+    write(summary, numbers_ + i, std::make_index_sequence<number_count>{});
+  }
+
+  template <std::size_t... k>
+  void write(const Summary& summary, double* first, std::index_sequence<k...>) {
+    const std::size_t rows = size();
+    ((first[k * rows] = numbers[k].of(summary)), ...);
   }
 
   const Inputs& inputs_;
   const Statuses& given_;
-  std::vector<Column<double>> columns_;
+  nb::object block_;
+  double* numbers_;  ///< its rows are the columns
   Column<std::int8_t> status_, ending_;
   Column<std::int32_t> events_;
   std::atomic<std::size_t> next_{0};
