@@ -39,11 +39,13 @@ struct Transient {
   ContactUse<T> plate, finger;
 };
 
-/// Calls visit(τ, value) at both ends of a stretch of a path and at each extremum between them.
+/// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
+/// them.
 template <class T, class Visitor>
-void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor&& visit) {
-  visit(from, path.at(oscillator, from));
+void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, path.at(segment.after(from), from));
   if (path.constant() || !(to > from)) return;
+  const Oscillator<T>& oscillator = segment.flow.oscillator;
   const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
   const Path<T> slope = rest.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
@@ -52,21 +54,21 @@ void extrema(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
       visit(from + tau, rest.at(oscillator, tau));
       return true;
     });
-  visit(to, path.at(oscillator, to));
+  visit(to, path.at(segment.after(to), to));
 }
 
 /// The same for a path on which only the highest and the lowest value are asked for: a vibration on
 /// a line has them within a period of an end, so what lies between need not be followed.
 template <class T, class Visitor>
-void highest_and_lowest(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to,
+void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, T to,
                         Visitor&& visit) {
-  if (!path.oscillates() || !(to - from > 2 * oscillator.period())) {
-    extrema(oscillator, path, from, to, visit);
+  const T period = segment.flow.oscillator.period();
+  if (!path.oscillates() || !(to - from > 2 * period)) {
+    extrema(segment, path, from, to, visit);
     return;
   }
-  const T period = oscillator.period();
-  extrema(oscillator, path, from, from + period, visit);
-  extrema(oscillator, path, to - period, to, visit);
+  extrema(segment, path, from, from + period, visit);
+  extrema(segment, path, to - period, to, visit);
 }
 
 /// Measures a motion over [0, duration]; what happens later, or never, is NaN.
@@ -188,7 +190,7 @@ class Measurement {
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
       };
-      highest_and_lowest(segment.flow.oscillator, segment.flow.velocity, from, to, compare);
+      highest_and_lowest(segment, segment.flow.velocity, from, to, compare);
     }
   }
 
@@ -225,8 +227,7 @@ class Measurement {
     T low = never, high = -never;
     for (const Segment<T>& segment : motion_) {
       if (segment.begin < outcome.cycle_begin) continue;
-      const Flow<T>& flow = segment.flow;
-      highest_and_lowest(flow.oscillator, flow.position, T(0), segment.end - segment.begin,
+      highest_and_lowest(segment, segment.flow.position, T(0), segment.end - segment.begin,
                          [&](T, T position) {
                            low = std::min(low, position);
                            high = std::max(high, position);
@@ -282,8 +283,8 @@ class Measurement {
     if (isfinite(segment.end)) {
       if (may_turn(segment)) {
         const Stretch last = last_outside(segment, x_end, width);
-        before = x.at(oscillator, last.from) - x_end;
-        extrema(oscillator, x, last.from, last.to, follow_to);
+        before = x.at(segment.after(last.from), last.from) - x_end;
+        extrema(segment, x, last.from, last.to, follow_to);
       } else {
         const T to = segment.end - segment.begin;
         follow_to(to, x.at(segment.after(to), to));
@@ -322,7 +323,7 @@ class Measurement {
     Stretch last{T(0), segment.end - segment.begin};
     const auto strays = [&](T from, T to) {
       bool outside = false;
-      highest_and_lowest(oscillator, x, from, to, [&](T, T position) {
+      highest_and_lowest(segment, x, from, to, [&](T, T position) {
         using std::abs;
         outside = outside || abs(position - x_end) > width;
       });
@@ -357,8 +358,8 @@ class Measurement {
       result.finger.dissipated += times * skin_loss(segment, from, to, whole);
       const Oscillator<T>& oscillator = segment.flow.oscillator;
       const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
-      peak(result.peak_stretch, oscillator, stretch, from, to);
-      peak(result.peak_stretch_rate, oscillator, stretch.derivative(oscillator), from, to);
+      peak(result.peak_stretch, segment, stretch, from, to);
+      peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
     });
   }
 
@@ -366,7 +367,7 @@ class Measurement {
     return segment.mode.plate == Slide::stuck && segment.mode.finger == Slide::stuck;
   }
 
-  static void peak(T& largest, const Oscillator<T>& oscillator, const Path<T>& path, T from, T to) {
+  static void peak(T& largest, const Segment<T>& segment, const Path<T>& path, T from, T to) {
     const auto compare = [&](T, T value) {
       using std::abs;
       largest = std::max(largest, abs(value));
@@ -374,7 +375,7 @@ class Measurement {
     if (path.constant())
       compare(from, path.start);
     else
-      highest_and_lowest(oscillator, path, from, to, compare);
+      highest_and_lowest(segment, path, from, to, compare);
   }
 
   void use(ContactUse<T>& contact, const Segment<T>& segment, Slide slide, Line<T> surface,
@@ -382,7 +383,7 @@ class Measurement {
     using std::abs;
     if (slide == Slide::absent) return;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!both_stuck(segment)) peak(contact.peak_force, oscillator, force, from, to);
+    if (!both_stuck(segment)) peak(contact.peak_force, segment, force, from, to);
     if (!slides(slide)) {
       contact.time_stuck += times * (to - from);
       return;

@@ -36,12 +36,15 @@ int main() {
     pd::Path<double> path{uniform(random), uniform(random), omega0 * uniform(random), 0};
     // From a line that hardly rises in all this time to one that hides the vibration.
     if (i % 3 > 0) path.drift = uniform(random) * omega0 * std::pow(10, 2 * uniform(random) - 3);
+    pd::Segment<double> segment{};
+    segment.end = HUGE_VAL;
+    segment.flow = {oscillator, path, path.derivative(oscillator)};
     const double to = std::pow(10, 1.5 + 1.2 * uniform(random)) / omega0;
     const double from = i % 4 > 0 ? 0 : to * std::abs(uniform(random));
 
     Range walk, ends;
-    pd::extrema(oscillator, path, from, to, walk);
-    pd::highest_and_lowest(oscillator, path, from, to, ends);
+    pd::extrema(segment, path, from, to, walk);
+    pd::highest_and_lowest(segment, path, from, to, ends);
     const double rounding = 1e-15 * (10 + omega0 * to) * std::max(walk.high, -walk.low);
     longest = std::max(longest, walk.visits);
     most = std::max(most, ends.visits);
