@@ -269,10 +269,12 @@ class Measurement {
         const int side = sign_of(before);
         Path<T> distance = x;
         distance.start -= x_end + side * width;
-        // Between two turning points it is near a cosine.
+        // Before a turning point it is near a cosine whose swing the damping widens.
         using std::sqrt;
-        const T part = (side * width - after) / (before - after);
-        const T guess = high - (high - low) * T(0.64) * sqrt(part) * (1 + part / 6);
+        const T part = (side * width - after) / (2 * (x.centre() - position));
+        const T angle = 2 * sqrt(part) * (1 + part / 6 + part * part * T(0.075));
+        const T damping_ratio = -oscillator.alpha() / oscillator.omega();
+        const T guess = high - angle * (1 - damping_ratio * angle / 3) / oscillator.omega();
         const T root = root_between(oscillator, distance, low, high, side, guess);
         since = segment.begin + Rooted<T>::at(oscillator, distance, root);
       }
