@@ -136,7 +136,7 @@ class Certifier {
     };
     sliding(drive_.plate, mode.plate, mode.plate_region, stage.plate_velocity);
     sliding(drive_.finger, mode.finger, mode.finger_region, {});
-    if (both_stuck(mode)) {
+    if (mode.both_stuck()) {
       holding(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
     } else {
       if (mode.plate == Slide::stuck) holding(segment.plate_force, at_plate);
@@ -144,10 +144,6 @@ class Certifier {
         holding(segment.finger_force, at_finger);
     }
     return stage;
-  }
-
-  static bool both_stuck(Mode mode) {
-    return mode.plate == Slide::stuck && mode.finger == Slide::stuck;
   }
 
   State state(const Stage& stage, T tau) const {

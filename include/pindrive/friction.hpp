@@ -128,7 +128,7 @@ class Friction {
   Mode holding(const Mode& stuck, const Mode& before, const Instant<T>& now, T x,
                T skin_force) const {
     const T w = now.plate_velocity.rate;
-    if (stuck.plate != Slide::stuck || stuck.finger != Slide::stuck || w == 0) {
+    if (!stuck.both_stuck() || w == 0) {
       const int side = overload(stuck, now, x, skin_force);
       return side == 0 ? stuck : released(stuck, -side);
     }

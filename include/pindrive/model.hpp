@@ -169,6 +169,7 @@ struct Mode {
   int plate_region{0}, finger_region{0};  ///< of the friction curve, while sliding
 
   bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
+  bool both_stuck() const { return plate == finger && finger == Slide::stuck; }
 };
 
 /// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or

@@ -66,8 +66,7 @@ class Motion {
   Friction friction(const Segment<T>& segment, T tau) const {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const T plate = segment.plate_force.at(oscillator, tau);
-    if (segment.mode.plate != Slide::stuck || segment.mode.finger != Slide::stuck)
-      return {plate, segment.finger_force.at(oscillator, tau)};
+    if (!segment.mode.both_stuck()) return {plate, segment.finger_force.at(oscillator, tau)};
     const T at_plate = drive_.plate.static_limit * inputs_.plate_load.from(segment.begin).at(tau);
     const T part = at_plate > 0 ? at_plate / (at_plate + drive_.finger.static_limit) : T(0);
     return {part * plate, (1 - part) * plate};

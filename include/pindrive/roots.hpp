@@ -267,36 +267,37 @@ void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T
 
 /// The earliest τ in (0, horizon] at which the path leaves its side, else infinity.
 template <class T>
-T first_root(const Oscillator<T>& oscillator, Path<T> path, int side, T horizon) {
+T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon) {
   constexpr T never = std::numeric_limits<T>::infinity();
-  T passed{0};
-  const bool fading = oscillator.oscillates() && oscillator.alpha() <= 0 && path.oscillates();
-  if (fading && path.drift == 0 && too_small(oscillator, path, side)) return never;
-  // While the line is out of the reach of a decaying oscillation, nothing need be looked at; else
-  // a few of its periods are, before the reach is measured again.
-  const bool patient = fading && path.drift != 0;
-  for (;;) {
-    T until = horizon - passed;
-    if (patient) {
-      // Not all of it, so that the path stays clearly on its side.
-      const T idle = out_of_reach(oscillator, path, side) * T(0.99);
-      if (!(idle < until)) return never;
-      if (idle * oscillator.omega() > 8) {
-        path = path.from(oscillator, idle);
-        passed += idle;
-        continue;
-      }
-      until = std::min(until, 64 / oscillator.omega());
-    }
+  const auto earliest = [&](const Path<T>& from_here, T until) {
     T first = never;
-    each_root(oscillator, path, side, until, [&](T root) {
+    each_root(oscillator, from_here, side, until, [&](T root) {
       first = root;
       return false;
     });
-    if (first < never) return passed + first;
-    if (!patient || !(passed + until < horizon)) return never;
-    path = path.from(oscillator, until);
-    passed += until;
+    return first;
+  };
+  const bool fading = oscillator.oscillates() && oscillator.alpha() <= 0 && path.oscillates();
+  if (!fading) return earliest(path, horizon);
+  if (path.drift == 0)
+    return too_small(oscillator, path, side) ? never : earliest(path, horizon);
+  // While the line is out of the reach of a decaying oscillation, nothing need be looked at; else
+  // a few of its periods are, before the reach is measured again.
+  Path<T> rest = path;
+  T passed{0};
+  for (;;) {
+    // Not all of it, so that the path stays clearly on its side.
+    const T idle = out_of_reach(oscillator, rest, side) * T(0.99);
+    if (!(idle < horizon - passed)) return never;
+    T leap = idle;
+    if (!(idle * oscillator.omega() > 8)) {
+      leap = std::min(horizon - passed, 64 / oscillator.omega());
+      const T first = earliest(rest, leap);
+      if (first < never) return passed + first;
+      if (!(passed + leap < horizon)) return never;
+    }
+    rest = rest.from(oscillator, leap);
+    passed += leap;
   }
 }
 

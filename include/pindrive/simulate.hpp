@@ -165,9 +165,9 @@ class Simulation {
                              bool hidden, bool just_changed, Exit exit) {
       if (!slides(slide)) return;
       const Path<T> level = surface;
-      const Path<T> speed = along(slide, T(1)) * (flow.velocity + T(-1) * level);
+      Path<T> above = along(slide, T(1)) * (flow.velocity + T(-1) * level);
       const Region<T> region = contact.region(index);
-      Path<T> above = speed;
+      const T speed = above.start;
       above.start -= region.from;
       // A pin that goes along with the border of a region may be sent back, but not twice.
       const bool away = just_changed && (!follows_ || tangential_ || bounced_);
@@ -182,8 +182,8 @@ class Simulation {
       };
       if (!hidden) consider(above, arrives, exit);
       if (!(region.to < never)) return;
-      Path<T> below = T(-1) * speed;
-      below.start += region.to;
+      Path<T> below = T(-1) * above;
+      below.start = region.to - speed;
       exit.cause = Cause::faster;
       consider(below, goes, exit);
     };
@@ -345,8 +345,7 @@ class Simulation {
     if (!exit.plate && !finger) return;
     const Mode stuck{exit.plate ? Slide::stuck : mode_.plate, finger ? Slide::stuck : mode_.finger,
                      mode_.plate_region, mode_.finger_region};
-    const bool parting = stuck.plate == Slide::stuck && stuck.finger == Slide::stuck &&
-                         now_.plate_velocity.rate != 0;
+    const bool parting = stuck.both_stuck() && now_.plate_velocity.rate != 0;
     const int side = sign(exit.plate ? mode_.plate : mode_.finger);
     mode_ = parting || held ? friction_.holding(stuck, mode_, now_, x_, skin_)
                             : friction_.arriving(stuck, side, now_, x_, skin_);

@@ -349,7 +349,7 @@ class Measurement {
           whole && stops(segment.event.plate), from, to, distance, times);
       use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
           whole && stops(segment.event.finger), from, to, distance, times);
-      if (both_stuck(segment))
+      if (segment.mode.both_stuck())
         for (const T tau : {from, to}) {
           using std::abs;
           const auto friction = motion_.friction(segment, tau);
@@ -363,10 +363,6 @@ class Measurement {
       peak(result.peak_stretch, segment, stretch, from, to);
       peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
     });
-  }
-
-  static bool both_stuck(const Segment<T>& segment) {
-    return segment.mode.plate == Slide::stuck && segment.mode.finger == Slide::stuck;
   }
 
   static void peak(T& largest, const Segment<T>& segment, const Path<T>& path, T from, T to) {
@@ -385,7 +381,7 @@ class Measurement {
     using std::abs;
     if (slide == Slide::absent) return;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!both_stuck(segment)) peak(contact.peak_force, segment, force, from, to);
+    if (!segment.mode.both_stuck()) peak(contact.peak_force, segment, force, from, to);
     if (!slides(slide)) {
       contact.time_stuck += times * (to - from);
       return;
