@@ -71,7 +71,7 @@ void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, 
   extrema(segment, path, to - period, to, visit);
 }
 
-/// Measures a motion over [0, duration]; what happens later, or never, is NaN.
+/// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
 template <class T>
 class Measurement {
  public:
@@ -109,7 +109,8 @@ class Measurement {
   /// short it is beside x.
   static T moved(const Segment<T>& segment, T from, T to) {
     const Path<T>& x = segment.flow.position;
-    return x.change(segment.after(to), to) - x.change(segment.after(from), from);
+    const T change = x.change(segment.after(to), to);
+    return from > 0 ? change - x.change(segment.after(from), from) : change;
   }
 
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
@@ -413,7 +414,7 @@ class Measurement {
     return end - energy(finger.region(finger.region_of(speed)).at(speed));
   }
 
-  Motion<T> motion_;
+  const Motion<T>& motion_;
   T duration_;
 };
 
