@@ -44,7 +44,7 @@ class Friction {
     Equation<T> sum{
         drive_.damping, drive_.stiffness, {inertia - spring, T(0)}, abs(inertia) + abs(spring)};
     add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, now.plate_velocity, now.load);
-    if (mode.finger == Slide::gripping) {
+    if (!Surface::plain && mode.finger == Slide::gripping) {
       sum.stiffness += drive_.finger.stiffness;
       sum.pull.value -= skin_force;
       sum.size += abs(skin_force);
@@ -57,8 +57,8 @@ class Friction {
   /// Whether no contact gives way or changes its force with the pin's speed: it neither damps nor
   /// stiffens.
   bool constant(const Mode& mode) const {
-    return mode.finger != Slide::gripping && drive_.plate.regions == 0 &&
-           drive_.finger.regions == 0;
+    return Surface::plain || (mode.finger != Slide::gripping && drive_.plate.regions == 0 &&
+                              drive_.finger.regions == 0);
   }
 
   /// The velocity of the surface that a stuck pin moves with, m/s.
@@ -99,7 +99,7 @@ class Friction {
   Path<T> finger_force(const Mode& mode, const Equation<T>& equation, const Flow<T>& flow,
                        T skin_force) const {
     if (mode.finger == Slide::stuck && mode.plate != Slide::stuck) return needed(equation, flow);
-    if (mode.finger != Slide::gripping)
+    if (Surface::plain || mode.finger != Slide::gripping)
       return sliding_force(drive_.finger, mode.finger, mode.finger_region, flow.velocity, {},
                            {T(1), T(0)});
     Path<T> force = -drive_.finger.stiffness * flow.position;

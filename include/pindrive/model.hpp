@@ -60,6 +60,7 @@ struct Contact {
   const Region<T>* curve{nullptr};
   int regions{0};
 
+  static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
   Region<T> region(int index) const {
     if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
@@ -79,6 +80,7 @@ template <class T>
 struct Coulomb {
   T kinetic{0}, static_limit{0};
 
+  static constexpr bool plain = true;  ///< neither a curve nor skin
   static constexpr int regions = 0;
   static constexpr T stiffness = std::numeric_limits<T>::infinity();
   static constexpr bool rigid() { return true; }

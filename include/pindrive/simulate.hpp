@@ -76,17 +76,19 @@ class Simulation {
     segment.begin = time_;
     segment.end = never;
     segment.mode = mode_;
-    segment.flow =
-        mode_.stuck() ? Flow<T>::stuck(x_, friction_.level(mode_, now_)) : free_flow(equation);
+    if (mode_.stuck())
+      segment.flow = Flow<T>::stuck(x_, friction_.level(mode_, now_));
+    else
+      segment.flow = free_flow(equation);
     segment.plate_velocity = now_.plate_velocity;
     segment.plate_force = friction_.plate_force(mode_, now_, equation, segment.flow);
     segment.finger_force = friction_.finger_force(mode_, equation, segment.flow, skin_);
 
     Exit exit = comes_to_rest(segment) ? rest(segment.flow) : first_exit(segment);
     // What happens at the row of an input to rounding is judged with what the row brings.
-    if (exit.tau < never && row_ < never && row_ - (time_ + exit.tau) <= rounding * row_)
+    if (row_ < never && exit.tau < never && row_ - (time_ + exit.tau) <= rounding * row_)
       exit = {row_ - time_, Cause::input, false, false, 0};
-    finished_ = exit.tau == never || time_ + exit.tau >= inputs_.duration;
+    finished_ = !(time_ + exit.tau < inputs_.duration);
     if (!finished_) {
       leave(segment, exit);
       return segment;
@@ -118,7 +120,7 @@ class Simulation {
   /// of a region with no more than rounding against it.
   bool follows(const Equation<T>& equation) const {
     using std::abs;
-    if (tangential_ || !bordering_) return tangential_;
+    if (Surface::plain || tangential_ || !bordering_) return tangential_;
     const T against = equation.pull.value - equation.damping * v_ - drive_.mass * followed();
     return abs(against) <= equation.blur(v_);
   }
@@ -210,7 +212,7 @@ class Simulation {
             finger);
     sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, nearer < 0,
             changed_plate_, plate);
-    if (mode.finger == Slide::gripping)
+    if (!Surface::plain && mode.finger == Slide::gripping)
       holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
     if (mode.stuck())
       holding(mode.plate == Slide::stuck ? segment.plate_force : segment.finger_force,
@@ -280,18 +282,19 @@ class Simulation {
     segment.moved = moved;
     x_ = segment.flow.position.at(moved, exit.tau);
     v_ = segment.flow.velocity.at(moved, exit.tau);
-    if (before.finger == Slide::gripping) skin_ = -segment.finger_force.at(moved, exit.tau);
+    if (!Surface::plain && before.finger == Slide::gripping)
+      skin_ = -segment.finger_force.at(moved, exit.tau);
     segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
     advance(exit);
     if (before.stuck()) v_ = friction_.level(before, now_).value;
     // Where no force jumps, a pin at the same instant still leaves as the event before let it go.
-    const bool skin_follows = exit.cause == Cause::gives_way && exit.finger &&
+    const bool skin_follows = !Surface::plain && exit.cause == Cause::gives_way && exit.finger &&
                               before.finger == Slide::gripping &&
                               drive_.finger.kinetic == drive_.finger.static_limit;
-    const bool at_once = exit.tau == 0 && (exit.cause == Cause::slower ||
-                                           exit.cause == Cause::faster || skin_follows);
+    const bool border =
+        !Surface::plain && (exit.cause == Cause::slower || exit.cause == Cause::faster);
+    const bool at_once = exit.tau == 0 && (border || skin_follows);
     tangential_ = tangential_ && at_once;
-    const bool border = exit.cause == Cause::slower || exit.cause == Cause::faster;
     const bool same_instant = !(segment.end > segment.begin);
     bounced_ = border && bordering_ && same_instant;
     bordering_ = border;
