@@ -96,6 +96,13 @@ class Oscillator {
     return {-1 - exp(alpha_ * half_period()), T(0)};
   }
 
+  /// How far from zero a free oscillation turns whose rate has this value and slope at τ = 0: so far,
+  /// times e^(ατ), whenever that rate vanishes.
+  T reach(T rate, T rate_slope) const {
+    using std::hypot;
+    return hypot(omega_ * rate, rate_slope - alpha_ * rate) / omega0_squared_;
+  }
+
   /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
   Zeros<T> zeros(T value, T slope) const {
     using std::atan2;

@@ -49,9 +49,15 @@ void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visit
   const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
   const Path<T> slope = rest.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);
+  // A vibration without a line turns at a distance from its centre that is known.
+  const bool vibrates = path.straight() && oscillator.oscillates();
+  T reach = vibrates ? side * oscillator.reach(slope.value, slope.slope) : T(0);
+  using std::exp;
   if (side != 0)
     each_root(oscillator, slope, side, to - from, [&](T tau) {
-      visit(from + tau, rest.at(oscillator, tau));
+      visit(from + tau, vibrates ? rest.centre() + reach * exp(oscillator.alpha() * tau)
+                                 : rest.at(oscillator, tau));
+      reach = -reach;
       return true;
     });
   visit(to, path.at(segment.after(to), to));
