@@ -53,9 +53,7 @@ class Oscillator {
   /// No part of the motion changes at more than twice the root of this rate, 1/s².
   T hurry_squared() const { return omega0_squared_ + alpha_ * alpha_; }
   T period() const { return 2 * half_period(); }
-  T half_period() const {
-    return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity();
-  }
+  T half_period() const { return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity(); }
 
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }

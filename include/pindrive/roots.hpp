@@ -279,8 +279,7 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
   };
   const bool fading = oscillator.oscillates() && oscillator.alpha() <= 0 && path.oscillates();
   if (!fading) return earliest(path, horizon);
-  if (path.drift == 0)
-    return too_small(oscillator, path, side) ? never : earliest(path, horizon);
+  if (path.drift == 0) return too_small(oscillator, path, side) ? never : earliest(path, horizon);
   // While the line is out of the reach of a decaying oscillation, nothing need be looked at; else
   // a few of its periods are, before the reach is measured again.
   Path<T> rest = path;

@@ -478,7 +478,7 @@ class Simulation {
   bool changed_plate_{false},
       changed_finger_{false};  ///< by the last event: a zero there is no root
   bool bordering_{false},
-      bounced_{false};      ///< came to the border of a region; from another, at once
+      bounced_{false};  ///< came to the border of a region; from another, at once
   struct {
     bool plate{false}, finger{false};
   } let_go_;                ///< at the last event …
