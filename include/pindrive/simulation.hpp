@@ -235,8 +235,9 @@ class Simulation {
                           oscillator.oscillates() && !(oscillator.alpha() > 0);
     if (!vibrates || exit.tau == T(0) || exit.tau == never) return false;
     const T v = flow.velocity.at(oscillator, exit.tau);
+    const T acceleration = flow.acceleration().at(oscillator, exit.tau);
     const T swing = oscillator.omega() * flow.amplitude();
-    return exit.side * v * abs(v) <= rounding * swing * swing;
+    return exit.side * acceleration < 0 && exit.side * v * abs(v) <= rounding * swing * swing;
   }
 
   /// Whether a pin that slides under constant friction comes to rest on the finger before anything
