@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from drives import Release, releases
 from pindrive import Contact, Drive, Motion, _core, simulate, simulate_batch
-from pindrive.quantities import ENDING, TRANSIENT
+from pindrive.quantities import ENDING, ENERGY, TRANSIENT
 
 ENDINGS = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
 NUMBERS = {q.name: q.name.replace(".", "_") for q in (*TRANSIENT, *ENDING)}
@@ -125,6 +125,23 @@ def test_every_number_is_that_of_simulate_to_the_bit() -> None:
                 one = one.drop_vars("duration").assign(duration=motion.duration)
             assert_same(one, motion)
     assert endings >= {"moving", "resting", "decaying", "free", "grazing", "stick_slip"}
+
+
+def test_the_ledger_of_energies_is_there_when_asked_for_and_closes() -> None:
+    points = drawn(200, seed=11)
+    assert not any(name.startswith("energy") for name in simulate_batch(**points))
+    batch = simulate_batch(**points, energy=True)
+    names = {q.name: q.name.replace(".", "_") for q in ENERGY}
+    for i in range(200):
+        motion = alone({name: float(values[i]) for name, values in points.items()})
+        if motion.status == "ok":
+            numbers, one = motion.numbers(), batch.isel(dim_0=i)
+            assert {k: one[v].item() for k, v in names.items()} == {k: numbers[k] for k in names}
+    terms = [batch[v] for v in names.values() if v != "energy_residual"]
+    largest = np.max([np.abs(term) for term in terms], axis=0)
+    assert float(abs(batch.energy_residual / largest).max()) < 1e-12
+    bad = simulate_batch(**(PIN | {"mass": [-1.0, 0.01]}), energy=True)
+    assert np.isnan(bad.energy_spring_start.values).tolist() == [True, False]
 
 
 @given(releases())
@@ -264,11 +281,11 @@ def test_the_first_bad_argument_is_told() -> None:
 
 
 def test_every_variable_has_its_meaning_and_unit() -> None:
-    batch = batch_of()
+    batch = batch_of(energy=True)
     for column in batch.variables.values():
         assert column.attrs["long_name"]
-    for quantity in (*TRANSIENT, *ENDING):
-        variable = batch[NUMBERS[quantity.name]]
+    for quantity in (*TRANSIENT, *ENDING, *ENERGY):
+        variable = batch[quantity.name.replace(".", "_")]
         assert variable.attrs.get("units", "") == quantity.unit
         assert variable.attrs["symbol"] == quantity.symbol
     assert batch.mass.attrs["units"] == "kg"

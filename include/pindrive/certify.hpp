@@ -218,12 +218,9 @@ class Certifier {
 
   /// Holds the laws all along a segment; its last state.
   State walk(const Stage& stage) {
-    using std::sqrt;
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
-    const T alpha = oscillator.alpha();
-    const T fastest = oscillator.oscillates() ? sqrt(oscillator.omega0_squared())
-                                              : std::abs(alpha) + oscillator.omega();
-    const T quick = 8 / fastest;  // so far gauss16 is exact, for products too
+    const T alpha = oscillator.alpha(), fastest = oscillator.fastest_rate();
+    const T quick = exact_over / fastest;
     Errors errors;
     State from = state(stage, T(0));
     laws(stage, from, errors);

@@ -35,8 +35,9 @@ struct Ledger {
   }
 };
 
+/// The ledger over [0, duration] of a motion whose numbers are known.
 template <class T>
-Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
+Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>& numbers) {
   const Drive<T>& drive = motion.drive();
   const bool skin = drive.finger.present() && !drive.finger.rigid();
   Ledger<T> ledger{};
@@ -64,10 +65,14 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
     ledger.inertia_work +=
         over(Line<T>{drive.mass * segment.plate_velocity.rate, T(0)}, flow.velocity);
   });
-  const auto uses = Measurement<T>(motion, duration).transient(T(settling_band));
-  ledger.plate_dissipated = uses.plate.dissipated;
-  ledger.finger_dissipated = uses.finger.dissipated;
+  ledger.plate_dissipated = numbers.plate.dissipated;
+  ledger.finger_dissipated = numbers.finger.dissipated;
   return ledger;
+}
+template <class T>
+Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
+  return energy_ledger(motion, duration,
+                       Measurement<T>(motion, duration).transient(T(settling_band)));
 }
 
 }  // namespace pindrive

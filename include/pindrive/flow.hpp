@@ -55,6 +55,12 @@ class Oscillator {
   T period() const { return 2 * half_period(); }
   T half_period() const { return oscillates() ? pi / omega_ : std::numeric_limits<T>::infinity(); }
 
+  /// The modulus of its fastest rate, 1/s.
+  T fastest_rate() const {
+    using std::abs;
+    using std::sqrt;
+    return oscillates() ? sqrt(omega0_squared_) : abs(alpha_) + omega_;
+  }
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
 

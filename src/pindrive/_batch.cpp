@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "pindrive/batch.hpp"
+#include "pindrive/energy.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;
@@ -25,6 +26,7 @@ using nb::literals::operator""_a;
 namespace {
 
 using Summary = pd::Summary<double>;
+using Ledger = pd::Ledger<double>;
 
 constexpr std::size_t share = 32;           // points that a thread takes at a time
 constexpr std::size_t patience = 1U << 16;  // segments followed between two looks for Ctrl-C
@@ -67,24 +69,28 @@ Point point(const Inputs& inputs, std::size_t i) {
   return found;
 }
 
-Summary summarise(const Point& p, std::vector<pd::Segment<double>>& segments) {
-  const pd::Drive<double> drive{p[mass],
-                                p[stiffness],
-                                p[damping],
-                                {p[plate_kinetic], p[plate_static]},
-                                {p[finger_kinetic], p[finger_static], p[finger_stiffness]}};
-  const pd::Inputs<double> inputs{p[mouse_velocity], p[displacement], p[velocity], p[duration]};
-  return pd::summarise(drive, inputs, pd::settling_band, segments);
+pd::Drive<double> drive_of(const Point& p) {
+  return {p[mass],
+          p[stiffness],
+          p[damping],
+          {p[plate_kinetic], p[plate_static]},
+          {p[finger_kinetic], p[finger_static], p[finger_stiffness]}};
+}
+
+pd::Inputs<double> inputs_of(const Point& p) {
+  return {p[mouse_velocity], p[displacement], p[velocity], p[duration]};
 }
 
 // ---- out -----------------------------------------------------------------------------------------
 
+/// A number that is read off a summary or a ledger.
+template <class Source>
 struct Number {
   const char* name;  ///< in the table of quantities
-  double (*of)(const Summary&);
+  double (*of)(const Source&);
 };
 
-constexpr Number numbers[] = {
+constexpr Number<Summary> numbers[] = {
     {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; }},
     {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; }},
     {"transient.trough_displacement",
@@ -117,7 +123,21 @@ constexpr Number numbers[] = {
     {"ending.period", [](const Summary& s) { return s.outcome.period; }},
     {"duration", [](const Summary& s) { return s.duration; }},
 };
-constexpr std::size_t number_count = std::size(numbers);
+constexpr Number<Ledger> energies[] = {
+    {"energy.kinetic_start", [](const Ledger& l) { return l.kinetic_start; }},
+    {"energy.kinetic_end", [](const Ledger& l) { return l.kinetic_end; }},
+    {"energy.spring_start", [](const Ledger& l) { return l.spring_start; }},
+    {"energy.spring_end", [](const Ledger& l) { return l.spring_end; }},
+    {"energy.skin_start", [](const Ledger& l) { return l.skin_start; }},
+    {"energy.skin_end", [](const Ledger& l) { return l.skin_end; }},
+    {"energy.plate_work", [](const Ledger& l) { return l.plate_work; }},
+    {"energy.inertia_work", [](const Ledger& l) { return l.inertia_work; }},
+    {"energy.damper_dissipated", [](const Ledger& l) { return l.damper_dissipated; }},
+    {"energy.plate_dissipated", [](const Ledger& l) { return l.plate_dissipated; }},
+    {"energy.finger_dissipated", [](const Ledger& l) { return l.finger_dissipated; }},
+    {"energy.residual", [](const Ledger& l) { return l.residual(); }},
+};
+constexpr std::size_t number_count = std::size(numbers), energy_count = std::size(energies);
 
 /// A column of flags or counts over all points, each of which is written once.
 template <class T>
@@ -141,17 +161,19 @@ class Column {
 class Batch {
  public:
   /// A point whose status is not 0 is bad: it is left out, and marked.
-  Batch(const Inputs& inputs, const Statuses& given)
+  Batch(const Inputs& inputs, const Statuses& given, bool energy)
       : inputs_(inputs),
         given_(given),
+        energy_(energy),
         // One block, which NumPy asks the system for in large pages.
-        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(number_count, size()))),
+        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(rows(), size()))),
         numbers_(nb::cast<nb::ndarray<double, nb::c_contig, nb::device::cpu>>(block_).data()),
         status_(size()),
         ending_(size()),
         events_(size()) {}
 
   std::size_t size() const { return given_.size(); }
+  std::size_t rows() const { return number_count + (energy_ ? energy_count : 0); }
 
   /// Works all points off with so many threads, of which the caller's is one. `look` is called by
   /// the caller's now and then; when it returns false all of them stop.
@@ -177,7 +199,8 @@ class Batch {
 
   nb::dict table() {
     nb::dict columns;
-    for (std::size_t k = 0; k < number_count; ++k) columns[numbers[k].name] = block_[k];
+    for (std::size_t k = 0; k < rows(); ++k)
+      columns[k < number_count ? numbers[k].name : energies[k - number_count].name] = block_[k];
     columns["status"] = status_.array();
     columns["ending"] = ending_.array();
     columns["events"] = events_.array();
@@ -209,25 +232,36 @@ class Batch {
       status_[i] = given_.data()[i];
       ending_[i] = -1;
       events_[i] = 0;
-      for (std::size_t k = 0; k < number_count; ++k)
+      for (std::size_t k = 0; k < rows(); ++k)
         numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
       return;
     }
-    const Summary summary = summarise(point(inputs_, i), segments);
+    const Point p = point(inputs_, i);
+    const pd::Drive<double> drive = drive_of(p);
+    const pd::Inputs<double> inputs = inputs_of(p);
+    const Summary summary = pd::summarise(drive, inputs, pd::settling_band, segments);
     status_[i] = static_cast<std::int8_t>(summary.outcome.status);
     ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
     events_[i] = static_cast<std::int32_t>(summary.events);
-    write(summary, numbers_ + i, std::make_index_sequence<number_count>{});
+    write(numbers, summary, numbers_ + i, std::make_index_sequence<number_count>{});
+    if (!energy_) return;
+    const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
+                                    summary.outcome);
+    write(energies, pd::energy_ledger(motion, summary.duration, summary.transient),
+          numbers_ + number_count * size() + i, std::make_index_sequence<energy_count>{});
   }
 
-  template <std::size_t... k>
-  void write(const Summary& summary, double* first, std::index_sequence<k...>) {
-    const std::size_t rows = size();
-    ((first[k * rows] = numbers[k].of(summary)), ...);
+  /// Each number to its own row, one below the other.
+  template <class Source, std::size_t count, std::size_t... k>
+  void write(const Number<Source> (&of)[count], const Source& source, double* first,
+             std::index_sequence<k...>) {
+    const std::size_t stride = size();
+    ((first[k * stride] = of[k].of(source)), ...);
   }
 
   const Inputs& inputs_;
   const Statuses& given_;
+  bool energy_;
   nb::object block_;
   double* numbers_;  ///< its rows are the columns
   Column<std::int8_t> status_, ending_;
@@ -236,8 +270,9 @@ class Batch {
   std::atomic<bool> stopped_{false};
 };
 
-nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads) {
-  Batch batch(inputs, status);
+nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads,
+                        bool energy) {
+  Batch batch(inputs, status, energy);
   bool interrupted = false;
   {
     const nb::gil_scoped_release unlocked;
@@ -256,9 +291,9 @@ nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_
 void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
-  m.def("simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a,
+  m.def("simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "energy"_a,
         "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
         "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
         "stiffness, mouse velocity, displacement, velocity, duration). A point whose status is "
-        "not 0 is left out: its numbers are NaN.");
+        "not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
 }

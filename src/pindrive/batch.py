@@ -72,6 +72,7 @@ def simulate_batch(
     displacement: Values,
     velocity: Values | None = None,
     duration: Values | None = None,
+    energy: bool = False,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
@@ -95,15 +96,16 @@ def simulate_batch(
         displacement: x(0), m.
         velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
         duration: s, greater than 0; infinite or None: long enough to see each ending.
+        energy: the terms of the energy ledger too; a point then takes some ten times as long.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
 
     Returns:
         Variables in the shape that the arguments have together, with unit and meaning in their
         attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
-        ending; `ending`, how it ends, and `status`, both with their values and meanings in the
-        attributes `flag_values` and `flag_meanings`; and the number of `events`. The arguments are
-        the coordinates. A point that `simulate` would refuse does not stop the others: its status
-        says which argument is bad, and its numbers are NaN.
+        ending, and with `energy` those of the ledger; `ending`, how it ends, and `status`, both
+        with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
+        number of `events`. The arguments are the coordinates. A point that `simulate` would refuse
+        does not stop the others: its status says which argument is bad, and its numbers are NaN.
 
     Raises:
         ValueError: an argument holds something else than numbers, shapes do not fit together, or
@@ -123,7 +125,7 @@ def simulate_batch(
         aligned[name] = np.array(inf) if name in _INFINITE else aligned[_SAME_AS[name]]
     status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
-    table = _core.simulate_batch(spread, status.ravel(), workers)
+    table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
     table["transient.settled"] = ~np.isnan(table["transient.settling_time"])
 
     if np.isinf(aligned["duration"]).any():
