@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from time import process_time
+from typing import Any
 
 import numpy as np
 
@@ -30,11 +31,11 @@ def single(drive: Floats) -> Floats:
 
 def batch(drives: Floats) -> Lap:
     """All numbers on one thread; its error is that of its largest and smallest position."""
-    points = drawn(MANY, seed=2)
+    points: dict[str, Any] = drawn(MANY, seed=2)
     begin = process_time()
     simulate_batch(**points, duration=DURATION, threads=1)
     seconds = (process_time() - begin) / MANY
-    given = dict(zip(ORDER, drives, strict=True))
+    given: dict[str, Any] = dict(zip(ORDER, drives, strict=True))
     numbers = simulate_batch(**given, duration=DURATION, threads=1)
     errors = np.zeros(drives.shape[1])
     for i, drive in enumerate(drives.T.tolist()):
