@@ -1,8 +1,9 @@
-"""Throughput of `simulate_batch` beside a compiled Moreau-Jean stepper, on one thread, in one run.
+"""Throughput of pindrive beside a compiled Moreau-Jean stepper, on one thread, in one run.
 
-The stepper (racing/moreau_jean.py) is timed twice: keeping nothing but the last state, and
-measuring on the way what a stepper can of the numbers that `simulate_batch` gives. Its error is the
-largest |x - x_exact| over its steps, as a part of the release displacement.
+Both are timed twice: keeping nothing but the last state (of pindrive the core alone, by
+build/cpp/core), and with numbers: all that `simulate_batch` gives, and what the stepper
+(racing/moreau_jean.py) can measure of them on the way. Its error is the largest |x - x_exact| over
+its steps, as a part of the release displacement.
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ def seconds(call: Callable[[], object]) -> float:
 
 
 def core_alone(program: Path, count: int) -> Callable[[], float]:
-    """Seconds that the core takes without the numbers, as its own benchmark prints them."""
+    """Seconds that the core takes to the last states, as its own benchmark prints them."""
 
     def run() -> float:
         told = subprocess.run([program, str(count)], capture_output=True, text=True, check=True)
@@ -115,7 +116,7 @@ def main() -> None:
     }
     if given.core.exists():
         core = core_alone(given.core, given.count)
-        racers["core, segments alone"] = lambda: core() / given.count
+        racers["core, last state alone"] = lambda: core() / given.count
     times: dict[str, list[float]] = {name: [] for name in racers}
     for _ in range(given.rounds):
         for name, race in racers.items():
@@ -131,9 +132,9 @@ def main() -> None:
     like = took["stepper, with its numbers"] / ours
     bare = took["stepper, last state alone"] / ours
     print(f"\nall numbers by both: {like:.1f} times; by simulate_batch alone: {bare:.1f} times")
-    if "core, segments alone" in took:
-        least = took["stepper, last state alone"] / took["core, segments alone"]
-        print(f"numbers by neither: {least:.1f} times")
+    if "core, last state alone" in took:
+        least = took["stepper, last state alone"] / took["core, last state alone"]
+        print(f"last state alone by both: {least:.1f} times")
     coarse, fine = stepper_errors(drives[:, :500], given.step, steps), exact_errors(drives[:, :20])
     print(f"stepper's error: median {np.median(coarse):.1e}, largest {coarse.max():.1e} of 500")
     print(f"pindrive's error against thirty digits: largest {fine.max():.1e} of 20")
