@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -17,12 +17,6 @@ from pindrive.refusing import (
     measures,
     refusing,
 )
-
-if TYPE_CHECKING:
-    from pindrive.device.array import PinArray
-    from pindrive.device.hand import HandPath
-    from pindrive.device.reading import Reading
-    from pindrive.device.scene import Scene
 
 STROKES = "strokes"
 
@@ -83,11 +77,20 @@ def scan(
             raise ValueError(f"--pin must be {required}, got {pin}")
 
         from pindrive.device.judging import judge
+        from pindrive.device.page import Page
         from pindrive.device.scanning import scan as follow
         from pindrive.output import atomic_write, naming
 
-        scene = _scene(text, image, grating, font, reading, device.array)
-        hand = _path(path, reading, scene, device.array)
+        page = Page(
+            text=None if text is None else text.replace("\\n", "\n"),
+            image=image,
+            grating=None if grating is None else tuple(measures(grating, "m", "4 mm", "--grating")),
+            font=font,
+            path=None if path == STROKES else Path(path),
+        )
+        page.check("--{}")
+        scene = page.scene(reading, device.array)
+        hand = page.hand(reading, scene, device.array)
         if film:
             frame_times(hand, slow)
         parts = {target: stack.enter_context(atomic_write(target)) for target in outputs}
@@ -123,35 +126,3 @@ def scan(
     show(judgement_report(judgement))
     for target in outputs:
         typer.echo(f"Wrote {target}")
-
-
-def _scene(
-    text: str | None,
-    image: Path | None,
-    grating: str | None,
-    font: Path | None,
-    reading: Reading,
-    array: PinArray,
-) -> Scene:
-    """What is on the page."""
-    given = [
-        name
-        for name, value in (("--text", text), ("--image", image), ("--grating", grating))
-        if value is not None
-    ]
-    if len(given) != 1:
-        found = " and ".join(given) or "none of them"
-        raise ValueError(f"give exactly one of --text, --image and --grating, got {found}")
-    if font and text is None:
-        raise ValueError(f"--font {font}: goes with --text alone")
-    if text is not None:
-        return reading.text(text.replace("\\n", "\n"), array, font)
-    if image is not None:
-        return reading.image(image)
-    pitches = measures(grating or "", "m", "4 mm", "--grating")
-    return reading.grating(pitches, array)
-
-
-def _path(path: str, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
-    """How the hand moves."""
-    return reading.strokes(scene, array) if path == STROKES else reading.record(path)
