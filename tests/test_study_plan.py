@@ -226,8 +226,8 @@ def test_a_constant_load_is_a_stronger_plate(tmp_path: Path) -> None:
 
 REFUSED = {
     "axes = 3": "axes must be a table, [axes], got 3",
-    "colour = 1": 'unknown key "colour"; there are name, base, outputs, zip, chunk, axes, sample, '
-    "tolerances, specification",
+    "colour = 1": 'unknown key "colour"; there are name, base, page, outputs, zip, chunk, axes, '
+    "sample, tolerances, specification",
     "ax.mass = [1]": 'unknown key "ax"; did you mean axes?',
     "[drive]\nmass = 1": "give base or the table drive, not both",
     "[axes]\nmas = [1]": "axes: unknown key mas; did you mean drive.mass?",
@@ -235,8 +235,8 @@ REFUSED = {
     '[axes]\nkinetic = ["1 mN"]': "axes: give the key in full, plate.kinetic or finger.kinetic",
     "[axes]\nplate.curve = [1]": "axes: plate.curve is no single number, it cannot be varied",
     "[axes]\ndevice.name = [1]": "axes: device.name is no single number, it cannot be varied",
-    "[axes]\nscan.hand_speed = [1]": "axes: scan.hand_speed belongs to a scan; a study varies the "
-    "pin's release",
+    "[axes]\nscan.hand_speed = [1]": "axes: scan.hand_speed acts in a scan; say what is on the "
+    'page, as with grating = ["4 mm"] in [page]',
     "[axes]\nmass = []": "axes.drive.mass must be a list of at least one value, got []",
     '[axes]\nmass = ["1 g", "2 mm"]': "axes.drive.mass[1] must be in kg or a unit alike, like "
     '"10 g", got "2 mm"',

@@ -93,6 +93,7 @@ def test_the_worst_case_is_no_better_than_a_million_draws() -> None:
     slowest, narrowest = found.worst
     assert slowest.value >= np.quantile(many["transient_settling_time"], 0.9999)
     assert narrowest.value <= np.quantile(many["transient_swing"], 0.0001)
+    assert slowest.motion is not None
     assert slowest.motion.transient.settling_time == slowest.value
     assert slowest.motion.certificate().worst < 1e-9
     for case in found.worst:

@@ -1,4 +1,4 @@
-"""The commands of studies: many releases of one device, each with other values."""
+"""The commands of studies: many releases or scans of one device, each with other values."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def map_study(
     ] = None,
     number: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="What to draw; settling_time unless given."),
+        typer.Option(metavar="NAME", help="What to draw; settling_time or shown_part if none."),
     ] = None,
     at: Annotated[
         list[str] | None,
@@ -153,8 +153,12 @@ def sensitivity(
         bool, typer.Option("--tolerances", help="Over [tolerances] instead of [axes].")
     ] = False,
     rows: Annotated[
-        int, typer.Option(metavar="COUNT", help="Rows of the design, a power of 2.")
-    ] = 8192,
+        int | None,
+        typer.Option(
+            metavar="COUNT",
+            help="Rows of the design, a power of 2; 8192 unless given, of scans 256.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of the design and the bootstrap.")] = 1,
     threads: Annotated[
         int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
@@ -193,7 +197,14 @@ def robustness(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
     ] = None,
-    draws: Annotated[int, typer.Option(metavar="COUNT", min=1, help="Random designs.")] = 100_000,
+    draws: Annotated[
+        int | None,
+        typer.Option(
+            metavar="COUNT",
+            min=1,
+            help="Random designs; 100 000 unless given, of scans 1000.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of the draws and the search.")] = 1,
     threads: Annotated[
         int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")

@@ -10,7 +10,8 @@ from pindrive.config import TABLES, keys_meant, not_known
 from pindrive.quantities import refusal
 from pindrive.schema import number
 from pindrive.study.axis import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
-from pindrive.template import DRIVE, WHOLE, usual
+from pindrive.study.plan import has_part
+from pindrive.template import DRIVE, NUMBERS, usual
 from pindrive.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
@@ -31,31 +32,36 @@ def written_axes(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
             yield given, spec
 
 
-def sweepable(given: str, place: str) -> str:
-    """The key that is meant, if it holds a number.
+def sweepable(given: str, place: str, scans: bool) -> str:
+    """The key that is meant, if it holds a number and has a part in scans, or else in releases.
 
     Raises:
-        ValueError: it is unknown, may mean two, or is no number.
+        ValueError: it is unknown, may mean two, is no number or has no part.
     """
     keys = keys_meant(given)
     if not keys:
         raise ValueError(f"{place}: {not_known(given, tables=False)}")
     if len(keys) > 1:
         raise ValueError(f"{place}: give the key in full, {' or '.join(keys)}")
-    if keys[0] in WHOLE:
-        raise ValueError(f"{place}: {keys[0]} belongs to a scan; a study varies the pin's release")
-    if keys[0] not in DRIVE or not DRIVE[keys[0]].may_be_constant:
+    if keys[0] not in NUMBERS or not NUMBERS[keys[0]].may_be_constant:
         raise ValueError(f"{place}: {keys[0]} is no single number, it cannot be varied")
+    if not has_part(keys[0], scans):
+        why = (
+            "has no part in a scan, in which the hand moves the mouse; leave out [page] to vary it"
+            if keys[0] in DRIVE
+            else 'acts in a scan; say what is on the page, as with grating = ["4 mm"] in [page]'
+        )
+        raise ValueError(f"{place}: {keys[0]} {why}")
     return keys[0]
 
 
 class AxisReader:
     """Reads what is written for one key; says mistakes with the file and the key."""
 
-    def __init__(self, file: str, table: str, key: str, base: float | None) -> None:
+    def __init__(self, file: str, table: str, key: str, base: float | None, scans: bool) -> None:
         self._file, self._label, self._key = file, f"{table}.{key}", key
-        self._quantity: Quantity = DRIVE[key]
-        self._base = base
+        self._quantity: Quantity = NUMBERS[key]
+        self._base, self._scans = base, scans
         self._tolerance = table == "tolerances"
 
     def read(self, spec: object) -> Axis:
@@ -138,8 +144,8 @@ class AxisReader:
             raise ValueError(
                 self._refusal('the key that it follows, like of = "plate.kinetic"', of, ".of")
             )
-        key = sweepable(of, f"{self._file}: {self._label}.of")
-        if key == self._key or DRIVE[key].unit != self._quantity.unit:
+        key = sweepable(of, f"{self._file}: {self._label}.of", self._scans)
+        if key == self._key or NUMBERS[key].unit != self._quantity.unit:
             required = f"another key in {self._quantity.unit}"
             raise ValueError(self._refusal(required, of, ".of"))
         return Linked(key, self._plain(spec["times"], ".times"))

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from pindrive.study.influence import Influence
+    from pindrive.study.local import Elasticities
 
 _SIGNED: Final = LinearSegmentedColormap.from_list(
     "signed", [PALETTE["stick"], "#F6C6A8", "white", "#A9CFE8", PALETTE["curve"]]
@@ -50,12 +51,15 @@ def plot_influence(found: Influence, name: str) -> Figure:
     with matplotlib.style.context(STYLE, after_reset=True):
         height = 30 + 5.6 * len(numbers)
         figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
-        near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
-        _draw_near(near, found, numbers)
+        if found.near:
+            near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
+            _draw_near(near, found, found.near, numbers)
+        else:
+            near = over = figure.subplots()
         _draw_over(over, found, numbers)
         near.set_yticks(range(len(numbers)), [words(n) for n in numbers])
         near.set_ylim(len(numbers) - 0.5, -0.5)
-        for axes in (near, over):
+        for axes in {near, over}:
             ticks = [f"{symbol(variable(key))}" for key in found.keys]
             axes.set_xticks(range(len(found.keys)), ticks)
             axes.set_xlim(-0.5, len(found.keys) - 0.5)
@@ -74,7 +78,8 @@ def plot_influence(found: Influence, name: str) -> Figure:
 
 
 def _known(found: Influence, number: str) -> bool:
-    return any(not np.isnan(x) for x in found.near.table[number].values())
+    near = found.near.table[number] if found.near else {}
+    return any(not np.isnan(x) for x in near.values())
 
 
 def _ranges(found: Influence) -> str:
@@ -88,9 +93,9 @@ def _ranges(found: Influence) -> str:
     return ",\n".join(lines)
 
 
-def _draw_near(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
+def _draw_near(axes: Axes, found: Influence, near: Elasticities, numbers: Sequence[str]) -> None:
     """Elasticities: blue where a number grows with the key, red where it falls."""
-    values = np.array([[found.near.table[n][key] for key in found.keys] for n in numbers])
+    values = np.array([[near.table[n][key] for key in found.keys] for n in numbers])
     strength = np.sign(values) * np.sqrt(np.abs(values) / _FULL)
     axes.imshow(strength, cmap=_SIGNED, vmin=-1.0, vmax=1.0, aspect="auto")
     for edge in range(1, max(values.shape)):

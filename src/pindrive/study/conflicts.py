@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.study.axis import Axis, Linked
+from pindrive.device.array import check_count
+from pindrive.device.coil import check_one_way
+from pindrive.study.axis import Axis, Distribution, Linked, Listed
 from pindrive.study.plan import base_value
-from pindrive.template import DRIVE
+from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -26,6 +28,8 @@ def conflicts(plan: Plan, file: str) -> list[str]:
     tolerances: dict[str, Axis] = {**plan.tolerances, **plan.tolerance_links}
     for table, axes in (("axes", plan.axes), ("tolerances", tolerances)):
         problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
+        if plan.page:
+            problems += [f"{file}: {table}: {words}" for words in _around(plan, axes)]
         for contact in ("plate", "finger"):
             if words := _static_below_kinetic(plan, axes, contact):
                 problems.append(f"{file}: {table}: {words}")
@@ -53,6 +57,32 @@ def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
             yield f"{key} follows {link.of}, which has no value"
 
 
+def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
+    """Of the tables around the drive."""
+    magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
+    if magnet:
+        try:
+            check_one_way(magnet | plan.tables.get("magnet", {}).keys(), table="magnet")
+        except ValueError as error:
+            yield str(error)
+    if "places" in plan.tables.get("array", {}):
+        for key in ("array.columns", "array.rows", "array.pitch"):
+            if key in axes:
+                yield f"{key} cannot be varied beside array.places"
+    for name in ("columns", "rows"):
+        key = f"array.{name}"
+        axis = axes.get(key)
+        if isinstance(axis, Distribution):
+            yield f"{key} counts pins; give a list of whole numbers"
+        elif axis is not None and not isinstance(axis, Linked):
+            few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
+            try:
+                for value in few:
+                    check_count(name, float(value), label=key)
+            except ValueError as error:
+                yield str(error)
+
+
 def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], contact: str) -> str:
     """Words for static friction that is below kinetic friction at every point."""
     static, kinetic = f"{contact}.static", f"{contact}.kinetic"
@@ -63,7 +93,7 @@ def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], contact: str) ->
     largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
     if largest >= smallest and not _below_along(plan, static, kinetic):
         return ""
-    unit = DRIVE[static]
+    unit = NUMBERS[static]
     return (
         f"{static} is below {kinetic} at every point: at most {unit.written(largest)}, "
         f"{kinetic} at least {unit.written(smallest)}"

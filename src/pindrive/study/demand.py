@@ -1,4 +1,4 @@
-"""What is demanded of a motion: "settling_time <= 60 ms"."""
+"""What is demanded of a motion or a scan: "settling_time <= 60 ms"."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.quantities import refusal
-from pindrive.study.outputs import MEASURED, NUMBERS, known_output, label
+from pindrive.study.outputs import NUMBERS, OUTPUTS, is_measured, known_output, label
 from pindrive.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 _CONDITION: Final = re.compile(r"\s*(<=|>=|≤|≥)\s*(.+)")
@@ -22,7 +24,7 @@ _AT_MOST: Final = ("<=", "≤")
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """A limit on one number of a motion: at most, or at least, `limit` (SI)."""
+    """A limit on one number: at most, or at least, `limit` (SI)."""
 
     name: str
     at_most: bool
@@ -47,13 +49,15 @@ class Demand:
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
 
 
-def demands(table: Any, file: str, problems: list[str]) -> tuple[Demand, ...]:
-    """The demands of a [specification]; what is wrong is appended to `problems`."""
+def demands(
+    table: Any, file: str, problems: list[str], among: Sequence[str] = OUTPUTS
+) -> tuple[Demand, ...]:
+    """The demands of a [specification] on outputs; what is wrong is appended to `problems`."""
     found = []
     for given, conditions in table.items():
         try:
-            name = known_output(given, f"{file}: specification")
-            if name not in MEASURED:
+            name = known_output(given, f"{file}: specification", among)
+            if not is_measured(name):
                 raise ValueError(f"{file}: specification.{given} is no number to be demanded")
         except ValueError as error:
             problems.append(str(error))

@@ -1,4 +1,4 @@
-"""The numbers of many motions of one device, each with other values of its swept keys."""
+"""The numbers of many points of one device, each with other values of its swept keys."""
 
 from __future__ import annotations
 
@@ -44,8 +44,12 @@ def evaluate(
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
         outputs: names of variables.
-        threads: for `simulate_batch`; None: all cores.
+        threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
+    if plan.page:
+        from pindrive.study.scans import evaluate_scans
+
+        return evaluate_scans(plan, columns, count, outputs, threads)
     inputs = _inputs(plan.device, plan.by_ratio, columns)
     if is_slow(plan.device, columns):
         table = _one_by_one(inputs, count)

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     Function = Callable[[Values], Mapping[str, Values]]
     """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
 
-USUAL_COUNT: Final = 8192
 RESAMPLES: Final = 500
 FEWEST: Final = 64
 """Rows that must be left where a number does not exist everywhere."""
@@ -54,7 +53,7 @@ class Indices:
 
 
 def sobol_indices(
-    function: Function, ranges: Sequence[Distribution], count: int = USUAL_COUNT, seed: int = 1
+    function: Function, ranges: Sequence[Distribution], count: int, seed: int = 1
 ) -> dict[str, Indices]:
     """The indices of every number that a function gives.
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pindrive.study.axis import Distribution, Linked, as_distribution
 from pindrive.study.evaluate import evaluate
-from pindrive.study.indices import USUAL_COUNT, Indices, sobol_indices
+from pindrive.study.indices import Indices, sobol_indices
 from pindrive.study.local import Elasticities, elasticities
-from pindrive.study.outputs import MEASURED
+from pindrive.study.outputs import MEASURED, SCAN_OUTPUTS
 from pindrive.study.plan import with_links
 
 if TYPE_CHECKING:
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
     from pindrive.study.plan import Columns, Plan
 
-_AT_A_TIME = 1 << 16
+USUAL_ROWS: Final = 8192
+USUAL_ROWS_OF_SCANS: Final = 256
+"""A scan takes some ten thousand times as long as a release."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,19 +72,20 @@ class Influence:
 
     keys: tuple[str, ...]
     ranges: Ranges
-    near: Elasticities
+    near: Elasticities | None
+    """None of scans, which have no exact derivatives."""
     over: Mapping[str, Indices]
     count: int
     points: int
     refused: int
-    """Points without a motion."""
+    """Points without a motion, or a scan."""
 
 
 def influence(
     plan: Plan,
     *,
     tolerances: bool = False,
-    count: int = USUAL_COUNT,
+    count: int | None = None,
     seed: int = 1,
     threads: int | None = None,
     tell: Callable[[int, int], None] = lambda done, total: None,
@@ -92,7 +95,7 @@ def influence(
     Args:
         plan: the study.
         tolerances: over [tolerances] instead of [axes].
-        count: rows of the design, a power of 2.
+        count: rows of the design, a power of 2; 8192 unless given, of scans 256.
         seed: of the sequence and the bootstrap.
         threads: all cores unless given.
         tell: called with the points done and the points in all.
@@ -102,24 +105,28 @@ def influence(
     """
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
-    outputs = (*MEASURED, "transient_settled", "status")
+    outputs = SCAN_OUTPUTS if plan.page else (*MEASURED, "transient_settled", "status")
+    if count is None:
+        count = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
     refused = 0
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
         total = points.shape[1]
         parts = []
-        for begin in range(0, total, _AT_A_TIME):
-            part = points[:, begin : begin + _AT_A_TIME]
+        for begin in range(0, total, plan.at_a_time):
+            part = points[:, begin : begin + plan.at_a_time]
             columns = ranges.columns(plan, part)
             parts.append(evaluate(plan, columns, part.shape[1], outputs, threads))
-            tell(min(begin + _AT_A_TIME, total), total)
+            tell(min(begin + plan.at_a_time, total), total)
         found = {name: np.concatenate([part[name] for part in parts]) for name in outputs}
         bad = found.pop("status") != 0
         refused = int(bad.sum())
-        settled = found["transient_settled"].astype(float)
-        return found | {"transient_settled": np.where(bad, np.nan, settled)}
+        if "transient_settled" in found:
+            settled = found["transient_settled"].astype(float)
+            found["transient_settled"] = np.where(bad, np.nan, settled)
+        return found
 
     over = sobol_indices(function, [*ranges.scatter.values()], count, seed)
-    near = elasticities(plan, keys, ranges.links)
+    near = None if plan.page else elasticities(plan, keys, ranges.links)
     return Influence(keys, ranges, near, over, count, count * (len(keys) + 2), refused)

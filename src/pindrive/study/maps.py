@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
+from pindrive.study.outputs import MEASURED
 from pindrive.study.words import QUANTITY, axis_label, value, values
 from pindrive.style import GREY, PALETTE, SMALL, STYLE
 
@@ -78,7 +79,7 @@ def plot_study(
                 handles=handles, loc="outside lower left", ncols=len(handles), frameon=False
             )
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
-        _title(figure, view, {**view.fixed, **still}, int(width * 0.72))
+        _title(figure, view, {**view.told, **still}, int(width * 0.72))
     return figure
 
 
@@ -92,7 +93,7 @@ def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -
     shown = {
         name: number for name, number in fixed.items() if (name, number) != ("plate_load", 1.0)
     }
-    name = str(view.data.attrs.get("title", ""))
+    name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
     said = [name, values(shown, width), *view.links]
     figure.suptitle("\n".join(filter(None, said)), x=0.008, ha="left", fontsize=8.0)
 
@@ -217,12 +218,15 @@ def _key(panels: Sequence[Panel]) -> list[Artist]:
     handles: list[Artist] = []
     maps = len(panels[0].keys) == 2
     median = panels[0].low is not None
+    motions = panels[0].number in MEASURED
     marked = maps or len(panels) == len({panel.number for panel in panels})
     if marked and any(panel.unsettled.any() for panel in panels):
         most = " by most draws" if median else ""
-        handles.append(Patch(**_HATCH, label=f"not settled{most} in the time followed"))
+        words = f"not settled{most} in the time followed" if motions else f"has no value{most}"
+        handles.append(Patch(**_HATCH, label=words))
     if marked and any(panel.refused.any() for panel in panels):
-        handles.append(Patch(color=_REFUSED, label="no motion: contradictory values"))
+        what = "motion" if motions else "scan"
+        handles.append(Patch(color=_REFUSED, label=f"no {what}: contradictory values"))
     if not marked and any((p.unsettled & ~np.isnan(p.values)).any() for p in panels):
         handles.append(
             Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled in the time followed")

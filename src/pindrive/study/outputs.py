@@ -1,4 +1,4 @@
-"""The numbers that a study can keep of each motion, and how a file holds them."""
+"""The numbers that a study can keep of each motion or scan, and how a file holds them."""
 
 from __future__ import annotations
 
@@ -8,34 +8,58 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.quantities import ENDING, QUANTITIES, TRANSIENT, refusal
+from pindrive.study.scanned import COUNTED, SCANNED
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from pindrive.config import DeviceFile
     from pindrive.quantity import Quantity
 
-NUMBERS: Final[dict[str, Quantity]] = {
-    quantity.name.replace(".", "_"): quantity for quantity in TRANSIENT + ENDING
-}
+
+def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
+    """Quantities by the names of their variables."""
+    return {quantity.name.replace(".", "_"): quantity for quantity in quantities}
+
+
+_OF_MOTIONS: Final = variables(TRANSIENT + ENDING)
+_OF_SCANS: Final = variables(SCANNED)
+NUMBERS: Final[dict[str, Quantity]] = _OF_MOTIONS | _OF_SCANS
 """By the names of their variables."""
-OUTPUTS: Final = (*NUMBERS, "status", "ending", "events")
+OUTPUTS: Final = (*_OF_MOTIONS, "status", "ending", "events")
+"""Of a motion."""
+SCAN_OUTPUTS: Final = (*_OF_SCANS, "status")
+"""Of a scan."""
 
 _SKIN: Final = ("transient_peak_stretch", "transient_peak_stretch_rate")
-_COUNTS: Final = ("transient_plate_reversals", "transient_finger_reversals")
+_COUNTS: Final = (
+    *("transient_plate_reversals", "transient_finger_reversals"),
+    *(name.replace(".", "_") for name in COUNTED),
+)
 _SETTLED: Final = "transient_settled"
 
-MEASURED: Final = tuple(name for name in NUMBERS if name != _SETTLED)
-"""Those that are numbers, not yes or no."""
+MEASURED: Final = tuple(name for name in _OF_MOTIONS if name != _SETTLED)
+"""Those of a motion that are numbers, not yes or no."""
+SCAN_MEASURED: Final = tuple(_OF_SCANS)
+"""Those of a scan: all."""
+
+
+def is_measured(name: str) -> bool:
+    """Whether a variable is a number, not a flag."""
+    return name in NUMBERS and name != _SETTLED
 
 
 def usual_outputs(device: DeviceFile, keys: set[str]) -> tuple[str, ...]:
-    """All numbers that exist; the skin's only where the finger has any."""
+    """All numbers of a motion that exist; the skin's only where the finger has any."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
     return tuple(name for name in OUTPUTS if not (rigid and name in _SKIN))
 
 
-def known_output(given: object, place: str) -> str:
+def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> str:
     """The variable that a name means: its own, the table's, or the last part where unique.
+
+    The last part alone of a median and a worst value is the median.
 
     Raises:
         ValueError: there is none, or more than one.
@@ -43,16 +67,16 @@ def known_output(given: object, place: str) -> str:
     if not isinstance(given, str):
         raise ValueError(refusal("an output", "the name of a number", quoted(given), place))
     name = given.replace(".", "_")
-    shorts = {full: full.partition("_")[2] for full in NUMBERS}
-    found = [full for full in OUTPUTS if name in (full, shorts.get(full))]
+    shorts = {full: full.partition("_")[2] for full in among if full in NUMBERS}
+    found = [full for full in among if name in (full, shorts.get(full))]
     if found:
         return found[0]
-    ends = [full for full in OUTPUTS if full.endswith(f"_{name}")]
+    ends = [full for full in among if full.endswith(f"_{name}")]
     if len(ends) == 1:
         return ends[0]
     if ends:
         raise ValueError(f"{place}: {quoted(given)} may be {' or '.join(ends)}; give it in full")
-    names = {short: short for short in shorts.values()} | {full: full for full in OUTPUTS}
+    names = {short: short for short in shorts.values()} | {full: full for full in among}
     near = get_close_matches(name, names, 1)
     hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
     raise ValueError(f"{place}: unknown number {quoted(given)}; {hint}")
@@ -93,9 +117,9 @@ def missing(name: str) -> int | None:
 
 
 def label(name: str) -> str:
-    """A number as a table names it: "settling_time", "plate_dissipated"; an ending's in full."""
+    """A number as a table names it: "settling_time", "shown"; an ending's, a median in full."""
     head, _, tail = name.partition("_")
-    return tail if head == "transient" else name
+    return tail if head in ("transient", "judged") else name
 
 
 def measured(name: str) -> Quantity:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from pindrive.study.axis import Axis, Distribution, Grid, Linked
 from pindrive.study.sample import Sample
-from pindrive.template import DRIVE
+from pindrive.template import DRIVE, NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,16 +21,24 @@ if TYPE_CHECKING:
 
     from pindrive.config import DeviceFile
     from pindrive.study.demand import Demand
+    from pindrive.study.page import StudyPage
 
     Columns = dict[str, NDArray[np.float64]]
 
 CHUNK: Final = 1 << 16
 """Points of a chunk: half a second's work, 15 MB of numbers."""
+SCANS: Final = 16
+"""The same of scans: from a quarter of a second's work with one pin to some with sixteen."""
 
 
 def variable(key: str) -> str:
     """What a key of the device file is called in Python and in a NetCDF file."""
-    return DRIVE[key].name.replace(".", "_")
+    return NUMBERS[key].name.replace(".", "_")
+
+
+def has_part(key: str, scans: bool) -> bool:
+    """Whether a key of the device file has a part in scans, or else in releases."""
+    return not key.startswith("motion.") if scans else key in DRIVE
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +85,10 @@ class Plan:
     tolerances: Mapping[str, Distribution]
     tolerance_links: Mapping[str, Linked]
     demands: tuple[Demand, ...] = ()
+    tables: Mapping[str, Any] = field(default_factory=dict)
+    """The device as its file has it."""
+    page: StudyPage | None = None
+    """What is scanned at every point; None: every point is a release."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -98,6 +110,21 @@ class Plan:
         return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
 
     @property
+    def at_a_time(self) -> int:
+        """How many points are worked out between two looks at how far it has come."""
+        return 4 * SCANS if self.page else CHUNK
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The device's value of each key that has a part in this study, SI; None: not given."""
+        derived = "drive.damping" if self.by_ratio else "drive.damping_ratio"
+        return {
+            key: value
+            for key, value in self.device.values().items()
+            if has_part(key, self.page is not None) and key != derived
+        }
+
+    @property
     def axes(self) -> dict[str, Axis]:
         """Every swept key with its values, those that follow another last."""
         found: dict[str, Axis] = {}
@@ -117,13 +144,13 @@ class Plan:
         """All that its numbers follow from: two studies with one identity have one answer."""
         from pindrive import __version__
 
-        derived = "drive.damping" if self.by_ratio else "drive.damping_ratio"
-        device = {key: value for key, value in self.device.values().items() if key != derived}
+        page = {"page": self.page.identity()} if self.page else {}
         found: dict[str, Any] = json.loads(
             json.dumps(
                 {
                     "pindrive": __version__,
-                    "device": device,
+                    "device": self.values,
+                    **page,
                     "dimensions": [asdict(dimension) for dimension in self.dimensions],
                     "links": {key: asdict(link) for key, link in self.links.items()},
                     "outputs": self.outputs,

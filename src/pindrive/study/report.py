@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pindrive import template
 from pindrive.quantity import significant
 from pindrive.study.evaluate import flags
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.plan import base_value
 from pindrive.study.sweeping import human_bytes
-from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -21,11 +22,14 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.study.influence import Influence
+    from pindrive.study.local import Elasticities
     from pindrive.study.plan import Plan
     from pindrive.study.robust import Robustness, Share
     from pindrive.study.sweeping import Result
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
+_AS_OPTION = re.compile(r"^--set [^:]*: ")
+"""How `device_of` calls the place of a value that its file does not have."""
 _SLICE = 1 << 24
 """Points of which the status is read at a time."""
 
@@ -51,7 +55,25 @@ def sweep_report(plan: Plan, done: Result) -> list[str]:
     if done.refused and done.complete:
         found = ", ".join(f"{percent(n, done.points)} {name}" for name, n in _reasons(done))
         lines.append(f"without numbers: {found} (see the variable status)")
+        if plan.page:
+            lines.append(f"the first of them: {_first_refusal(plan, done)}")
     return lines
+
+
+def _first_refusal(plan: Plan, done: Result) -> str:
+    """Why the first point without a scan has none."""
+    import h5py
+
+    from pindrive.study.scans import judged_at
+
+    with h5py.File(done.path, "r") as file:
+        first = int(np.flatnonzero(file["status"][()])[0])
+    at = {key: float(values[0]) for key, values in plan.columns(first, first + 1).items()}
+    try:
+        judged_at(plan, at)
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        return _AS_OPTION.sub("", str(error).splitlines()[0])
+    return "it can be scanned by now"
 
 
 def _reasons(done: Result) -> list[tuple[str, int]]:
@@ -73,16 +95,8 @@ def influence_report(found: Influence) -> RenderableType:
     """Three tables: elasticities, and Sobol' indices of first order and in total."""
     from rich.console import Group
 
-    names = [name for name in found.over if name != "transient_settled"]
-    shown = [name for name in names if not np.isnan(found.near.values[name])]
-    near = _by_key(
-        "Near the device's values: per cent of change for one per cent more of",
-        found.keys,
-        shown,
-        lambda name, i: elasticity(found.near.table[name][found.keys[i]]),
-    )
     told = [name for name in found.over if found.over[name].spread > 0.0]
-    tables: list[RenderableType] = [near]
+    tables: list[RenderableType] = [_near(found, found.near)] if found.near else []
     for title, order in (
         ("Over the whole ranges: part of the variance due to, by itself", "first"),
         ("Over the whole ranges: part of the variance due to, with all interactions", "total"),
@@ -92,13 +106,23 @@ def influence_report(found: Influence) -> RenderableType:
     return Group(*tables, *_notes(found))
 
 
+def _near(found: Influence, near: Elasticities) -> Table:
+    names = [name for name in found.over if name != "transient_settled"]
+    return _by_key(
+        "Near the device's values: per cent of change for one per cent more of",
+        found.keys,
+        [name for name in names if not np.isnan(near.values[name])],
+        lambda name, i: elasticity(near.table[name][found.keys[i]]),
+    )
+
+
 def _by_key(
     title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
 ) -> Table:
     """A line for each number, a column for each key."""
     from pindrive.report import new_table
 
-    heads = [DRIVE[key].symbol for key in keys]
+    heads = [template.NUMBERS[key].symbol for key in keys]
     made = new_table(title, "number", *(f">{head}" for head in heads))
     for name in names:
         made.add_row(label(name), *(cell(name, i) for i in range(len(keys))))
@@ -128,10 +152,13 @@ def _notes(found: Influence) -> list[str]:
     design = f"{count(found.points)} points (Sobol' design of {count(found.count)} rows)"
     lines = [
         f"{design}; ± half of the 95 % bootstrap interval; · below 0.005.",
-        f"Elasticities hold over a fixed time, the {found.near.duration:.4g} s followed.",
+        f"Elasticities hold over a fixed time, the {found.near.duration:.4g} s followed."
+        if found.near
+        else "No elasticities: a scan has no exact derivatives.",
     ]
     if found.refused:
-        lines.append(f"{percent(found.refused, found.points)} of them have no motion: refused.")
+        what = "motion" if found.near else "scan"
+        lines.append(f"{percent(found.refused, found.points)} of them have no {what}: refused.")
     partly = [
         f"{label(n)} {100 * x.kept:.3g} %" for n, x in found.over.items() if 0.0 < x.kept < 1.0
     ]
@@ -147,8 +174,8 @@ def _notes(found: Influence) -> list[str]:
     if constant:
         lines.append(f"The same everywhere: {', '.join(constant)}.")
     lines += [
-        f"{DRIVE[key].symbol}: some derivatives do not exist, {why}."
-        for key, why in found.near.gaps.items()
+        f"{template.NUMBERS[key].symbol}: some derivatives do not exist, {why}."
+        for key, why in (found.near.gaps.items() if found.near else ())
     ]
     return lines
 
@@ -203,7 +230,7 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
     heads = (f">{label(case.demand.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:
-        quantity, own = DRIVE[key], base_value(plan.device, key)
+        quantity, own = template.NUMBERS[key], base_value(plan.device, key)
         values = [quantity.digits(case.keys[key]) for case in found.worst]
         shown = quantity.digits(own) if isinstance(own, float) else "-"
         made.add_row(key, shown, *values, quantity.display_unit)
@@ -223,14 +250,19 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
 def _draws(plan: Plan, found: Robustness) -> list[str]:
     lines = [f"{count(found.count)} independent random draws, seed {found.seed}."]
     if found.refused:
-        lines.append(f"{percent(found.refused, found.count)} of them have no motion: refused.")
-    for case in found.worst:
+        what = "scan" if plan.page else "motion"
+        lines.append(f"{percent(found.refused, found.count)} of them have no {what}: refused.")
+    for case in found.worst if plan.device.path != plan.path else ():
         given = " ".join(
-            f'--set {key}="{DRIVE[key].written(value)}"' for key, value in case.keys.items()
+            f'--set {key}="{template.NUMBERS[key].written(value)}"'
+            for key, value in case.keys.items()
         )
-        lines.append(
-            f"Worst {label(case.demand.name)}: pindrive simulate {plan.device.path} {given}"
+        command = (
+            f"scan {plan.device.path} {plan.page.page.options}"
+            if plan.page
+            else f"simulate {plan.device.path}"
         )
+        lines.append(f"Worst {label(case.demand.name)}: pindrive {command} {given}")
     if not found.all_met:
         lines.append("No specification is given: write what is demanded in [specification].")
     return lines

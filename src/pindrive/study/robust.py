@@ -24,12 +24,16 @@ if TYPE_CHECKING:
     Values = NDArray[np.float64]
 
 USUAL_COUNT: Final = 100_000
+USUAL_COUNT_OF_SCANS: Final = 1000
+"""A scan takes some ten thousand times as long as a release."""
 WATCHED: Final = ("transient_settling_time", "transient_swing")
-_AT_A_TIME: Final = 1 << 16
+WATCHED_OF_SCANS: Final = ("judged_shown_part", "median_lag_on")
 _CONFIDENCE: Final = 0.95
 _POPULATION: Final = 15
 """Members for each key of the search for the worst case."""
 _GENERATIONS: Final = 60
+_POPULATION_OF_SCANS: Final = 5
+_GENERATIONS_OF_SCANS: Final = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +65,8 @@ class WorstCase:
     """The number there, NaN where it does not exist."""
     sampled: float
     """The worst among the draws, before the search."""
-    motion: Motion
-    """The same point followed by itself."""
+    motion: Motion | None
+    """The same point followed by itself; None of a scan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +91,7 @@ class Robustness:
 def robustness(
     plan: Plan,
     *,
-    count: int = USUAL_COUNT,
+    count: int | None = None,
     seed: int = 1,
     threads: int | None = None,
     tell: Callable[[int, int], None] = lambda done, total: None,
@@ -96,7 +100,8 @@ def robustness(
 
     Args:
         plan: a study with tolerances.
-        count: independent random draws, at least 1; the confidence interval rests on them.
+        count: independent random draws, at least 1; the confidence interval rests on them. 100 000
+            unless given, of scans 1000.
         seed: of the draws and of the search for the worst case.
         threads: all cores unless given.
         tell: called with the points done and the points in all.
@@ -107,7 +112,10 @@ def robustness(
     if not plan.tolerances:
         raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
     ranges = ranges_of(plan, tolerances=True)
-    watched = tuple(dict.fromkeys((*WATCHED, *(demand.name for demand in plan.demands))))
+    if count is None:
+        count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
+    usual = WATCHED_OF_SCANS if plan.page else WATCHED
+    watched = tuple(dict.fromkeys((*usual, *(demand.name for demand in plan.demands))))
     sample = Sample(tuple(ranges.scatter), count, seed)
 
     def numbers(points: Values) -> dict[str, Values]:
@@ -115,8 +123,8 @@ def robustness(
         return evaluate(plan, columns, points.shape[1], (*watched, "status"), threads)
 
     parts, drawn = [], []
-    for begin in range(0, count, _AT_A_TIME):
-        end = min(begin + _AT_A_TIME, count)
+    for begin in range(0, count, plan.at_a_time):
+        end = min(begin + plan.at_a_time, count)
         portions = zip(sample.parts(np.arange(begin, end)), ranges.scatter.values(), strict=True)
         points = np.array([scatter.ppf(portion) for portion, scatter in portions])
         drawn.append(points)
@@ -127,18 +135,24 @@ def robustness(
 
     met = {demand: demand.met(table[demand.name]) for demand in plan.demands}
     every = np.logical_and.reduce([*met.values()]) if met else None
-    own = {k.replace(".", "_"): v for k, v in motion_of(plan.device).numbers().items()}
     return Robustness(
         ranges,
         count,
         seed,
-        own,
+        _own(plan, watched),
         {name: table[name] for name in watched},
         int(np.count_nonzero(table["status"])),
         tuple((demand, Share.of_draws(int(m.sum()), count)) for demand, m in met.items()),
         None if every is None else Share.of_draws(int(every.sum()), count),
         tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
     )
+
+
+def _own(plan: Plan, watched: tuple[str, ...]) -> dict[str, float]:
+    """Numbers of the design itself."""
+    if plan.page:
+        return {name: float(values[0]) for name, values in evaluate(plan, {}, 1, watched).items()}
+    return {k.replace(".", "_"): v for k, v in motion_of(plan.device).numbers().items()}
 
 
 def _worst(
@@ -171,7 +185,8 @@ def _worst(
     inside = ((points >= spans[:, :1]) & (points <= spans[:, 1:])).all(axis=0)
     first = badness(demand.excess(table[demand.name]), table["status"])
     order = np.argsort(np.where(inside, first, np.inf), kind="stable")
-    members = points[:, order[: max(5, _POPULATION * len(spans))]]
+    population = _POPULATION_OF_SCANS if plan.page else _POPULATION
+    members = points[:, order[: max(5, population * len(spans))]]
     started = ((members - low) / width).T
     if len(started) < 5:
         rng = np.random.default_rng(seed)
@@ -180,7 +195,7 @@ def _worst(
         at,
         [(0.0, 1.0)] * len(spans),
         init=np.clip(started, 0.0, 1.0),
-        maxiter=_GENERATIONS,
+        maxiter=_GENERATIONS_OF_SCANS if plan.page else _GENERATIONS,
         vectorized=True,
         updating="deferred",
         polish=False,
@@ -189,9 +204,12 @@ def _worst(
     )
     best = members[:, :1] if first[order[0]] <= search.fun else low + width * search.x[:, None]
     columns = {key: values.item() for key, values in ranges.columns(plan, best).items()}
+    sampled = float(table[demand.name][order[0]])
+    if plan.page:
+        return WorstCase(demand, columns, float(numbers(best)[demand.name][0]), sampled, None)
     motion = follow(plan, columns)
     value = motion.numbers()[_table_name(demand.name)]
-    return WorstCase(demand, columns, value, float(table[demand.name][order[0]]), motion)
+    return WorstCase(demand, columns, value, sampled, motion)
 
 
 def _table_name(name: str) -> str:

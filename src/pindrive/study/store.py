@@ -17,11 +17,12 @@ from zlib import crc32
 
 import numpy as np
 
+from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
 from pindrive.output import OutputError, naming
 from pindrive.study import outputs
 from pindrive.study.evaluate import evaluate, flags
 from pindrive.study.plan import variable
-from pindrive.template import DRIVE
+from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -183,6 +184,7 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "title": plan.name or "A study of a pin drive",
                 "source": f"pindrive {__version__}",
                 "study": plan.text,
+                **({"page": plan.page.page.words} if plan.page else {}),
                 "identity": identity(plan),
             }
         )
@@ -193,11 +195,12 @@ def _fixed(plan: Plan) -> dict[str, float]:
     swept = {*plan.axes}
     if swept & {"drive.damping", "drive.damping_ratio"}:
         swept |= {"drive.damping", "drive.damping_ratio"}
-    derived = "drive.damping" if plan.by_ratio else "drive.damping_ratio"
+    if any(key == f"magnet.{name}" for key in swept for name in (*COIL_NEEDS, *COIL_MAY)):
+        swept |= {f"magnet.{name}" for name in DIRECT}
     return {
         key: value
-        for key, value in plan.device.values().items()
-        if isinstance(value, float) and key not in (*swept, derived)
+        for key, value in plan.values.items()
+        if isinstance(value, float) and key not in swept
     }
 
 
@@ -217,7 +220,7 @@ def _variable(
 
 
 def _key_attributes(key: str) -> dict[str, str]:
-    quantity = DRIVE[key]
+    quantity = NUMBERS[key]
     words = {"long_name": quantity.meaning, "symbol": quantity.symbol, "key": key}
     return words | ({"units": quantity.unit} if quantity.unit else {})
 

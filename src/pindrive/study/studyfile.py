@@ -15,8 +15,9 @@ from pindrive.study.axes import AxisReader, sweepable, written_axes
 from pindrive.study.axis import Axis, Distribution, Grid, Linked
 from pindrive.study.conflicts import conflicts
 from pindrive.study.demand import demands
-from pindrive.study.outputs import known_output, usual_outputs
-from pindrive.study.plan import CHUNK, Dimension, Plan, base_value, variable
+from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, known_output, usual_outputs
+from pindrive.study.page import StudyPage, read_page
+from pindrive.study.plan import CHUNK, SCANS, Dimension, Plan, base_value, variable
 from pindrive.study.sample import MOST_SOBOL, Sample
 from pindrive.units import quoted
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from pindrive.config import DeviceFile
 
 _OWN: Final = (
-    *("name", "base", "outputs", "zip", "chunk"),
+    *("name", "base", "page", "outputs", "zip", "chunk"),
     *("axes", "sample", "tolerances", "specification"),
 )
 _SAMPLE: Final = ("method", "count", "seed")
@@ -46,21 +47,24 @@ def load_study(path: str | PathLike[str]) -> Plan:
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
     problems = _unknown(tables, file)
-    device, text, by_ratio = _device(tables, file)
+    page = _page(tables, file, problems)
+    device, text, given = _device(tables, file)
     reader = _Reader(str(file), tables, device, problems)
     plan = Plan(
         path=file,
         name=reader.text("name") or device.name,
         text=text,
         device=device,
-        by_ratio=by_ratio,
+        by_ratio="damping_ratio" in given["drive"],
         dimensions=reader.dimensions,
         links=reader.links,
         outputs=reader.outputs(),
-        chunk=reader.whole("chunk", CHUNK, CHUNK * 64),
+        chunk=reader.whole("chunk", SCANS if "page" in tables else CHUNK, CHUNK * 64),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
-        demands=demands(reader.table("specification"), str(file), problems),
+        demands=demands(reader.table("specification"), str(file), problems, reader.among),
+        tables=given,
+        page=page,
     )
     problems += conflicts(plan, str(file))
     if plan.size > MOST_POINTS:
@@ -86,8 +90,19 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
     return problems
 
 
-def _device(tables: Mapping[str, Any], file: Path) -> tuple[DeviceFile, str, bool]:
-    """The device, the text of all files read, and whether damping is given as a ratio."""
+def _page(tables: Mapping[str, Any], file: Path, problems: list[str]) -> StudyPage | None:
+    """The page; what is wrong with it is appended to `problems`."""
+    try:
+        return read_page(tables["page"], file) if "page" in tables else None
+    except ValueError as error:
+        problems.append(str(error))
+        return None
+
+
+def _device(
+    tables: Mapping[str, Any], file: Path
+) -> tuple[DeviceFile, str, dict[str, dict[str, Any]]]:
+    """The device, the text of all files read, and the tables that describe it."""
     text = file.read_text("utf-8-sig")
     given, source = {k: v for k, v in tables.items() if k in TABLES}, file
     if "base" in tables:
@@ -99,8 +114,7 @@ def _device(tables: Mapping[str, Any], file: Path) -> tuple[DeviceFile, str, boo
         text = f"{text.rstrip()}\n\n# ---- {tables['base']} ----\n\n{source.read_text('utf-8-sig')}"
     elif not given:
         raise ConfigError([f'{file}: has no device; write base = "device.toml" at the top'])
-    device = device_of(source, given)
-    return device, text, "damping_ratio" in given["drive"]
+    return device_of(source, given, whole="page" in tables), text, given
 
 
 class _Reader:
@@ -110,7 +124,8 @@ class _Reader:
         self, file: str, tables: Mapping[str, Any], device: DeviceFile, problems: list[str]
     ) -> None:
         self._file, self._tables, self._device = file, tables, device
-        self._problems = problems
+        self._problems, self._scans = problems, "page" in tables
+        self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
         axes = self._axes("axes")
         self.links = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
         tolerances = self._axes("tolerances")
@@ -151,7 +166,8 @@ class _Reader:
         """The variables to keep, each once, with the status of every point."""
         given = self._tables.get("outputs")
         if given is None:
-            return usual_outputs(self._device, set(self._swept))
+            swept = set(self._swept)
+            return SCAN_OUTPUTS if self._scans else usual_outputs(self._device, swept)
         if not isinstance(given, list) or not given:
             required = 'a list of numbers, like ["settling_time", "swing"]'
             self._problems.append(refusal("outputs", required, quoted(given), self._file))
@@ -159,7 +175,7 @@ class _Reader:
         found = []
         for name in given:
             try:
-                found.append(known_output(name, f"{self._file}: outputs"))
+                found.append(known_output(name, f"{self._file}: outputs", self.among))
             except ValueError as error:
                 self._problems.append(str(error))
         return tuple(dict.fromkeys((*found, "status")))
@@ -171,7 +187,7 @@ class _Reader:
         names: dict[str, str] = {}
         for given, spec in written_axes(self.table(table)):
             try:
-                key = sweepable(given, f"{self._file}: {table}")
+                key = sweepable(given, f"{self._file}: {table}", self._scans)
                 if key in names:
                     raise ValueError(
                         f"{self._file}: {table}.{key} is given twice, as {names[key]} and {given}"
@@ -179,7 +195,7 @@ class _Reader:
                 names[key] = given
                 base = base_value(self._device, key)
                 number = base if isinstance(base, float) else None
-                found[key] = AxisReader(self._file, table, key, number).read(spec)
+                found[key] = AxisReader(self._file, table, key, number, self._scans).read(spec)
             except ValueError as error:
                 self._problems.append(str(error))
         return found
@@ -226,7 +242,7 @@ class _Reader:
         place = f"{self._file}: zip"
         keys = []
         for name in group:
-            key = sweepable(str(name), place)
+            key = sweepable(str(name), place, self._scans)
             if key not in grids:
                 raise ValueError(f"{place}: {key} is no axis of a list or of even steps")
             if key in taken or key in keys:

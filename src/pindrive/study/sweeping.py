@@ -6,7 +6,8 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,7 @@ from pindrive.output import OutputError, naming
 from pindrive.quantities import refusal
 from pindrive.study.journal import Journal, Tally, difference
 from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
+from pindrive.study.workers import DIED, usable_cores, workers
 
 if TYPE_CHECKING:
     from pindrive.study.plan import Plan
@@ -116,15 +118,21 @@ def sweep(
 
 
 def on_threads(threads: int | None = None) -> Work:
-    """Chunks side by side on the cores of this machine, as many at a time as there are threads."""
-    count = _cores() if threads is None else threads
+    """Chunks side by side on the cores of this machine, as many at a time as there are threads.
+
+    Scans are worked out by as many processes instead: a script that sweeps them does so under
+    `if __name__ == "__main__":`, as all that begin processes.
+    """
+    count = usable_cores() if threads is None else threads
     if type(count) is not int or count < 1:
         raise ValueError(refusal("threads", "a whole number of at least 1", repr(threads)))
 
     def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        pool = ThreadPoolExecutor(count)
+        pool = workers(plan, min(count, len(chunks) or 1))
         try:
             yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
+        except BrokenProcessPool:
+            raise OutputError(f"{DIED}; finished chunks are kept, --resume goes on") from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -148,11 +156,6 @@ def in_flight(
         for future in ready:
             chunk = begun.pop(future)
             yield chunk, future.result()
-
-
-def _cores() -> int:
-    of_this_process = getattr(os, "sched_getaffinity", None)
-    return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
 
 
 # ---- beginning and going on ----------------------------------------------------------------------
@@ -245,10 +248,11 @@ def _counted(target: Path, plan: Plan) -> tuple[int, int]:
 
 
 def _typed(pieces: list[Piece]) -> list[Piece]:
-    from pindrive.study.outputs import OUTPUTS, dtype
+    from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, dtype
 
+    numbers = {*OUTPUTS, *SCAN_OUTPUTS}
     return [
-        Piece(name, start, values.view(dtype(name)) if name in OUTPUTS else values)
+        Piece(name, start, values.view(dtype(name)) if name in numbers else values)
         for name, start, values in pieces
     ]
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.config import keys_meant
-from pindrive.study.outputs import MEASURED, known_output
+from pindrive.study.outputs import MEASURED, OUTPUTS, SCAN_MEASURED, SCAN_OUTPUTS, known_output
 from pindrive.study.plan import variable
 from pindrive.study.words import QUANTITY, words
-from pindrive.template import DRIVE, usual
+from pindrive.template import NUMBERS, WHOLE, usual
 from pindrive.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
@@ -79,7 +79,10 @@ class View:
             if c.dims and self.data.sizes[c.dims[0]] > 1
         ]
         self.sampled = [k for k in self.keys if self.data[k].dims == ("sample",)]
-        self.numbers = [name for name in MEASURED if name in self.data]
+        self.page = str(self.data.attrs.get("page", ""))
+        """What was scanned; empty of a study of releases."""
+        known = SCAN_MEASURED if self.page else MEASURED
+        self.numbers = [name for name in known if name in self.data]
         self.fixed = {
             str(name): c.item()
             for name, c in self.data.coords.items()
@@ -106,7 +109,7 @@ class View:
         Raises:
             ValueError: it is unknown, or was not varied.
         """
-        names = [variable(key) for key in keys_meant(given) if key in DRIVE]
+        names = [variable(key) for key in keys_meant(given) if key in NUMBERS]
         names = [name for name in (*names, given.replace(".", "_")) if name in self.keys]
         if names:
             return names[0]
@@ -116,18 +119,31 @@ class View:
 
     def number(self, given: str) -> str:
         """The number that is meant, if the file holds it."""
-        name = known_output(given, "--number")
+        name = known_output(given, "--number", SCAN_OUTPUTS if self.page else OUTPUTS)
         if name not in self.numbers:
             held = ", ".join(self.numbers)
             raise ValueError(f"--number {given}: {self.path} does not hold it; it holds {held}")
         return name
 
     def usual_numbers(self) -> list[str]:
-        """The settling time, or the first number that the file holds."""
+        """The settling time, of scans the part of lines shown; or the first that the file holds."""
         usual = "transient_settling_time"
         if not self.numbers:
             raise ValueError(f"{self.path}: holds no number to draw")
         return [usual if usual in self.numbers else self.numbers[0]]
+
+    @property
+    def told(self) -> dict[str, float]:
+        """What of the device is told beside a picture: what its file must say, or says otherwise.
+
+        Of a study of releases all that was not varied.
+        """
+        standard = {variable(key): quantity.default for key, quantity in WHOLE.items()}
+        return {
+            name: value
+            for name, value in self.fixed.items()
+            if name not in standard or value != standard[name]
+        }
 
     def held(self, given: Sequence[str]) -> dict[str, float]:
         """The values, SI, of "key=value" each."""

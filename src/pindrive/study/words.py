@@ -5,17 +5,19 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from pindrive import template
 from pindrive.captions import short
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.plan import variable
-from pindrive.template import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from pindrive.quantity import Quantity
 
-QUANTITY: Final[dict[str, Quantity]] = {variable(key): q for key, q in DRIVE.items()} | NUMBERS
+QUANTITY: Final[dict[str, Quantity]] = {
+    variable(key): q for key, q in template.NUMBERS.items()
+} | NUMBERS
 """Inputs and numbers by the names of their variables."""
 
 _WORDS: Final = {
@@ -25,6 +27,13 @@ _WORDS: Final = {
     "finger_static": "static finger friction",
     "finger_stiffness": "skin stiffness",
     "velocity": "release velocity",
+    "latency": "latency of the control block",
+    "fall_time": "fall time of the pull",
+    "rise_time": "rise time of the pull",
+    "judged_shown_part": "part of the lines shown",
+    "judged_shown": "lines shown",
+    "judged_direction": "lines with a direction",
+    "judged_sure": "lines with a sure direction",
 }
 _TALL: Final = re.compile(r"([A-Za-z'α-ωΑ-Ω]+)_(.+)")
 

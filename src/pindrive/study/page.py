@@ -1,0 +1,113 @@
+"""The table [page] of a study file: what is on the page, and how the hand moves over it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from pindrive.device.page import Page
+from pindrive.device.reading import Reading
+from pindrive.quantities import QUANTITIES, refusal
+from pindrive.schema import number
+from pindrive.units import quoted
+
+if TYPE_CHECKING:
+    from pindrive.device.array import PinArray
+    from pindrive.device.scene import Scene
+
+KEYS: Final = ("text", "image", "grating", "font", "path")
+_SCENES: Final = 4
+"""Scenes that are kept: a sweep comes back to the one before."""
+
+
+@dataclass(frozen=True, slots=True)
+class StudyPage:
+    """A page, and what its files held when the study was read."""
+
+    page: Page
+    checksums: tuple[tuple[str, str], ...]
+    """SHA-256 of each file, by the name of its key."""
+
+    def identity(self) -> dict[str, Any]:
+        """All that a scan takes from it."""
+        parts = {"text": self.page.text, "grating": self.page.grating}
+        return {name: part for name, part in parts.items() if part} | dict(self.checksums)
+
+    def check(self) -> None:
+        """Refuse files that are not there, or hold something else by now.
+
+        Whoever works out a part of a study, perhaps on another machine, does so once.
+
+        Raises:
+            ValueError: so it is.
+        """
+        _check(self)
+
+    def scene(self, reading: Reading, array: PinArray) -> Scene:
+        """What is on the page."""
+        size = Reading(
+            text_height=reading.text_height, pixel=reading.pixel, line_pitch=reading.line_pitch
+        )
+        return _scene(self.page, size, array)
+
+
+def read_page(table: Any, file: Path) -> StudyPage:
+    """The page that [page] describes; its files stand beside the study file.
+
+    Raises:
+        ValueError: a key is unknown or malformed, a file cannot be read, or there is not exactly
+            one of text, image and grating.
+    """
+    if not isinstance(table, dict):
+        raise ValueError(refusal("page", "a table, [page]", quoted(table), str(file)))
+    for key in table:
+        if key not in KEYS:
+            raise ValueError(f"{file}: unknown key page.{key}; there are {', '.join(KEYS)}")
+    parts: dict[str, Any] = {}
+    for key, given in table.items():
+        if key == "grating":
+            parts[key] = _pitches(given, str(file))
+        elif not isinstance(given, str):
+            raise ValueError(refusal(f"page.{key}", "text in quotes", quoted(given), str(file)))
+        else:
+            parts[key] = given if key == "text" else file.parent / given
+    page = Page(**parts)
+    page.check("page.{}", str(file))
+    files = page.files.items()
+    sums = tuple((name, _checksum(path, f"{file}: page.{name}")) for name, path in files)
+    return StudyPage(page, sums)
+
+
+def _pitches(given: object, file: str) -> tuple[float, ...]:
+    """The distances of a grating, SI."""
+    if not isinstance(given, list) or not given:
+        required = 'a list of distances, like ["4 mm", "2 mm"]'
+        raise ValueError(refusal("page.grating", required, quoted(given), file))
+    pitch = QUANTITIES["pitch"]
+    return tuple(
+        number(value, pitch, "4 mm", f"page.grating[{i}]", file) for i, value in enumerate(given)
+    )
+
+
+def _checksum(path: Path, label: str) -> str:
+    try:
+        return sha256(path.read_bytes()).hexdigest()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"{label}: {path} cannot be read: {reason}") from None
+
+
+@lru_cache(maxsize=_SCENES)
+def _check(given: StudyPage) -> None:
+    known = dict(given.checksums)
+    for name, path in given.page.files.items():
+        if _checksum(path, f"page.{name}") != known[name]:
+            raise ValueError(f"page.{name}: {path} has changed since the study was read")
+
+
+@lru_cache(maxsize=_SCENES)
+def _scene(page: Page, reading: Reading, array: PinArray) -> Scene:
+    return page.scene(reading, array)

@@ -1,0 +1,92 @@
+"""The numbers of many scans of one device and page, each with other values of its swept keys.
+
+A scan and its judgement are Python's own work, so that several at a time take several processes.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.config import device_of
+from pindrive.device.judging import judge
+from pindrive.device.scanning import scan
+from pindrive.study.outputs import variables
+from pindrive.study.scanned import SCANNED, scan_numbers
+from pindrive.study.workers import standing, usable_cores
+from pindrive.template import NUMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from pindrive.device.verdict import Judgement
+    from pindrive.study.plan import Columns, Plan
+
+Row = dict[str, float]
+
+_PORTION: Final = 8
+"""Points that a process takes at a time."""
+
+
+def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
+    """The scan at one point of a study with a page, which the keys' values (SI) say, judged.
+
+    Raises:
+        ValueError: there is none: the values do not go together, or a spot leaves the page.
+    """
+    if plan.page is None:
+        raise ValueError(f"{plan.path}: has no page to scan; write what is on it in [page]")
+    given = [f"{key}={_written(key, value)}" for key, value in at.items()]
+    file = device_of(plan.device.path, plan.tables, given, whole=True)
+    assert file.whole
+    device, reading = file.whole.device(file.drive), file.whole.reading()
+    scene = plan.page.scene(reading, device.array)
+    path = plan.page.page.hand(reading, scene, device.array)
+    done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
+    return judge(done, file.whole.criteria())
+
+
+def evaluate_scans(
+    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
+) -> dict[str, Any]:
+    """The outputs at `count` points; arguments as for `evaluate`.
+
+    Raises:
+        ValueError: a file of the page has changed since the study was read.
+    """
+    assert plan.page
+    plan.page.check()
+    every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
+    points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
+    portions = [points[i : i + _PORTION] for i in range(0, count, _PORTION)]
+    processes = usable_cores() if processes is None else processes
+    if processes == 1 or len(portions) == 1:
+        done = [_rows(plan, portion) for portion in portions]
+    else:
+        done = standing(processes).spread(_rows, plan, portions)
+    rows = [row for portion in done for row in portion]
+    return {name: np.array([row[name] for row in rows]) for name in outputs}
+
+
+def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
+    return [_row(plan, point) for point in points]
+
+
+def _row(plan: Plan, point: Mapping[str, float]) -> Row:
+    """What a point comes to; one without a scan has a status and no numbers."""
+    from pindrive.study.evaluate import flags
+
+    names = variables(SCANNED)
+    try:
+        found = scan_numbers(judged_at(plan, point))
+    except (ValueError, ArithmeticError, MemoryError):
+        return dict.fromkeys(names, nan) | {"status": flags("status").index("refused")}
+    return {name: found[quantity.name] for name, quantity in names.items()} | {"status": 0}
+
+
+def _written(key: str, value: float) -> str:
+    """A value as a device file has it, to the last bit."""
+    unit = NUMBERS[key].unit
+    return repr(value) if unit == "1" else f"{value!r} {unit}"

@@ -1,0 +1,76 @@
+"""Who works on a study: threads where the core does the work, processes where Python does."""
+
+from __future__ import annotations
+
+import os
+import signal
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from functools import cache
+from multiprocessing import get_context, parent_process
+from threading import Thread
+from typing import TYPE_CHECKING, TypeVar
+
+from pindrive.output import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from pindrive.study.plan import Plan
+
+Given = TypeVar("Given")
+Done = TypeVar("Done")
+DIED = "a process that worked on the study died"
+
+
+def usable_cores() -> int:
+    """How many this process may use."""
+    of_this_process = getattr(os, "sched_getaffinity", None)
+    return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
+
+
+def workers(plan: Plan, count: int) -> Executor:
+    """So many workers for a plan. One alone is a thread of this process in any case."""
+    return ThreadPoolExecutor(count) if plan.page is None or count == 1 else _processes(count)
+
+
+class Standing:
+    """Processes that stand by for one batch of points after the other."""
+
+    def __init__(self, count: int) -> None:
+        """Begin them at the first batch."""
+        self._pool = _processes(count)
+
+    def spread(
+        self, work: Callable[[Plan, Given], Done], plan: Plan, portions: Sequence[Given]
+    ) -> list[Done]:
+        """The work of each portion, in their order."""
+        try:
+            return list(self._pool.map(work, [plan] * len(portions), portions))
+        except BrokenProcessPool:
+            standing.cache_clear()
+            raise OutputError(DIED) from None
+
+
+@cache
+def standing(count: int) -> Standing:
+    """The processes of this process, as long as it lives."""
+    return Standing(count)
+
+
+def _processes(count: int) -> ProcessPoolExecutor:
+    """Begun anew, not forked: a process with threads cannot be forked safely."""
+    return ProcessPoolExecutor(count, get_context("spawn"), initializer=_attend)
+
+
+def _attend() -> None:
+    """End with the process that asked, however that ends; leave Ctrl-C to it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    asker = parent_process()
+    if asker:
+
+        def end() -> None:
+            asker.join()
+            os._exit(1)
+
+        Thread(target=end, daemon=True).start()
