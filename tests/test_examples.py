@@ -15,7 +15,7 @@ from pindrive.cli import app
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = re.findall(
-    r"^\.venv/bin/(.*examples/(?:letter_a|tactile-reader).*)$",
+    r"^\.venv/bin/(.*examples/(?:letter_a|tactile-reader\.toml).*)$",
     (ROOT / "README.md").read_text("utf-8"),
     re.M,
 )

@@ -529,3 +529,28 @@ def test_releases_of_a_whole_device_are_swept_too() -> None:
     data = swept(study('[axes]\nmass = ["5 g", "10 g"]\n', "", DEVICE + "[judge]\necho = 0.6\n"))
     assert (data.status == 0).all()
     assert "echo" not in data.coords
+
+
+def test_the_example_is_a_study_of_scans() -> None:
+    """What the README shows: its first points, one of them put together by hand."""
+    file = Path(__file__).parents[1] / "examples" / "tactile-reader-study.toml"
+    plan = load_study(file)
+    assert plan.shape == (19, 13, 3)
+    begin = next(n for n in range(plan.size) if plan.columns(n, n + 1)["scan.hand_speed"] > 0.149)
+    columns = plan.columns(begin, begin + 2)
+    found = evaluate(plan, columns, 2, SCAN_OUTPUTS)
+    assert (found["status"] == 0).all()
+    drive = Drive.with_damping_ratio(
+        mass=0.010,
+        stiffness=100.0,
+        damping_ratio=0.32,
+        plate=Contact(0.022, 0.0265),
+        finger=Contact(0.020, 0.030, stiffness=300.0),
+    )
+    magnet = Electromagnet.from_times(fall_time=columns["magnet.fall_time"][1])
+    device = Device(drive=drive, magnet=magnet)
+    reading = Reading(hand_speed=columns["scan.hand_speed"][1])
+    scene = reading.grating([0.008, 0.004, 0.002], device.array)
+    judged = judge(scan(device, scene, reading.strokes(scene, device.array)))
+    for name, value in numbers(judged).items():
+        assert found[name][1] == value, name

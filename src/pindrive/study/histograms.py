@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from pindrive.study.robust import Robustness
 
 _BINS: Final = 80
+"""At most: no more than twice the root of the number of draws."""
+_WIDTH: Final = 120
+"""Characters of a line of the title."""
 
 
 def plot_robustness(found: Robustness, name: str) -> Figure:
@@ -43,9 +47,8 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         for axes in grid[:, 0]:
             axes.set_ylabel(f"designs of {found.count:,}".replace(",", " "))
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
-        figure.suptitle(
-            f"{name}: {_outcome(found)}\n{_scatter(found)}", x=0.008, ha="left", fontsize=8.0
-        )
+        title = fill(f"{name}: {_outcome(found)}", _WIDTH)
+        figure.suptitle(f"{title}\n{_scatter(found)}", x=0.008, ha="left", fontsize=8.0)
     return figure
 
 
@@ -63,7 +66,8 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
     room = 0.04 * (high - low or abs(high) or 1.0)
     axes.set_xlim(low - room, high + room)
     if values.size:
-        edges = np.histogram_bin_edges(values, _BINS).tolist()
+        bins = min(_BINS, 1 + int(2.0 * np.sqrt(values.size)))
+        edges = np.histogram_bin_edges(values, bins).tolist()
         axes.hist(values, edges, color=PALETTE["curve"], alpha=0.75, lw=0.0)
         for part, style in ((0.05, ":"), (0.5, "-"), (0.95, ":")):
             axes.axvline(float(np.quantile(values, part)), color="black", lw=0.7, ls=style)

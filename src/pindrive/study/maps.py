@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from pindrive.study.outputs import MEASURED
+from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.words import QUANTITY, axis_label, value, values
 from pindrive.style import GREY, PALETTE, SMALL, STYLE
 
@@ -79,7 +79,7 @@ def plot_study(
                 handles=handles, loc="outside lower left", ncols=len(handles), frameon=False
             )
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
-        _title(figure, view, {**view.told, **still}, int(width * 0.72))
+        _title(figure, view, {**view.told, **still}, int(width * 0.66))
     return figure
 
 
@@ -118,7 +118,8 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
     finite = np.concatenate([values[np.isfinite(values)] for values in shown])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
-    levels = ticks[(ticks > low) & (ticks < high)]
+    stepped = is_stepped(panels[0].number)
+    levels = ticks[(ticks > low) & (ticks < high) & (not stepped)]
     drawn: ScalarMappable | None = None
     for panel, values_shown, axes in zip(panels, shown, row, strict=True):
         drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
@@ -151,7 +152,7 @@ def _draw_map(
     drawn = axes.pcolormesh(
         x, y, shown, cmap=_MAP, vmin=ends[0], vmax=ends[1], shading="nearest", rasterized=True
     )
-    if panel.low is None and min(shown.shape) > 1 and (~missing).any():
+    if panel.low is None and min(shown.shape) > 1 and (~missing).any() and len(levels):
         axes.contour(x, y, shown, levels=levels, colors="white", linewidths=0.5, alpha=0.8)
     axes.patch.set(**_HATCH)
     refused = np.where(panel.refused, 1.0, np.nan)

@@ -50,6 +50,11 @@ def is_measured(name: str) -> bool:
     return name in NUMBERS and name != _SETTLED
 
 
+def is_stepped(name: str) -> bool:
+    """Whether a variable is a count, or a part of one: it has no values between."""
+    return name in _COUNTS or name == "judged_shown_part"
+
+
 def usual_outputs(device: DeviceFile, keys: set[str]) -> tuple[str, ...]:
     """All numbers of a motion that exist; the skin's only where the finger has any."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from pindrive import template
 from pindrive.captions import short
-from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.outputs import NUMBERS, SCAN_MEASURED, label
 from pindrive.study.plan import variable
 
 if TYPE_CHECKING:
@@ -32,14 +32,23 @@ _WORDS: Final = {
     "rise_time": "rise time of the pull",
     "judged_shown_part": "part of the lines shown",
     "judged_shown": "lines shown",
+    "judged_unseen": "lines unseen",
+    "judged_merged": "lines merged",
+    "judged_faint": "lines too faint",
+    "judged_echoes": "false lines",
+    "judged_unsettled": "lines not settled",
     "judged_direction": "lines with a direction",
     "judged_sure": "lines with a sure direction",
+    "hand_duration": "time of the hand's way",
 }
 _TALL: Final = re.compile(r"([A-Za-z'α-ωΑ-Ω]+)_(.+)")
 
 
 def words(name: str) -> str:
-    """A variable in words: "plate friction", "settling time"."""
+    """A variable in words: "plate friction", "settling time", "median lag at a line's end"."""
+    if name in SCAN_MEASURED and name.endswith(("_on", "_off")):
+        name, _, edge = name.rpartition("_")
+        return f"{words(name)} at a line's {'begin' if edge == 'on' else 'end'}"
     return _WORDS.get(name, label(name).replace("_", " "))
 
 
