@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import os
 import signal
+from collections.abc import Mapping
 from io import StringIO
 from math import nan
 from pathlib import Path
@@ -178,8 +179,8 @@ def numbers(judgement: Judgement) -> dict[str, float]:
     return found
 
 
-def assert_same(point: xr.Dataset, judgement: Judgement) -> None:
-    assert point.status == 0
+def assert_same(point: Mapping[Any, Any], judgement: Judgement) -> None:
+    assert point["status"] == 0
     for name, value in numbers(judgement).items():
         np.testing.assert_array_equal(point[name], value, err_msg=name)
 
@@ -210,13 +211,13 @@ VARIED = {
 @pytest.mark.parametrize("key", VARIED)
 def test_a_point_is_a_scan_to_the_bit(key: str) -> None:
     written, values = VARIED[key]
-    data = swept(study(f"[axes]\n{key} = {json.dumps(written)}\n"))
-    name = key.partition(".")[2].replace("kinetic", key.replace(".", "_"))
-    name = {"stiffness": "finger_stiffness"}.get(name, name)
-    np.testing.assert_array_equal(data[name], values)
+    plan = study(f"[axes]\n{key} = {json.dumps(written)}\n")
+    columns = plan.columns(0, 2)
+    assert {k: v.tolist() for k, v in columns.items()} == {key: values}
+    found = evaluate(plan, columns, 2, SCAN_OUTPUTS)
     judged = [direct({key: value}) for value in values]
     for i, judgement in enumerate(judged):
-        assert_same(data.isel({name: i}), judgement)
+        assert_same({name: column[i] for name, column in found.items()}, judgement)
     one, other = ([numbers(j), [line.height for line in j.lines], j.scan.path.end] for j in judged)
     assert repr(one) != repr(other), "the key does something"
 
@@ -376,6 +377,10 @@ def test_a_page_that_changes_meanwhile_is_refused() -> None:
     with pytest.raises(ValueError, match=r"page\.image: page\.png has changed since the study"):
         sweep(plan, Path("study.nc"), work=on_threads(1))
     assert not Path("study.nc").exists()
+    axes, page = '[axes]\ncontrol.latency = ["1 ms"]\n', '[page]\nimage = "page.png"\n'
+    broad = swept(study(axes, page), "broad.nc")
+    picture("page.png", slice(80, 100))
+    assert swept(study(axes, page), "narrow.nc").median_latency_off != broad.median_latency_off
 
 
 # ---- what studies are for ------------------------------------------------------------------------
@@ -481,6 +486,12 @@ WRONG = {
     '"4 mm", got "4 g"',
     (AXES, '[page]\nimage = "none.png"\n'): "page.image: none.png cannot be read: No such file or "
     "directory",
+    (AXES, '[page]\ntext = " "\n'): "page: text must be at least one character that is drawn, got "
+    '" "',
+    (
+        AXES,
+        '[page]\ngrating = ["4 mm"]\npath = "study.toml"\n',
+    ): 'page: study.toml: the header must be like "t [s], x [mm], y [mm]"',
     (AXES, GRATING + 'font = "a.ttf"\n'): "page.font a.ttf: goes with page.text alone",
     ('[axes]\nmouse_velocity = ["1 mm/s"]\n', GRATING): "axes: motion.mouse_velocity has no part "
     "in a scan, in which the hand moves the mouse; leave out [page] to vary it",
@@ -522,6 +533,16 @@ def test_refusals(given: tuple[str, str]) -> None:
 def test_a_magnet_is_varied_one_way() -> None:
     with pytest.raises(ConfigError, match=r"axes: magnet\.fall_time must be left out where turns"):
         study('[axes]\nmagnet.fall_time = ["1 ms"]\n', device=DEVICE + COILED)
+
+
+def test_places_of_pins_leave_no_grid_to_vary() -> None:
+    placed = DEVICE.replace('pitch = "3 mm"', 'places = [["0 mm", "0 mm"], ["3 mm", "0 mm"]]')
+    with pytest.raises(
+        ConfigError, match=r"axes: array\.pitch cannot be varied beside array\.places"
+    ):
+        study('[axes]\narray.pitch = ["2 mm"]\n', device=placed)
+    data = swept(study('[axes]\ncontrol.latency = ["1 ms", "4 ms"]\n', device=placed))
+    assert (data.judged_lines == 8).all()
 
 
 def test_releases_of_a_whole_device_are_swept_too() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -40,6 +39,7 @@ def sweep(
     from pindrive.study.studyfile import load_study
     from pindrive.study.sweeping import on_threads
     from pindrive.study.sweeping import sweep as work_off
+    from pindrive.study.workers import stop_at_once
 
     target = output or study.with_suffix(".nc")
     with refusing():
@@ -72,7 +72,7 @@ def sweep(
             kept = target.with_name(f"{target.name}.journal").exists()
             words = "finished chunks are kept, --resume goes on with them"
             typer.echo(f"stopped; {words if kept else 'no chunk was finished yet'}", err=True)
-            os._exit(130)  # without waiting for the chunks under way
+            stop_at_once(130)
     for line in sweep_report(plan, done):
         typer.echo(line)
 

@@ -33,7 +33,24 @@ def conflicts(plan: Plan, file: str) -> list[str]:
         for contact in ("plate", "finger"):
             if words := _static_below_kinetic(plan, axes, contact):
                 problems.append(f"{file}: {table}: {words}")
+    if plan.page and not any(_sizes(key) for key in (*plan.axes, *tolerances)):
+        problems += [f"{file}: page: {words}" for words in _unreadable(plan)]
     return problems
+
+
+def _sizes(key: str) -> bool:
+    """Whether the size of a page, or a way over it, follows from a key."""
+    return key.startswith(("array.", "scan."))
+
+
+def _unreadable(plan: Plan) -> Iterator[str]:
+    """Of a page that is the same at every point."""
+    if plan.page and plan.device.whole:
+        reading, array = plan.device.whole.reading(), plan.device.whole.array.array()
+        try:
+            plan.page.hand(reading, plan.page.scene(reading, array), array)
+        except ValueError as error:
+            yield str(error)
 
 
 def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:

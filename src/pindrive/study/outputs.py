@@ -83,7 +83,7 @@ def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> s
         raise ValueError(f"{place}: {quoted(given)} may be {' or '.join(ends)}; give it in full")
     names = {short: short for short in shorts.values()} | {full: full for full in among}
     near = get_close_matches(name, names, 1)
-    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
+    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(map(label, among))}"
     raise ValueError(f"{place}: unknown number {quoted(given)}; {hint}")
 
 

@@ -16,11 +16,12 @@ from pindrive.units import quoted
 
 if TYPE_CHECKING:
     from pindrive.device.array import PinArray
+    from pindrive.device.hand import HandPath
     from pindrive.device.scene import Scene
 
 KEYS: Final = ("text", "image", "grating", "font", "path")
-_SCENES: Final = 4
-"""Scenes that are kept: a sweep comes back to the one before."""
+_KEPT: Final = 4
+"""Scenes and recorded paths that are kept: a sweep comes back to the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,19 +40,28 @@ class StudyPage:
     def check(self) -> None:
         """Refuse files that are not there, or hold something else by now.
 
-        Whoever works out a part of a study, perhaps on another machine, does so once.
+        Whoever works out a part of a study, perhaps on another machine, does so before.
 
         Raises:
             ValueError: so it is.
         """
-        _check(self)
+        known = dict(self.checksums)
+        for name, path in self.page.files.items():
+            if _checksum(path, f"page.{name}") != known[name]:
+                raise ValueError(f"page.{name}: {path} has changed since the study was read")
 
     def scene(self, reading: Reading, array: PinArray) -> Scene:
-        """What is on the page."""
+        """What is on the page; errors as for `Page`."""
         size = Reading(
             text_height=reading.text_height, pixel=reading.pixel, line_pitch=reading.line_pitch
         )
-        return _scene(self.page, size, array)
+        return _scene(self, size, array)
+
+    def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
+        """How the hand moves over it; errors as for `Page`."""
+        if self.page.path:
+            return _recorded(self, self.page.path, reading.hand_acceleration)
+        return self.page.hand(reading, scene, array)
 
 
 def read_page(table: Any, file: Path) -> StudyPage:
@@ -100,14 +110,11 @@ def _checksum(path: Path, label: str) -> str:
         raise ValueError(f"{label}: {path} cannot be read: {reason}") from None
 
 
-@lru_cache(maxsize=_SCENES)
-def _check(given: StudyPage) -> None:
-    known = dict(given.checksums)
-    for name, path in given.page.files.items():
-        if _checksum(path, f"page.{name}") != known[name]:
-            raise ValueError(f"page.{name}: {path} has changed since the study was read")
+@lru_cache(maxsize=_KEPT)
+def _scene(given: StudyPage, reading: Reading, array: PinArray) -> Scene:
+    return given.page.scene(reading, array)
 
 
-@lru_cache(maxsize=_SCENES)
-def _scene(page: Page, reading: Reading, array: PinArray) -> Scene:
-    return page.scene(reading, array)
+@lru_cache(maxsize=_KEPT)
+def _recorded(given: StudyPage, path: Path, acceleration: float) -> HandPath:
+    return Reading(hand_acceleration=acceleration).record(path)

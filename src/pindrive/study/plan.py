@@ -112,7 +112,7 @@ class Plan:
     @property
     def at_a_time(self) -> int:
         """How many points are worked out between two looks at how far it has come."""
-        return 4 * SCANS if self.page else CHUNK
+        return 16 * SCANS if self.page else CHUNK
 
     @property
     def values(self) -> dict[str, Any]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Row = dict[str, float]
 
 _PORTION: Final = 8
-"""Points that a process takes at a time."""
+"""Points that a process takes at a time, at most."""
 
 
 def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
@@ -43,7 +43,7 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     assert file.whole
     device, reading = file.whole.device(file.drive), file.whole.reading()
     scene = plan.page.scene(reading, device.array)
-    path = plan.page.page.hand(reading, scene, device.array)
+    path = plan.page.hand(reading, scene, device.array)
     done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
     return judge(done, file.whole.criteria())
 
@@ -60,8 +60,9 @@ def evaluate_scans(
     plan.page.check()
     every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
     points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
-    portions = [points[i : i + _PORTION] for i in range(0, count, _PORTION)]
     processes = usable_cores() if processes is None else processes
+    portion = min(_PORTION, -(-count // (2 * processes)))
+    portions = [points[i : i + portion] for i in range(0, count, portion)]
     if processes == 1 or len(portions) == 1:
         done = [_rows(plan, portion) for portion in portions]
     else:
