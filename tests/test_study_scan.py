@@ -247,7 +247,14 @@ def test_products_links_and_draws() -> None:
 def test_a_coil_may_be_varied() -> None:
     data = swept(study("[axes]\nmagnet.turns = [200, 320]\n", device=DEVICE + COILED))
     for i, turns in enumerate((200.0, 320.0)):
-        assert_same(data.isel(turns=i), direct({"magnet.turns": turns}, coiled=True))
+        judged = direct({"magnet.turns": turns}, coiled=True)
+        assert_same(data.isel(turns=i), judged)
+        # 100 K/W, and 3 V on copper of so many turns
+        power = 9.0 / (turns * 0.016 / (58e6 * np.pi / 4.0 * 1e-8))
+        on = sum(end - begin for begin, end in judged.scan.pins[0].energised)
+        part = on / (judged.scan.path.end - judged.scan.path.begin)
+        assert data.magnet_on_part[i] == pytest.approx(part, rel=1e-12)
+        assert data.coil_warming[i] == pytest.approx(100.0 * power * part, rel=1e-12)
     assert "gap" in data.coords
     assert "hold_force" not in data.coords, "it changes with the turns"
 
@@ -284,8 +291,9 @@ def test_a_point_without_a_scan_is_marked() -> None:
     ]
     with xr.open_dataset("study.nc") as data:
         np.testing.assert_array_equal(data.status, [[0, REFUSED], [0, 0]])
+        assert "coil_warming" not in data, "no coil is described"
         bad = data.isel(threshold=0, hysteresis=1)
-        assert all(np.isnan(bad[name]) for name in SCAN_OUTPUTS if name != "status")
+        assert all(np.isnan(bad[name]) for name in data.data_vars if name != "status")
         assert data.judged_lines.notnull().sum() == 3
     assert plan.size == 4
 
@@ -441,6 +449,12 @@ def test_sobol_indices_are_those_of_scans() -> None:
     assert [axes.get_title() for axes in figure.axes] == [
         "over the ranges: part of the variance due to"
     ]
+
+
+def test_counts_have_no_sensitivity() -> None:
+    plan = study("[axes]\narray.columns = [1, 2]\n")
+    with pytest.raises(ValueError, match=r"axes\.array\.columns counts pins, and there is nothing"):
+        influence(plan)
 
 
 def test_nothing_varied_has_no_sensitivity() -> None:

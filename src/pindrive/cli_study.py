@@ -97,7 +97,8 @@ def _bar() -> Iterator[Callable[[int, int], None]]:
 
         def tell(done: int, total: int) -> None:
             speed = bar.tasks[task].speed
-            shown = f"{speed:,.0f} points/s".replace(",", " ") if speed else ""
+            digits = 0 if speed and speed >= 10.0 else 1
+            shown = f"{speed:,.{digits}f} points/s".replace(",", " ") if speed else ""
             bar.update(task, completed=done, total=total, speed=shown)
 
         yield tell

@@ -1,4 +1,4 @@
-"""Studies: many releases of one device, each with other values of its keys.
+"""Studies: many releases or scans of one device, each with other values of its keys.
 
 A study file names a device and says which of its keys change and how. `sweep` works out every
 point into one NetCDF file; maps, sensitivities and yields follow from the same files.

@@ -9,7 +9,7 @@ import numpy as np
 from pindrive.device.array import check_count
 from pindrive.device.coil import check_one_way
 from pindrive.study.axis import Axis, Distribution, Linked, Listed
-from pindrive.study.plan import base_value
+from pindrive.study.plan import COUNTS, base_value
 from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
@@ -86,8 +86,7 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
         for key in ("array.columns", "array.rows", "array.pitch"):
             if key in axes:
                 yield f"{key} cannot be varied beside array.places"
-    for name in ("columns", "rows"):
-        key = f"array.{name}"
+    for key in COUNTS:
         axis = axes.get(key)
         if isinstance(axis, Distribution):
             yield f"{key} counts pins; give a list of whole numbers"
@@ -95,7 +94,7 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
             few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
             try:
                 for value in few:
-                    check_count(name, float(value), label=key)
+                    check_count(key.partition(".")[2], float(value), label=key)
             except ValueError as error:
                 yield str(error)
 

@@ -12,7 +12,7 @@ from pindrive.study.evaluate import evaluate
 from pindrive.study.indices import Indices, sobol_indices
 from pindrive.study.local import Elasticities, elasticities
 from pindrive.study.outputs import MEASURED, SCAN_OUTPUTS
-from pindrive.study.plan import with_links
+from pindrive.study.plan import COUNTS, with_links
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -46,7 +46,7 @@ def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
     """The ranges of the axes, or the tolerances; the other where one is missing.
 
     Raises:
-        ValueError: nothing varies.
+        ValueError: nothing varies, or a count does.
     """
     scatter: dict[str, Distribution] = {}
     fixed: dict[str, float] = {}
@@ -57,6 +57,11 @@ def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
         if isinstance(axis, Linked):
             continue
         low, high = axis.span
+        if low < high and key in COUNTS:
+            raise ValueError(
+                f"{plan.path}: axes.{key} counts pins, and there is nothing between two counts to "
+                "draw; give one value"
+            )
         if low < high:
             scatter[key] = as_distribution(axis)
         else:

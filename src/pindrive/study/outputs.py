@@ -55,10 +55,14 @@ def is_stepped(name: str) -> bool:
     return name in _COUNTS or name == "judged_shown_part"
 
 
-def usual_outputs(device: DeviceFile, keys: set[str]) -> tuple[str, ...]:
-    """All numbers of a motion that exist; the skin's only where the finger has any."""
+def usual_outputs(
+    device: DeviceFile, keys: set[str], among: Sequence[str] = OUTPUTS
+) -> tuple[str, ...]:
+    """All numbers that exist; the skin's only where the finger has any, the coil's likewise."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
-    return tuple(name for name in OUTPUTS if not (rigid and name in _SKIN))
+    coil = device.whole and device.whole.magnet.magnet().coil
+    missing = (*(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
+    return tuple(name for name in among if name not in missing)
 
 
 def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> str:

@@ -29,6 +29,8 @@ CHUNK: Final = 1 << 16
 """Points of a chunk: half a second's work, 15 MB of numbers."""
 SCANS: Final = 16
 """The same of scans: from a quarter of a second's work with one pin to some with sixteen."""
+COUNTS: Final = ("array.columns", "array.rows")
+"""Keys that are whole numbers."""
 
 
 def variable(key: str) -> str:

@@ -36,6 +36,8 @@ SCANNED: Final[tuple[Quantity, ...]] = (
     *(_median(quantity) for quantity in LINE),
     *(_worst(quantity) for quantity in LINE),
     Quantity("hand.duration", "T_h", "s", "how long the hand moves and pauses"),
+    Quantity("magnet.on_part", "D_on", "1", "part of that time that a magnet is on, the largest"),
+    Quantity("coil.warming", "ΔT_on", "K", "by how much its coil warms, where one is described"),
 )
 """Medians and worst values are of the lines that have the number: one that does not settle has no
 smear, and is counted as unsettled."""
@@ -45,11 +47,15 @@ COUNTED: Final = tuple(quantity.name for quantity in JUDGED)
 def scan_numbers(judgement: Judgement) -> dict[str, float]:
     """The numbers of one scan, SI, by their names; NaN where one does not exist."""
     counts, path = judgement.counts, judgement.scan.path
-    lines = counts["judged.lines"]
+    lines, duration = counts["judged.lines"], path.end - path.begin
+    on = max(sum(end - begin for begin, end in pin.energised) for pin in judgement.scan.pins)
+    coil = judgement.scan.device.magnet.coil
     found: dict[str, float] = {
         "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
         **counts,
-        "hand.duration": path.end - path.begin,
+        "hand.duration": duration,
+        "magnet.on_part": on / duration,
+        "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
     }
     for quantity in LINE:
         name = _short(quantity)

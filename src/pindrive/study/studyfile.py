@@ -166,8 +166,7 @@ class _Reader:
         """The variables to keep, each once, with the status of every point."""
         given = self._tables.get("outputs")
         if given is None:
-            swept = set(self._swept)
-            return SCAN_OUTPUTS if self._scans else usual_outputs(self._device, swept)
+            return usual_outputs(self._device, set(self._swept), self.among)
         if not isinstance(given, list) or not given:
             required = 'a list of numbers, like ["settling_time", "swing"]'
             self._problems.append(refusal("outputs", required, quoted(given), self._file))

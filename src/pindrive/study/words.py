@@ -40,6 +40,8 @@ _WORDS: Final = {
     "judged_direction": "lines with a direction",
     "judged_sure": "lines with a sure direction",
     "hand_duration": "time of the hand's way",
+    "magnet_on_part": "part of the time a magnet is on",
+    "coil_warming": "warming of the coil",
 }
 _TALL: Final = re.compile(r"([A-Za-z'α-ωΑ-Ω]+)_(.+)")
 
