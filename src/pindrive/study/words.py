@@ -39,6 +39,8 @@ _WORDS: Final = {
     "judged_unsettled": "lines not settled",
     "judged_direction": "lines with a direction",
     "judged_sure": "lines with a sure direction",
+    "median_skin": "median skin motion",
+    "worst_skin": "least skin motion",
     "hand_duration": "time of the hand's way",
     "magnet_on_part": "part of the time a magnet is on",
     "coil_warming": "warming of the coil",
