@@ -131,7 +131,7 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
         bar = figure.colorbar(drawn, ax=list(row), pad=0.015, fraction=0.05, aspect=24)
         for level in levels if panels[0].low is None else ():
             bar.ax.axhline(level, color="white", lw=0.5)
-        said = "median " if panels[0].number in MEASURED else "median of draws: "
+        said = "median " if panels[0].number in MEASURED else "median of draws:\n"
         median = said if panels[0].low is not None else ""
         bar.set_label(median + axis_label(panels[0].number))
         bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
