@@ -192,6 +192,8 @@ def halved(
     sign = np.sign(f(low))
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
+        if ((middle == low) | (middle == high)).all():
+            break  # nothing is between them
         before = sign * f(middle) > 0.0
         low[before], high[~before] = middle[before], middle[~before]
     return high
