@@ -34,6 +34,7 @@ from pindrive.device import (
     scan,
 )
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS
+from pindrive.device.page import Page
 from pindrive.device.reading import Reading
 from pindrive.output import OutputError
 from pindrive.study.charts import plot_influence
@@ -349,6 +350,10 @@ def test_processes_change_nothing_and_their_death_loses_nothing() -> None:
     result = sweep(plan, Path("study.nc"), work=on_threads(2), resume=True)
     assert result.worked_out < result.points
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()
+    columns = plan.columns(0, plan.size)
+    one, two = (evaluate(plan, columns, plan.size, SCAN_OUTPUTS, threads) for threads in (1, 2))
+    for name, values in one.items():
+        np.testing.assert_array_equal(values, two[name], err_msg=name)
 
 
 def picture(name: str, dark: slice) -> None:
@@ -356,6 +361,14 @@ def picture(name: str, dark: slice) -> None:
     pixels = np.full((40, 200), 255, np.uint8)
     pixels[:, dark] = 0
     Image.fromarray(pixels).save(name, dpi=(254, 254))
+
+
+def test_a_page_says_how_it_is_scanned() -> None:
+    """As `pindrive scan` takes it, which a worst case tells to do."""
+    assert Page(grating=(0.004, 0.0025)).options == '--grating "4 mm, 2.5 mm"'
+    page = Page(text="A\nb", font=Path("a.ttf"), path=Path("hand.csv"))
+    assert page.options == '--text "A\\nb" --font "a.ttf" --path "hand.csv"'
+    assert page.words == 'text "A\\nb" along hand.csv'
 
 
 def test_the_identity_holds_the_page() -> None:
