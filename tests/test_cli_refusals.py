@@ -139,9 +139,12 @@ def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no limit on the size of files")
 @pytest.mark.parametrize("name", ["a.png", "a.svg", "a.pdf", "a.csv", "a.nc", "a.json"])
-def test_a_disk_that_fills_up_leaves_nothing(name: str) -> None:
+def test_a_disk_that_fills_up_leaves_nothing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     import resource
 
+    monkeypatch.setattr(
+        sys, "dont_write_bytecode", True
+    )  # the limit would cut what is imported now
     sizes = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1024, sizes[1]))
     try:

@@ -58,6 +58,29 @@ def test_numbers_are_those_of_simulate() -> None:
                 assert at.events == len(motion.events)
 
 
+def test_the_ledger_is_kept_where_it_is_named() -> None:
+    """Its terms are in no file that does not name them, and then are those of `simulate`."""
+    axes = '[axes]\nmouse_velocity = ["20 mm/s", "90 mm/s"]\n'
+    plan(axes)
+    run("study.toml", "-o", "without.nc")
+    plan('outputs = ["settling_time", "damper_dissipated", "energy.residual"]\n' + axes)
+    run("study.toml", "-o", "with.nc")
+    with xr.open_dataset("without.nc") as data, xr.open_dataset("with.nc") as named:
+        assert not [name for name in data if str(name).startswith("energy")]
+        assert set(named) == {
+            "transient_settling_time",
+            "energy_damper_dissipated",
+            "energy_residual",
+            "status",
+        }
+        assert named.energy_damper_dissipated.attrs["units"] == "J"
+        device = load_study("study.toml").device
+        for i, speed in enumerate(named.mouse_velocity.values):
+            motion = simulate(device.drive, mouse_velocity=speed)
+            assert named.energy_damper_dissipated[i] == motion.energy.damper_dissipated
+            assert abs(named.energy_residual[i]) < 1e-12 * motion.energy.damper_dissipated
+
+
 def test_the_file_says_everything() -> None:
     """Units, meanings, the whole study, the device and the version."""
     import pindrive

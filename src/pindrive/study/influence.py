@@ -11,7 +11,7 @@ from pindrive.study.axis import Distribution, Linked, as_distribution
 from pindrive.study.evaluate import evaluate
 from pindrive.study.indices import Indices, sobol_indices
 from pindrive.study.local import Elasticities, elasticities
-from pindrive.study.outputs import MEASURED, SCAN_OUTPUTS
+from pindrive.study.outputs import LEDGER, MEASURED, SCAN_OUTPUTS
 from pindrive.study.plan import COUNTS, with_links
 
 if TYPE_CHECKING:
@@ -110,7 +110,8 @@ def influence(
     """
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
-    outputs = SCAN_OUTPUTS if plan.page else (*MEASURED, "transient_settled", "status")
+    measured = (name for name in MEASURED if name not in LEDGER or name in plan.outputs)
+    outputs = SCAN_OUTPUTS if plan.page else (*measured, "transient_settled", "status")
     if count is None:
         count = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
     refused = 0

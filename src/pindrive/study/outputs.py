@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.quantities import ENDING, QUANTITIES, TRANSIENT, refusal
+from pindrive.quantities import ENDING, ENERGY, QUANTITIES, TRANSIENT, refusal
 from pindrive.study.scanned import COUNTED, SCANNED
 from pindrive.units import quoted
 
@@ -23,7 +23,7 @@ def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
     return {quantity.name.replace(".", "_"): quantity for quantity in quantities}
 
 
-_OF_MOTIONS: Final = variables(TRANSIENT + ENDING)
+_OF_MOTIONS: Final = variables(TRANSIENT + ENDING + ENERGY)
 _OF_SCANS: Final = variables(SCANNED)
 NUMBERS: Final[dict[str, Quantity]] = _OF_MOTIONS | _OF_SCANS
 """By the names of their variables."""
@@ -31,6 +31,9 @@ OUTPUTS: Final = (*_OF_MOTIONS, "status", "ending", "events")
 """Of a motion."""
 SCAN_OUTPUTS: Final = (*_OF_SCANS, "status")
 """Of a scan."""
+
+LEDGER: Final = tuple(variables(ENERGY))
+"""The terms of the energy ledger: they take long, and are kept where a study names them."""
 
 _SKIN: Final = ("transient_peak_stretch", "transient_peak_stretch_rate")
 _COUNTS: Final = (
@@ -58,10 +61,10 @@ def is_stepped(name: str) -> bool:
 def usual_outputs(
     device: DeviceFile, keys: set[str], among: Sequence[str] = OUTPUTS
 ) -> tuple[str, ...]:
-    """All numbers that exist; the skin's only where the finger has any, the coil's likewise."""
+    """All numbers that exist but the ledger's; the skin's only of a skin, the coil's likewise."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
     coil = device.whole and device.whole.magnet.magnet().coil
-    missing = (*(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
+    missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
     return tuple(name for name in among if name not in missing)
 
 
