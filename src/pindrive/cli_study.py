@@ -6,12 +6,22 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
 from pindrive.refusing import check_distinct, figure_format, refusing
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from pindrive.study.influence import Influence
+    from pindrive.study.plan import Plan
+    from pindrive.study.robust import Robustness
+
+    Tell = Callable[[int, int], None]
+
+Found = TypeVar("Found")
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 
 
@@ -166,25 +176,20 @@ def sensitivity(
     ] = None,
 ) -> None:
     """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges."""
-    from pindrive.output import atomic_write, naming
-    from pindrive.study.influence import influence
-    from pindrive.study.studyfile import load_study
 
-    with refusing(), ExitStack() as stack:
-        plan = load_study(study)
-        check_distinct([*{study, plan.device.path}, *([plot] if plot else [])])
-        kind = figure_format(plot) if plot else ""
-        part = stack.enter_context(atomic_write(plot)) if plot else None
-        with _bar() as tell:
-            found = influence(
-                plan, tolerances=tolerances, count=rows, seed=seed, threads=threads, tell=tell
-            )
-        if plot and part:
-            from pindrive.study.charts import plot_influence
-            from pindrive.style import save
+    def answer(plan: Plan, tell: Tell) -> Influence:
+        from pindrive.study.influence import influence
 
-            with naming(plot):
-                save(plot_influence(found, plan.name), part, kind)
+        return influence(
+            plan, tolerances=tolerances, count=rows, seed=seed, threads=threads, tell=tell
+        )
+
+    def picture(found: Influence, name: str) -> Figure:
+        from pindrive.study.charts import plot_influence
+
+        return plot_influence(found, name)
+
+    _, found = _answered(study, answer, plot, picture)
     from pindrive.report import show
     from pindrive.study.report import influence_report
 
@@ -212,8 +217,34 @@ def robustness(
     ] = None,
 ) -> None:
     """Say how a design fares within its tolerances: spread, yield, worst case."""
+
+    def answer(plan: Plan, tell: Tell) -> Robustness:
+        from pindrive.study.robust import robustness
+
+        return robustness(plan, count=draws, seed=seed, threads=threads, tell=tell)
+
+    def picture(found: Robustness, name: str) -> Figure:
+        from pindrive.study.histograms import plot_robustness
+
+        return plot_robustness(found, name)
+
+    plan, found = _answered(study, answer, plot, picture)
+    from pindrive.report import show
+    from pindrive.study.report import robustness_report
+
+    show(robustness_report(plan, found))
+    if plot:
+        typer.echo(f"Wrote {plot}")
+
+
+def _answered(
+    study: Path,
+    answer: Callable[[Plan, Tell], Found],
+    plot: Path | None,
+    picture: Callable[[Found, str], Figure],
+) -> tuple[Plan, Found]:
+    """A study and what was asked of it, with a progress bar and, where wanted, a picture."""
     from pindrive.output import atomic_write, naming
-    from pindrive.study.robust import robustness as judge
     from pindrive.study.studyfile import load_study
 
     with refusing(), ExitStack() as stack:
@@ -222,16 +253,10 @@ def robustness(
         kind = figure_format(plot) if plot else ""
         part = stack.enter_context(atomic_write(plot)) if plot else None
         with _bar() as tell:
-            found = judge(plan, count=draws, seed=seed, threads=threads, tell=tell)
+            found = answer(plan, tell)
         if plot and part:
-            from pindrive.study.histograms import plot_robustness
             from pindrive.style import save
 
             with naming(plot):
-                save(plot_robustness(found, plan.name), part, kind)
-    from pindrive.report import show
-    from pindrive.study.report import robustness_report
-
-    show(robustness_report(plan, found))
-    if plot:
-        typer.echo(f"Wrote {plot}")
+                save(picture(found, plan.name), part, kind)
+    return plan, found
