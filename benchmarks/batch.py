@@ -86,10 +86,10 @@ def core_alone(program: Path, count: int) -> Callable[[], float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=200_000, help="drives")
+    parser.add_argument("--count", type=int, default=1 << 16, help="drives; a sweep's chunk")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--step", type=float, default=1e-4, help="of the stepper, s")
-    parser.add_argument("--rounds", type=int, default=5, help="timings of which the median counts")
+    parser.add_argument("--rounds", type=int, default=15, help="timings of which the median counts")
     parser.add_argument("--core", type=Path, default=ROOT / "build" / "cpp" / "core")
     given = parser.parse_args()
 
