@@ -60,8 +60,8 @@ Point point(const Inputs& inputs, std::size_t i) {
   std::array<std::int64_t, input_count> offset{};
   for (std::size_t axis = inputs[0].ndim(); axis-- > 0;) {
     const auto length = inputs[0].shape(axis);
-    const auto index = static_cast<std::int64_t>(axis > 0 ? i % length : i);
-    if (axis > 0) i /= length;
+    const auto index = static_cast<std::int64_t>(i % length);
+    i /= length;
     for (std::size_t k = 0; k < input_count; ++k) offset[k] += index * inputs[k].stride(axis);
   }
   Point found;

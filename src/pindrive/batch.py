@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pindrive import _core
+from pindrive.cores import worker_count
 from pindrive.quantities import QUANTITIES, refusal
 from pindrive.quantity import POSITIVE_OR_RIGID, Bounds
 
@@ -116,7 +116,7 @@ def simulate_batch(
     from pindrive import __version__
 
     given = {k: v for k, v in locals().items() if k in _ARGUMENTS and v is not None}
-    workers = _worker_count(threads)
+    workers = worker_count(threads)
     sizes, arguments, coordinates = _shared_shape(given)
     shape = tuple(sizes.values())
 
@@ -138,16 +138,6 @@ def simulate_batch(
         for name, column in table.items()
     }
     return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
-
-
-def _worker_count(threads: int | None) -> int:
-    """The threads asked for, or as many as there are cores to run on."""
-    if threads is None:
-        of_this_process = getattr(os, "sched_getaffinity", None)
-        return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
-    if type(threads) is not int or threads < 1:
-        raise ValueError(refusal("threads", "a whole number of at least 1", repr(threads)))
-    return threads
 
 
 # ---- shapes --------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ swinging, caught again in mid-swing.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.cores import usable_cores
 from pindrive.device.control import Commands, Decision
 from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
@@ -200,7 +200,7 @@ def scan(
         raise ValueError(refusal("start", required, str(len(start))))
     prepared = prepare(device, scene, path, start)
     pins: list[PinScan] = []
-    workers = threads or os.cpu_count() or 1
+    workers = threads or usable_cores()
     with ThreadPoolExecutor(max_workers=min(workers, len(prepared))) as pool:
         for pin in pool.map(PreparedPin.follow, prepared):
             pins.append(pin)

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.config import device_of
+from pindrive.cores import worker_count
 from pindrive.device.judging import judge
 from pindrive.device.scanning import scan
 from pindrive.study.outputs import variables
 from pindrive.study.scanned import SCANNED, scan_numbers
-from pindrive.study.workers import standing, usable_cores
+from pindrive.study.workers import standing
 from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def evaluate_scans(
     plan.page.check()
     every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
     points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
-    processes = usable_cores() if processes is None else processes
+    processes = worker_count(processes)
     portion = min(_PORTION, -(-count // (2 * processes)))
     portions = [points[i : i + portion] for i in range(0, count, portion)]
     if processes == 1 or len(portions) == 1:

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pindrive.cores import worker_count
 from pindrive.output import OutputError, naming
-from pindrive.quantities import refusal
 from pindrive.study.journal import Journal, Tally, difference
 from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
-from pindrive.study.workers import DIED, usable_cores, workers
+from pindrive.study.workers import DIED, workers
 
 if TYPE_CHECKING:
     from pindrive.study.plan import Plan
@@ -123,9 +123,7 @@ def on_threads(threads: int | None = None) -> Work:
     Scans are worked out by as many processes instead: a script that sweeps them does so under
     `if __name__ == "__main__":`, as all that begin processes.
     """
-    count = usable_cores() if threads is None else threads
-    if type(count) is not int or count < 1:
-        raise ValueError(refusal("threads", "a whole number of at least 1", repr(threads)))
+    count = worker_count(threads)
 
     def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
         pool = workers(plan, min(count, len(chunks) or 1))

@@ -24,12 +24,6 @@ Done = TypeVar("Done")
 DIED = "a process that worked on the study died"
 
 
-def usable_cores() -> int:
-    """How many this process may use."""
-    of_this_process = getattr(os, "sched_getaffinity", None)
-    return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
-
-
 def workers(plan: Plan, count: int) -> Executor:
     """So many workers for a plan. One alone is a thread of this process in any case."""
     return ThreadPoolExecutor(count) if plan.page is None or count == 1 else _processes(count)
