@@ -21,7 +21,6 @@ from typer.testing import CliRunner, Result
 
 from pindrive import Contact, Drive
 from pindrive.cli import app
-from pindrive.config import ConfigError
 from pindrive.device import (
     Coil,
     ControlBlock,
@@ -42,7 +41,6 @@ from pindrive.study.evaluate import evaluate, flags
 from pindrive.study.influence import influence
 from pindrive.study.maps import plot_study
 from pindrive.study.outputs import SCAN_OUTPUTS
-from pindrive.study.plan import Plan
 from pindrive.study.report import influence_report
 from pindrive.study.robust import robustness
 from pindrive.study.sample import Sample
@@ -50,33 +48,8 @@ from pindrive.study.studyfile import load_study
 from pindrive.study.sweeping import on_threads, sweep
 from pindrive.study.view import View
 from pindrive.template import NUMBERS
+from scan_studies import COILED, DEVICE, GRATING, study, swept
 
-DEVICE = """
-[drive]
-mass = "10 g"
-stiffness = "100 N/m"
-damping_ratio = 0.32
-[plate]
-kinetic = "22 mN"
-[finger]
-kinetic = "20 mN"
-stiffness = "300 N/m"
-[array]
-pitch = "3 mm"
-[scan]
-hand_speed = "100 mm/s"
-pause = "50 ms"
-"""
-COILED = """
-[magnet]
-turns = 300
-pole_area = "6 mm^2"
-gap = "0.06 mm"
-wire_diameter = "0.1 mm"
-turn_length = "16 mm"
-supply_voltage = "3 V"
-"""
-GRATING = '[page]\ngrating = ["4 mm"]\n'
 AROUND = ("control", "array", "scan", "judge")
 REFUSED = flags("status").index("refused")
 
@@ -84,17 +57,6 @@ REFUSED = flags("status").index("refused")
 @pytest.fixture(autouse=True)
 def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-def study(text: str, page: str = GRATING, device: str = DEVICE, name: str = "study.toml") -> Plan:
-    Path(name).write_text(text + "\n" + page + device)
-    return load_study(name)
-
-
-def swept(plan: Plan, target: str = "study.nc") -> xr.Dataset:
-    sweep(plan, Path(target), work=on_threads(1))
-    with xr.open_dataset(target) as data:
-        return data.load()
 
 
 def run(*arguments: str) -> Result:
@@ -493,83 +455,6 @@ def test_maps_show_the_file() -> None:
             view.number("settling_time")
     said = run("map", "study.nc", "-o", "map.png", "--x", "latency", "--at", "hand_speed=80 mm/s")
     assert said.exit_code == 0, said.output
-
-
-# ---- refusals ------------------------------------------------------------------------------------
-
-AXES = '[axes]\ncontrol.latency = ["1 ms"]\n'
-WRONG = {
-    ("page = 3\n" + AXES, ""): "page must be a table, [page], got 3",
-    (AXES, "[page]\n"): "give exactly one of page.text, page.image and page.grating, got none of "
-    "them",
-    (AXES, '[page]\ntext = "A"\nimage = "a.png"\n'): "give exactly one of page.text, page.image "
-    "and page.grating, got page.text and page.image",
-    (AXES, '[page]\ntxt = "A"\n'): "unknown key page.txt; there are text, image, grating, font, "
-    "path",
-    (AXES, "[page]\ntext = 3\n"): "page.text must be text in quotes, got 3",
-    (AXES, "[page]\ngrating = []\n"): 'page.grating must be a list of distances, like ["4 mm", '
-    '"2 mm"], got []',
-    (AXES, '[page]\ngrating = ["4 g"]\n'): "page.grating[0] must be in m or a unit alike, like "
-    '"4 mm", got "4 g"',
-    (AXES, '[page]\nimage = "none.png"\n'): "page.image: none.png cannot be read: No such file or "
-    "directory",
-    (AXES, '[page]\ntext = " "\n'): "page: text must be at least one character that is drawn, got "
-    '" "',
-    (
-        AXES,
-        '[page]\ngrating = ["4 mm"]\npath = "study.toml"\n',
-    ): 'page: study.toml: the header must be like "t [s], x [mm], y [mm]"',
-    (AXES, GRATING + 'font = "a.ttf"\n'): "page.font a.ttf: goes with page.text alone",
-    ('[axes]\nmouse_velocity = ["1 mm/s"]\n', GRATING): "axes: motion.mouse_velocity has no part "
-    "in a scan, in which the hand moves the mouse; leave out [page] to vary it",
-    ('[tolerances]\nlatency = "5 %"\n', ""): "tolerances: control.latency acts in a scan; say what "
-    'is on the page, as with grating = ["4 mm"] in [page]',
-    ("[axes]\narray.columns = [1, 2.5]\n", GRATING): "axes: array.columns must be a whole number, "
-    "got 2.5",
-    (
-        "[axes]\narray.columns = { uniform = [1, 3] }\n[sample]\ncount = 9\n",
-        GRATING,
-    ): "axes: array.columns counts pins; give a list of whole numbers",
-    ("[axes]\narray.places = [1]\n", GRATING): "axes: array.places is no single number, it cannot "
-    "be varied",
-    ("[axes]\ncontrol.latency = []\n", GRATING): "axes.control.latency must be a list of at least "
-    "one value, got []",
-    ('[axes]\ncontrol.latncy = ["1 ms"]\n', GRATING): "axes: unknown key control.latncy; did you "
-    "mean control.latency?",
-    ('[axes]\ncontrol.latency = ["1 mm"]\n', GRATING): "axes.control.latency[0] must be in s or a "
-    'unit alike, like "5 ms", got "1 mm"',
-    ('outputs = ["settling_time"]\n' + AXES, GRATING): 'outputs: unknown number "settling_time"; '
-    "did you mean smear_time?",
-    (AXES + '[specification]\nswing = "<= 1 mm"\n', GRATING): "",
-    ("[axes]\nmagnet.turns = [100, 200]\n", GRATING): "axes: magnet.turns must be given with "
-    "pole_area (area of one of its two poles), gap (gap between each pole and the steel: paint, "
-    "roughness), wire_diameter (diameter of the copper in its wire), turn_length (mean length of a "
-    "turn), supply_voltage (voltage across the coil while it is on), got turns alone",
-}
-
-
-@pytest.mark.parametrize("given", WRONG)
-def test_refusals(given: tuple[str, str]) -> None:
-    with pytest.raises(ConfigError) as error:
-        study(*given)
-    (line,) = error.value.problems
-    assert line.startswith("study.toml: ")
-    assert WRONG[given] in line
-
-
-def test_a_magnet_is_varied_one_way() -> None:
-    with pytest.raises(ConfigError, match=r"axes: magnet\.fall_time must be left out where turns"):
-        study('[axes]\nmagnet.fall_time = ["1 ms"]\n', device=DEVICE + COILED)
-
-
-def test_places_of_pins_leave_no_grid_to_vary() -> None:
-    placed = DEVICE.replace('pitch = "3 mm"', 'places = [["0 mm", "0 mm"], ["3 mm", "0 mm"]]')
-    with pytest.raises(
-        ConfigError, match=r"axes: array\.pitch cannot be varied beside array\.places"
-    ):
-        study('[axes]\narray.pitch = ["2 mm"]\n', device=placed)
-    data = swept(study('[axes]\ncontrol.latency = ["1 ms", "4 ms"]\n', device=placed))
-    assert (data.judged_lines == 8).all()
 
 
 def test_releases_of_a_whole_device_are_swept_too() -> None:
