@@ -22,7 +22,7 @@ class Simulation {
         inputs_(inputs),
         friction_(drive),
         plain_(drive.mass, drive.damping, drive.stiffness),
-        half_period_(plain_.half_period()),
+        half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
         x_(inputs.displacement),
         v_(inputs.velocity) {
@@ -108,6 +108,10 @@ class Simulation {
             ? plain_
             : Oscillator<T>(drive_.mass, equation.damping, equation.stiffness);
     const T drift = equation.pull.rate / equation.stiffness;
+    using std::abs;
+    // A pin without speed on which forces act that cancel to rounding is at rest.
+    if (v_ == 0 && equation.pull.rate == 0 && abs(equation.pull.value) <= equation.blur(v_))
+      return Flow<T>::free(oscillator, x_, v_, T(0), T(0), T(0));
     if (!follows_) {
       const T acceleration = (equation.pull.value - equation.damping * v_) / drive_.mass;
       const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
@@ -265,8 +269,9 @@ class Simulation {
   /// When it does.
   Exit rest(const Flow<T>& flow) const {
     const Path<T>& velocity = flow.velocity;
-    if (velocity.value == 0) return {half_period_, Cause::arrives, false, true, 0, true};
-    const T tau = flow.oscillator.zeros(velocity.value, velocity.slope).first;
+    const T tau = velocity.value == 0 ? half_period_ : flow.oscillator.zeros(velocity.value, velocity.slope).first;
+    if (tau == never) return {};
+    if (velocity.value == 0) return {tau, Cause::arrives, false, true, 0, true};
     return {Rooted<T>::at(flow.oscillator, velocity, tau), Cause::arrives, false, true};
   }
 
