@@ -21,7 +21,8 @@ template <class T>
 struct Equation {
   T damping, stiffness;
   Line<T> pull;
-  T size;  ///< of all that the pull is the sum of, N
+  T size;      ///< of all that the pull is the sum of, N
+  T rounding;  ///< how well the damping is known, N s/m
 
   /// What the pull and the damping at a velocity leave, less than this, is rounding, N.
   T blur(T velocity) const {
@@ -41,8 +42,11 @@ class Friction {
   Equation<T> equation(const Mode& mode, const Instant<T>& now, T x, T skin_force) const {
     using std::abs;
     const T inertia = drive_.mass * now.plate_velocity.rate, spring = drive_.stiffness * x;
-    Equation<T> sum{
-        drive_.damping, drive_.stiffness, {inertia - spring, T(0)}, abs(inertia) + abs(spring)};
+    Equation<T> sum{drive_.damping,
+                    drive_.stiffness,
+                    {inertia - spring, T(0)},
+                    abs(inertia) + abs(spring),
+                    2 * std::numeric_limits<T>::epsilon() * drive_.damping};
     add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, now.plate_velocity, now.load);
     if (!Surface::plain && mode.finger == Slide::gripping) {
       sum.stiffness += drive_.finger.stiffness;
@@ -51,6 +55,8 @@ class Friction {
     } else {
       add_sliding(sum, drive_.finger, mode.finger, mode.finger_region, {}, {T(1), T(0)});
     }
+    // A damper that falling friction cancels to rounding neither damps nor drives.
+    if (abs(sum.damping) <= sum.rounding && sum.rounding > 0) sum.damping -= plain(sum.damping);
     return sum;
   }
 
@@ -206,6 +212,7 @@ class Friction {
     if (region.slope == 0) return;
     const T drag = region.slope * load.value;
     sum.damping += drag;
+    sum.rounding += region.rounding * load.value;
     sum.size += abs(drag * surface.value);
     sum.pull.value += drag * surface.value;
     sum.pull.rate += drag * surface.rate;

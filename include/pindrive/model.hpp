@@ -13,7 +13,14 @@ namespace pindrive {
 inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
 inline constexpr int standstill_limit = 100;   ///< events at one instant after which it is given up
 inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
-inline constexpr double recurrence = 1e-14;    ///< how closely a state returns in a cycle, relative
+/// How closely a state returns in a cycle, relative; and by how much more for each round before, since
+/// without damping the rounding of the rounds adds up.
+inline constexpr double recurrence = 1e-14, recurrence_per_round = 1e-15;
+
+/// A number without what else it carries, such as a derivative.
+inline float plain(float x) { return x; }
+inline double plain(double x) { return x; }
+inline long double plain(long double x) { return x; }
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
@@ -21,32 +28,40 @@ struct Region {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
+  T rounding;  ///< how well the slope is known from rounded rows, N s/m
 
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
 /// The regions between the rows (speed, force) of a friction curve, at most count + 1; none for the
-/// one row of Coulomb friction. The last slope goes on; where it falls, until the force is zero:
-/// friction never pushes.
+/// one row of Coulomb friction. Rows on one line, to rounding, make one region. The last slope goes
+/// on; where it falls, until the force is zero: friction never pushes.
 template <class T>
 int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) {
+  using std::abs;
   if (count < 2) return 0;
   constexpr T never = std::numeric_limits<T>::infinity();
-  const int last = count - 1;
-  for (int i = 0; i < last; ++i) {
-    const T slope = (forces[i + 1] - forces[i]) / (speeds[i + 1] - speeds[i]);
-    regions[i] = {speeds[i], speeds[i + 1], forces[i], slope};
+  constexpr T unit = 2 * std::numeric_limits<T>::epsilon();
+  int made = 0;
+  for (int i = 0; i + 1 < count; ++i) {
+    const T width = speeds[i + 1] - speeds[i];
+    const T slope = (forces[i + 1] - forces[i]) / width;
+    const T rounding =
+        unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
+    const bool bends =
+        made == 0 || abs(slope - regions[made - 1].slope) > rounding + regions[made - 1].rounding;
+    if (bends) regions[made++] = {speeds[i], never, forces[i], slope, rounding};
+    regions[made - 1].to = speeds[i + 1];
   }
-  const T slope = regions[last - 1].slope;
-  regions[last] = {speeds[last], never, forces[last], slope};
-  if (!(slope < 0)) return count;
-  if (!(forces[last] > 0)) {
-    regions[last] = {speeds[last], never, T(0), T(0)};
-    return count;
+  const T force = forces[count - 1];
+  Region<T>& last = regions[made - 1];
+  if (last.slope < 0) {
+    if (force > 0) last.to -= force / last.slope;
+    regions[made] = {last.to, never, T(0), T(0), T(0)};
+    return made + 1;
   }
-  regions[last].to = speeds[last] - forces[last] / slope;
-  regions[count] = {regions[last].to, never, T(0), T(0)};
-  return count + 1;
+  last.to = never;
+  return made;
 }
 
 /// Dry friction at one surface. Without friction the contact is absent.
@@ -63,7 +78,7 @@ struct Contact {
   static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
   Region<T> region(int index) const {
-    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
+    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
   }
   int region_of(T speed) const {
@@ -84,7 +99,7 @@ struct Coulomb {
   static constexpr int regions = 0;
   static constexpr T stiffness = std::numeric_limits<T>::infinity();
   static constexpr bool rigid() { return true; }
-  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0)}; }
+  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
   static constexpr int region_of(T) { return 0; }
   bool present() const { return static_limit > 0; }
 };

@@ -1,4 +1,4 @@
-/// Finds the state to which a motion comes back, by Brent's way to find a cycle of any length.
+/// Finds the state to which a motion comes back, by keeping one of them ever longer (Brent).
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ class Recurrence {
     kept_.released = kept_.released || now.released;
     if (visits_ == next_) {
       kept_ = now;
-      next_ = 2 * next_ + 1;
+      next_ += next_ / 4 + 1;
     }
     ++visits_;
     return nullptr;
@@ -38,9 +38,8 @@ class Recurrence {
   bool same(const Drive& drive, const Visit<T>& now) const {
     using std::abs;
     using std::sqrt;
-    const auto alike = [](T one, T other, T scale) {
-      return abs(one - other) <= T(recurrence) * scale;
-    };
+    const T close = T(recurrence) + T(recurrence_per_round) * T(visits_);
+    const auto alike = [&](T one, T other, T scale) { return abs(one - other) <= close * scale; };
     const T size = abs(now.x) + abs(now.v) * sqrt(drive.mass / drive.stiffness);
     return kept_.mode.plate == now.mode.plate && kept_.mode.finger == now.mode.finger &&
            kept_.mode.plate_region == now.mode.plate_region && alike(kept_.x, now.x, size) &&

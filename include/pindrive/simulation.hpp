@@ -269,7 +269,8 @@ class Simulation {
   /// When it does.
   Exit rest(const Flow<T>& flow) const {
     const Path<T>& velocity = flow.velocity;
-    const T tau = velocity.value == 0 ? half_period_ : flow.oscillator.zeros(velocity.value, velocity.slope).first;
+    const T tau = velocity.value == 0 ? half_period_
+                                      : flow.oscillator.zeros(velocity.value, velocity.slope).first;
     if (tau == never) return {};
     if (velocity.value == 0) return {tau, Cause::arrives, false, true, 0, true};
     return {Rooted<T>::at(flow.oscillator, velocity, tau), Cause::arrives, false, true};
