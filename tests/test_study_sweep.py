@@ -119,8 +119,10 @@ def test_points_without_numbers_are_marked_and_counted() -> None:
     plan('[axes]\nplate.kinetic = ["1 mN", "20 mN"]\nplate.static = ["2 mN", "30 mN"]\n')
     said = run("study.toml").stdout.splitlines()
     assert said[1:] == [
-        "settled: 75 %",
-        "without numbers: 25 % bad_plate_static (see the variable status)",
+        "settled: all of those with numbers",
+        "without numbers: 25 %, by their status",
+        "  25 % bad_plate_static: plate.static must be at least the kinetic friction, 0.02 N, "
+        "got 0.002 N",
     ]
     with xr.open_dataset("study.nc") as data:
         bad = data.sel(plate_kinetic=0.020, plate_static=0.002)

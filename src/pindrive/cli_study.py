@@ -181,7 +181,7 @@ def sensitivity(
         from pindrive.study.influence import influence
 
         return influence(
-            plan, tolerances=tolerances, count=rows, seed=seed, threads=threads, tell=tell
+            plan, tolerances=tolerances, rows=rows, seed=seed, threads=threads, tell=tell
         )
 
     def picture(found: Influence, name: str) -> Figure:

@@ -89,6 +89,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         STEEL.format("0.27 (oxidised)"),
         optional=True,
         remark="the kinetic one unless given",
+        follows=("plate.kinetic",),
     ),
     Quantity(
         "plate.curve",
@@ -101,6 +102,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="speeds from 0 m/s up; kinetic may then be left out",
         rows_of="curve",
         rows=((0.0, 0.022), (0.05, 0.015)),
+        follows=("plate.kinetic",),
     ),
     Quantity(
         "finger.kinetic",
@@ -121,6 +123,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
         optional=True,
         remark="the kinetic one unless given",
+        follows=("finger.kinetic",),
     ),
     Quantity(
         "finger.curve",
@@ -133,6 +136,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="speeds from 0 m/s up; kinetic may then be left out",
         rows_of="curve",
         rows=((0.0, 0.005), (0.05, 0.004)),
+        follows=("finger.kinetic",),
     ),
     Quantity(
         "finger.stiffness",
@@ -211,6 +215,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         optional=True,
         example=3.75e-6,
         remark="that of skin slid along, for a pin at rest none, unless given",
+        follows=("finger.static", "finger.stiffness"),
     ),
     Quantity(
         "duration",

@@ -85,6 +85,9 @@ class Quantity:
     """What its rows make where it may change, a key of `COLUMNS`: "curve", "profile"."""
     rows: Rows = ()
     """Such rows, SI, in a comment of that file; given alone, it must be rows."""
+    follows: tuple[str, ...] = ()
+    """Keys to which it keeps its ratio where they are varied and it is not: to the first, or to the
+    first over the second. Of rows, the values keep it."""
 
     @property
     def key(self) -> str:
@@ -117,6 +120,12 @@ class Quantity:
     def text(self, value: float) -> str:
         """`value` (SI) for a person to read: "1.500 mm"."""
         return f"{self.digits(value)} {self.display_unit}".rstrip()
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """A count with its noun, thousands apart: "1 point", "10 000 points"."""
+    shown = f"{number:,}".replace(",", " ")
+    return f"{shown} {noun if number == 1 else plural or f'{noun}s'}"
 
 
 def significant(value: float, digits: int = 4) -> str:

@@ -92,6 +92,7 @@ class View:
         links = json.loads(self.data.attrs["identity"])["links"]
         self.links = [
             f"{words(variable(key))} = {link['times']:g} × {words(variable(link['of']))}"
+            + (f" / {words(variable(link['over']))}" if link["over"] else "")
             for key, link in links.items()
         ]
 
