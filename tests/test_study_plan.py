@@ -228,8 +228,8 @@ def test_a_constant_load_is_a_stronger_plate(tmp_path: Path) -> None:
 
 REFUSED = {
     "axes = 3": "axes must be a table, [axes], got 3",
-    "colour = 1": 'unknown key "colour"; there are name, base, set, page, outputs, zip, chunk, axes, '
-    "sample, tolerances, specification",
+    "colour = 1": 'unknown key "colour"; there are name, base, set, page, outputs, zip, chunk, '
+    "axes, sample, tolerances, specification",
     "ax.mass = [1]": 'unknown key "ax"; did you mean axes?',
     "[drive]\nmass = 1": "give base or the table drive, not both",
     "[axes]\nmas = [1]": "axes: unknown key mas; did you mean drive.mass?",

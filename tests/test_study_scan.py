@@ -250,7 +250,8 @@ def test_a_point_without_a_scan_is_marked() -> None:
     assert said.exit_code == 0, said.output
     assert said.stdout.splitlines()[1:] == [
         "without numbers: 25 %, by their status",
-        "  25 % refused: control.hysteresis must be at most 0.04 about a threshold of 0.02, got 0.1",
+        "  25 % refused: control.hysteresis must be at most 0.04 about a threshold of 0.02, "
+        "got 0.1",
     ]
     with xr.open_dataset("study.nc") as data:
         np.testing.assert_array_equal(data.status, [[0, REFUSED], [0, 0]])
@@ -389,7 +390,7 @@ def test_robustness_is_that_of_scans() -> None:
     times = 1.875 * 0.020 / speeds + 0.050
     np.testing.assert_allclose(found.values["hand_duration"], times, rtol=1e-12)
     assert found.shares[0][1].met == (times <= 0.2).sum()
-    assert found.refused == 0
+    assert len(found.refusals) == 0
     longest, farthest = found.worst
     assert longest.value == pytest.approx(1.875 * 0.020 / 0.150 + 0.050, rel=1e-3)
     assert farthest.keys["scan.hand_speed"] == pytest.approx(0.200, rel=0.02)
@@ -408,7 +409,7 @@ def test_sobol_indices_are_those_of_scans() -> None:
     plan = study(TOLERANCES, ONE_LINE)
     found = influence(plan, tolerances=True, rows=128, threads=1)
     assert found.near is None
-    assert found.points == 512 and found.refused == 0
+    assert found.points == 512 and len(found.refusals) == 0
     time = found.over["hand_duration"].total
     np.testing.assert_allclose(time.value, [1.0, 0.0], atol=0.15)
     assert time.value[1] == 0.0

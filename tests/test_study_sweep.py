@@ -302,7 +302,7 @@ def test_a_failure_before_the_first_chunk_leaves_nothing() -> None:
 
 REFUSED = {
     "none.toml": "none.toml: cannot be read: No such file or directory",
-    "study.toml -o study.toml": "study.toml: is named twice; give each file a name of its own",
+    "study.toml -o study.toml": "study.toml: is read by this command; give another name",
     "study.toml -o no/study.nc": "no/study.nc: cannot be written: there is no folder no",
     "study.toml -o .": ".: cannot be written: not a regular file",
     "study.toml --resume --restart": "give --resume or --restart, not both",

@@ -19,7 +19,8 @@ def paper(
     ] = None,
 ) -> None:
     """Recompute the paper, mend it, and judge what it says."""
-    from pindrive.output import check_folder, write_files
+    from pindrive.kinds import REPORT
+    from pindrive.output import Output, check_folder, check_outputs, write_files
 
     with refusing():
         if out is None and docs is None:
@@ -28,6 +29,9 @@ def paper(
             if folder is not None:
                 check_folder(folder)
         from pindrive.paper import markdown, report
+
+        pages = [(out, report.PAGE, "--out"), (docs, markdown.NAME, "--docs")]
+        check_outputs([Output(d / name, REPORT, option) for d, name, option in pages if d])
         from pindrive.progress import steps
 
         written: dict[Path, dict[str, bytes]] = {}

@@ -193,7 +193,14 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
     try:
         text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ConfigError([f"{file}: is not UTF-8 text, at byte {error.start}"]) from None
+        with file.open("rb") as opened:
+            netcdf = opened.read(4) == b"\x89HDF"
+        words = (
+            "is a NetCDF file; `pindrive map` draws one that a sweep wrote"
+            if netcdf
+            else f"is not UTF-8 text, at byte {error.start}"
+        )
+        raise ConfigError([f"{file}: {words}"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError([f"{file}: cannot be read: {reason}"]) from None
@@ -262,9 +269,7 @@ def _rows_as_toml(text: str) -> object:
     return given["rows"]
 
 
-def _set(
-    tables: dict[str, Any], settings: Iterable[Setting]
-) -> tuple[dict[str, str], list[str]]:
+def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str, str], list[str]]:
     """Set values in `tables`. Return where each set key was written, and what was wrong."""
     before = _copied(tables)
     places: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""Values of a device file that keep their ratio to others that are set anew (`Quantity.follows`)."""
+"""Values of a device file that keep their ratio to others that are set (`Quantity.follows`)."""
 
 from __future__ import annotations
 

@@ -103,9 +103,7 @@ def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     given: dict[str, Any] = {variable(key): value for key, value in device.values().items()}
     given |= {"mouse_velocity": device.mouse_velocity, "plate_load": device.plate_load}
     given |= {variable(key): values for key, values in columns.items()}
-    if "drive.damping_ratio" in columns or (
-        device.by_ratio and "drive.damping" not in columns
-    ):
+    if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
         mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
         given["damping"] = 2.0 * given["damping_ratio"] * mass * stiffness
     return given

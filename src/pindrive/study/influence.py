@@ -10,9 +10,9 @@ import numpy as np
 from pindrive.study.axis import Distribution, Linked, as_distribution
 from pindrive.study.evaluate import evaluate
 from pindrive.study.indices import Indices, sobol_indices
+from pindrive.study.links import with_links
 from pindrive.study.local import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED
-from pindrive.study.links import with_links
 from pindrive.study.plan import COUNTS
 from pindrive.study.refusals import Refusal, exist, refusals
 

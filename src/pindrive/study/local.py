@@ -49,9 +49,12 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
     motion = motion_of(plan.device)
     changes, gaps = {}, {}
     for key in keys:
+        followed = [key, *exponents(key, links)]
         if key in _WITHOUT:
             gaps[key] = "the core has none along it"
-        elif not (isinstance(own := base_value(plan.device, key), float) and own):
+        elif not base_value(plan.device, key) or not all(
+            isinstance(base_value(plan.device, name), float) for name in followed
+        ):
             gaps[key] = "it is zero or not given"
         else:
             changes[key] = _changes(plan, key, links)
@@ -79,19 +82,21 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
     """By how much each parameter of the motion changes, SI, where a key grows by its own size."""
+    drive = plan.device.drive
     if key == "drive.damping_ratio":
-        return {"damping": plan.device.drive.damping}
+        return {"damping": drive.damping}
     shares = exponents(key, links)
     if plan.device.by_ratio and key in ("drive.mass", "drive.stiffness"):
         shares["drive.damping"] = 0.5  # b = 2 ζ sqrt(m k)
     found = {}
     for name, share in shares.items():
         table, _, part = name.rpartition(".")
-        contact = getattr(plan.device.drive, table, None)
-        if part == "static" and name != key and contact.static_friction == contact.kinetic:
+        contact = {"plate": drive.plate, "finger": drive.finger}.get(table)
+        tied = contact and part == "static" and contact.static_friction == contact.kinetic
+        if tied and name != key:
             continue  # one number with the kinetic friction: the core changes it along
         found[variable(name)] = share * base_value(plan.device, name)
-        if part == "kinetic":  # its curve keeps its shape
+        if contact and part == "kinetic":  # its curve keeps its shape
             rows = enumerate(contact.curve or ())
             found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}
     return found

@@ -90,6 +90,12 @@ class Plan:
     """What is scanned at every point; None: every point is a release."""
 
     @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from, or reads when it is worked out."""
+        page = self.page.page.files.values() if self.page else ()
+        return (self.path, self.device.path, *page)
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """How many points along each dimension."""
         return tuple(dimension.size for dimension in self.dimensions)

@@ -9,10 +9,10 @@ import numpy as np
 
 from pindrive import template
 from pindrive.quantity import counted, significant
+from pindrive.study.links import base_value
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.points import flags
 from pindrive.study.refusals import why
-from pindrive.study.links import base_value
 from pindrive.study.sweeping import human_bytes
 
 if TYPE_CHECKING:

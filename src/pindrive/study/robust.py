@@ -159,8 +159,8 @@ def robustness(
     refused = refusals(plan, ranges.columns(plan, points), table["reason"])
     designs = exist(table["status"])
     if not designs.any():
-        drawn, reason = counted(count, "draw"), refused[0].reason
-        raise ValueError(f"{plan.path}: of {drawn} none can exist: {reason}")
+        words, reason = counted(count, "draw"), refused[0].reason
+        raise ValueError(f"{plan.path}: of {words} none can exist: {reason}")
     points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
 
     met = {demand: demand.met(table[demand.name]) for demand in plan.demands}

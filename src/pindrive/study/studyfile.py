@@ -56,6 +56,13 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
     """
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
+    if not tables.keys() & {*STUDY_KEYS} and tables.keys() & {*TABLES}:
+        raise ConfigError(
+            [
+                f"{file}: is a device file; a study names it, base = {quoted(file.name)}, and says "
+                "what to vary in [axes] or [tolerances]"
+            ]
+        )
     problems = _unknown(tables, file)
     page = _page(tables, file, problems)
     device, text = _device(tables, file, overrides)
