@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Container, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf
 from os import PathLike
@@ -75,8 +75,11 @@ class DeviceFile:
     velocity: float | None
     skin_stretch: float | None
     duration: float | None
+    settling_band: float
     tables: Mapping[str, Any]
     """What the file has, as text with units, with the values that were set otherwise."""
+    settings: tuple[Setting, ...] = ()
+    """The values that were set otherwise."""
     whole: Whole | None = None
 
     @property
@@ -135,6 +138,7 @@ def device_of(
     The rest, and what it raises, as for `load`; `problems` are what was found wrong before.
     """
     _refuse_study(file, given)
+    settings = tuple(settings)
     tables = _with_all_tables(file, given)
     places, found = _set(tables, settings)
     problems = [*problems, *found]
@@ -158,7 +162,8 @@ def device_of(
         if around:
             problems += around.conflicts(schema, tables, place)
         if not problems:
-            return _device(file, schema, around, hand, as_written)
+            device = _device(file, schema, around, hand, as_written)
+            return replace(device, settings=settings)
     except ValidationError as error:
         problems += _value_problems(error, meant, place)
     except ValueError as error:  # each value in range, but not all together
@@ -178,6 +183,7 @@ def motion_of(device: DeviceFile) -> Motion:
         plate_load=device.plate_load,
         skin_stretch=device.skin_stretch,
         duration=device.duration,
+        settling_band=device.settling_band,
     )
 
 
@@ -400,6 +406,7 @@ def _device(
         velocity=motion.velocity,
         skin_stretch=motion.skin_stretch,
         duration=motion.duration,
+        settling_band=motion.settling_band,
         tables=tables,
         whole=whole,
     )

@@ -122,7 +122,9 @@ def _numbers(motion: Motion) -> Table:
     )
     for quantity in TRANSIENT:
         if not quantity.name.startswith(absent) and quantity.name not in unseen:
-            _add_number(table, quantity.name, values[quantity.name])
+            in_band = f"within {100.0 * motion.settling_band:g} % of the way to the resting place"
+            said = f"from then on {in_band}" if quantity.name == "transient.settling_time" else ""
+            _add_number(table, quantity.name, values[quantity.name], meaning=said)
     return table
 
 
@@ -138,11 +140,13 @@ def new_table(title: str, *headings: str) -> Table:
     return table
 
 
-def _add_number(table: Table, name: str, value: float, *before: str) -> None:
+def _add_number(table: Table, name: str, value: float, *before: str, meaning: str = "") -> None:
     """A row for the quantity called `name`: symbol, value, unit, meaning."""
     quantity = QUANTITIES[name]
     shown = f"{value:g}" if quantity.unit == "" else quantity.digits(value)
-    table.add_row(*before, quantity.symbol, shown, quantity.display_unit, quantity.meaning)
+    table.add_row(
+        *before, quantity.symbol, shown, quantity.display_unit, meaning or quantity.meaning
+    )
 
 
 def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:

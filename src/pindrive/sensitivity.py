@@ -162,8 +162,9 @@ class _Derivative:
     def numbers(self) -> dict[str, float]:
         """The derivatives of the numbers, NaN where one does not exist."""
         duration = self._motion.duration
-        at, slopes = _numbers(self._own, duration), _numbers(self.core, duration)
-        around = [(step, _numbers(core, duration)) for step, core in self._neighbours]
+        band = self._motion.settling_band
+        at, slopes = _numbers(self._own, duration, band), _numbers(self.core, duration, band)
+        around = [(step, _numbers(core, duration, band)) for step, core in self._neighbours]
 
         def exists(name: str) -> bool:
             known = at.get(_KNOWN_AT.get(name, ""), duration)
@@ -215,9 +216,11 @@ _KNOWN_AT = {
 """The time from which a number no longer depends on the motion; of the others, its duration."""
 
 
-def _numbers(core: _core.Motion | _core.Derivative, duration: float) -> dict[str, float]:
+def _numbers(
+    core: _core.Motion | _core.Derivative, duration: float, band: float
+) -> dict[str, float]:
     """The numbers of a motion over a fixed duration, by their names in `Motion.numbers()`."""
-    transient = core.transient(duration, _core.settling_band)
+    transient = core.transient(duration, band)
     ending = {
         "position": transient.pop("end_position"),
         "since": core.since,

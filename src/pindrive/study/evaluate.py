@@ -29,7 +29,7 @@ Table = dict[str, Any]
 _BATCH = (
     *("mass", "stiffness", "damping", "plate_kinetic", "plate_static", "finger_kinetic"),
     *("finger_static", "finger_stiffness", "mouse_velocity", "displacement", "velocity"),
-    "duration",
+    *("duration", "settling_band"),
 )
 
 
@@ -159,7 +159,10 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         for name, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf))
     )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    start = ("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration")
+    start = (
+        *("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration"),
+        "settling_band",
+    )
     return simulate(
         Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
     )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pindrive import template
+from pindrive.config import keys_meant
 from pindrive.quantity import counted, significant
 from pindrive.study.links import base_value
 from pindrive.study.outputs import NUMBERS, label
@@ -16,7 +19,7 @@ from pindrive.study.refusals import why
 from pindrive.study.sweeping import human_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from rich.console import RenderableType
     from rich.table import Table
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     from pindrive.study.local import Elasticities
     from pindrive.study.plan import Plan
     from pindrive.study.refusals import Refusal
-    from pindrive.study.robust import Robustness, Share
+    from pindrive.study.robust import Robustness, Share, WorstCase
     from pindrive.study.sweeping import Result
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
@@ -191,12 +194,14 @@ def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
 def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
     """Spread of the watched numbers, yield, and the worst cases."""
     from rich.console import Group
+    from rich.text import Text
 
     tables: list[RenderableType] = [_spread(found)]
     if found.all_met:
         tables.append(_yield(found, found.all_met))
         tables.append(_worst_cases(plan, found))
-    return Group(*tables, *_draws(plan, found))
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _draws(plan, found))
+    return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
 
 
 def _spread(found: Robustness) -> Table:
@@ -266,8 +271,13 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
         lines.append(f"{stopped} followed only up to the largest number of events.")
     for case in found.worst if plan.device.path != plan.path else ():
         given = " ".join(
-            f'--set {key}="{template.NUMBERS[key].written(value)}"'
-            for key, value in case.keys.items()
+            [
+                *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
+                *(
+                    f'--set {key}="{template.NUMBERS[key].written(value)}"'
+                    for key, value in case.keys.items()
+                ),
+            ]
         )
         command = (
             f"scan {plan.device.path} {plan.page.page.options}"
@@ -278,6 +288,15 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
     if not found.all_met:
         lines.append("No specification is given: write what is demanded in [specification].")
     return lines
+
+
+def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
+    """What the study sets of its device and the case leaves, as the command line takes it."""
+    for setting in plan.device.settings:
+        (key,) = keys_meant(setting.key)
+        if key not in case.keys:
+            value = setting.value
+            yield key, value if isinstance(value, str) else json.dumps(value)
 
 
 def count(number: int) -> str:
