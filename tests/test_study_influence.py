@@ -101,7 +101,7 @@ def test_what_does_not_exist_is_left_out_and_told() -> None:
 
 @pytest.mark.parametrize("count", [0, 100, 127, 1000, 64])
 def test_a_design_has_a_power_of_two_rows(count: int) -> None:
-    with pytest.raises(ValueError, match=f"a power of 2 and at least 128, got {count}"):
+    with pytest.raises(ValueError, match=f"a power of 2 of at least 128, got {count}"):
         sobol_indices(ishigami, CIRCLE, count)
 
 

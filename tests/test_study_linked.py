@@ -236,9 +236,11 @@ def test_the_yield_is_that_of_the_draws_that_exist() -> None:
     assert found.all_met is not None
     assert found.all_met.of == found.designs == 4000 - found.refused
     said = run("robustness", "study.toml", "--draws", "4000")
-    head = f"{found.refused} of 4 000 draws cannot exist and are left out:"
+    head = (
+        f"{found.refused} of 4 000 draws ({100 * found.refused / 4000:.3g} %) cannot exist and are "
+    )
     lines = said.splitlines()
-    after = lines[lines.index(head) + 1]
+    after = lines[lines.index(f"{head}left out:") + 1]
     assert after.startswith(f"  {found.refused}, the first: plate.static must be at least the kin")
     assert f"Yield: of {found.designs:,} designs".replace(",", " ") in said
 
@@ -315,7 +317,8 @@ def test_sensitivity_leaves_out_what_cannot_exist_and_says_why() -> None:
     assert 0 < refusal.count < found.points
     assert refusal.reason.startswith("plate.static must be at least the kinetic friction")
     said = run("sensitivity", "study.toml", "--rows", "128")
-    assert f"{refusal.count} of 512 points cannot exist and are left out:" in said
+    share = f"{100 * refusal.count / 512:.3g} %"
+    assert f"{refusal.count} of 512 points ({share}) cannot exist and are left out:" in said
     assert influence(study(TOLERANCES), rows=128).refusals == ()
 
 

@@ -276,6 +276,8 @@ REFUSED = {
     "drive.damping_ratio, not both",
     '[axes]\nplate.static = { times = 2, of = "mass" }': "axes.plate.static.of must be another "
     'key in N, got "mass"',
+    '[axes]\ndamping_ratio = { times = 2, of = "mass" }': "axes.drive.damping_ratio.of must be "
+    'another key without a unit, got "mass"',
     '[axes]\nplate.static = ["1 mN", "2 mN"]': "axes: plate.static is below plate.kinetic at every "
     "point: at most 2 mN, plate.kinetic at least 20 mN",
     'zip = [["plate.static", "plate.kinetic"]]\n[axes]\nplate.static = ["1 mN", "3 mN"]\n'

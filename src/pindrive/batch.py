@@ -214,8 +214,7 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
             raise TypeError
         return array.astype(np.float64, copy=False)
     except (TypeError, ValueError):
-        required = f"numbers in {_ARGUMENTS[name].unit}"
-        raise ValueError(refusal(name, required, repr(values))) from None
+        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
 
 
 # ---- bad points, and what the numbers mean -------------------------------------------------------

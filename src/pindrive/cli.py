@@ -14,6 +14,7 @@ from pindrive.refusing import (
     DeviceArgument,
     OneLine,
     OverridesOption,
+    count_option,
     picture,
     picture_format,
     refusing,
@@ -112,7 +113,7 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Numbers, events and phases.")
     ] = None,
     samples: Annotated[
-        int, typer.Option(min=2, max=10_000_000, help="Even times in CSV and NetCDF.")
+        int, count_option("--samples", "Even times in CSV and NetCDF.", least=2, most=10_000_000)
     ] = 1001,
 ) -> None:
     """Release the pin of a device file and say how it moves."""

@@ -21,6 +21,7 @@ def paper(
     """Recompute the paper, mend it, and judge what it says."""
     from pindrive.kinds import REPORT
     from pindrive.output import Output, check_folder, check_outputs, write_files
+    from pindrive.quantity import counted
 
     with refusing():
         if out is None and docs is None:
@@ -46,4 +47,4 @@ def paper(
             write_files(page.parent, files)
     typer.echo(made.summary)
     for page, files in written.items():
-        typer.echo(f"Wrote {page} and {len(files) - 1} files beside it")
+        typer.echo(f"Wrote {page} and {counted(len(files) - 1, 'file')} beside it")

@@ -173,6 +173,8 @@ def sensitivity(
         count_option(
             "--rows",
             "Rows of the design, a power of 2 from 128 on; 8192 unless given, of scans 256.",
+            least=128,
+            power_of_2=True,
         ),
     ] = None,
     seed: Annotated[int, count_option("--seed", "Of the design and the bootstrap.", least=0)] = 1,
@@ -182,17 +184,14 @@ def sensitivity(
     """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges."""
 
     def answer(plan: Plan, tell: Tell) -> Influence:
-        from pindrive.study.indices import check_rows
-        from pindrive.study.influence import influence
-        from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, known_measured
+        from pindrive.study.influence import askable, influence
+        from pindrive.study.outputs import known_output
 
-        if rows is not None:
-            check_rows(rows, "--rows")
-        among = SCAN_OUTPUTS if plan.page else OUTPUTS
+        among = askable(plan)
         return influence(
             plan,
             tolerances=tolerances,
-            numbers=[known_measured(name, "--number", among) for name in number or ()],
+            numbers=[known_output(name, "--number", among) for name in number or ()],
             rows=rows,
             seed=seed,
             threads=threads,

@@ -14,6 +14,7 @@ from pindrive import _core
 from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
 from pindrive.events import Event, Segment, Table, events_of, segments_of
 from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.quantity import counted
 from pindrive.transient import DECAYING, Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class Motion:
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""
         return (
-            f"<Motion of {self.duration:.6g} s, {len(self.events)} events, "
+            f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
             f"{self.ending.kind} since {self.ending.since:.6g} s, "
             f"settling time {self.transient.settling_time:.6g} s>"
         )

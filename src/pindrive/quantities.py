@@ -444,9 +444,7 @@ def check(
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError, OverflowError):
-            raise ValueError(
-                refusal(label, f"a number in {quantity.unit}", repr(value), where)
-            ) from None
+            raise ValueError(refusal(label, quantity.kind, repr(value), where)) from None
     if number not in quantity.bounds:
         unit = "" if quantity.unit == "1" else quantity.unit
         shown = given if given is not None else f"{number!r} {unit}".rstrip()

@@ -100,6 +100,16 @@ class Quantity:
         return not self.rows or self.default is not None or self.example is not None
 
     @property
+    def kind(self) -> str:
+        """What a value of it is, for messages: "a number in kg", "a plain number"."""
+        return f"a number in {self.unit}" if self.unit not in ("", "1") else "a plain number"
+
+    @property
+    def kinds(self) -> str:
+        """What several values of it are: "numbers in kg", "plain numbers"."""
+        return f"numbers in {self.unit}" if self.unit not in ("", "1") else "plain numbers"
+
+    @property
     def display_unit(self) -> str:
         """The unit a person reads it in: "mm" for "m"; empty when dimensionless."""
         return "" if self.unit == "1" else DISPLAY.get(self.unit, (self.unit, 1.0))[0]

@@ -27,13 +27,26 @@ OverridesOption = Annotated[
 ]
 
 
-def count_option(option: str, help: str, metavar: str = "COUNT", *, least: int = 1) -> Any:
-    """An option that is a whole number from `least` on, refused in one line."""
+def count_option(
+    option: str,
+    help: str,
+    metavar: str = "COUNT",
+    *,
+    least: int = 1,
+    most: int = 10**18,
+    power_of_2: bool = False,
+) -> Any:
+    """An option that is a whole number from `least` to `most`, or such a power of 2."""
+    required = f"{'a power of 2' if power_of_2 else 'a whole number'} of at least {least}"
+    if most < 10**18:
+        required += f" and at most {most}"
 
     def count(text: str) -> int:
-        if re.fullmatch(r"\+?\d+", str(text).strip()) and int(text) >= least:
-            return int(text)
-        typer.echo(f"{option} must be a whole number of at least {least}, got {text}", err=True)
+        if re.fullmatch(r"[0-9]{1,18}", str(text)):
+            number = int(text)
+            if least <= number <= most and not (power_of_2 and number & (number - 1)):
+                return number
+        typer.echo(f"{option} must be {required}, got {text}", err=True)
         raise typer.Exit(2)
 
     return typer.Option(option, metavar=metavar, help=help, parser=count)

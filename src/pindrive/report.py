@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pindrive.quantities import COLUMNS, QUANTITIES, TRANSIENT
-from pindrive.quantity import Rows, significant
+from pindrive.quantity import Rows, counted, significant
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
@@ -92,7 +92,7 @@ def _phases(motion: Motion) -> Table:
     for i, segment in enumerate(segments):
         if HEAD <= i < len(segments) - TAIL:
             if i == HEAD:
-                table.add_row("...", "", "", f"{len(segments) - HEAD - TAIL} more phases")
+                table.add_row("...", "", "", counted(len(segments) - HEAD - TAIL, "more phase"))
             continue
         lasts = isfinite(segment.end)
         table.add_row(

@@ -13,6 +13,7 @@ import numpy as np
 from pindrive import _core
 from pindrive.motion import flattened
 from pindrive.quantities import refusal
+from pindrive.quantity import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -263,7 +264,8 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         table, index, column = (group for group in row.groups() if group)
         rows = _entry(numbers, _TABLES[table])
         if int(index) >= len(rows):
-            raise ValueError(refusal("parameter", f"one of {len(rows)} rows of {table}", name))
+            one = f"one of {counted(len(rows), 'row')} of {table}"
+            raise ValueError(refusal("parameter", one, name))
         return [(*_TABLES[table], int(index), int(column in ("force", "value")))]
     if name not in _PLACES:
         known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"

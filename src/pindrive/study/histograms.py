@@ -117,8 +117,8 @@ def _outcome(found: Robustness) -> str:
     said = " and ".join(demand.text().replace("_", " ") for demand, _ in found.shares)
     share = found.all_met
     return (
-        f"{100.0 * share.met / share.of:.1f} % of the designs have {said} "
-        f"(95 % interval {100.0 * share.low:.1f} to {100.0 * share.high:.1f} %)"
+        f"{share.text} of the designs have {said} "
+        f"(95 % interval {100.0 * share.low:.3f} to {100.0 * share.high:.3f} %)"
     )
 
 

@@ -69,7 +69,9 @@ def sobol_indices(
     """
     from scipy.stats import qmc
 
-    check_rows(rows)
+    if rows < FEWEST_ROWS or rows & (rows - 1):
+        required = f"a power of 2 of at least {FEWEST_ROWS}"
+        raise ValueError(refusal("rows", required, repr(rows)))
     keys = len(ranges)
     rng = np.random.default_rng(seed)
     parts = qmc.Sobol(2 * keys, scramble=True, rng=rng, bits=64).random(rows).T
@@ -80,13 +82,6 @@ def sobol_indices(
     found = function(np.concatenate([a, b, mixed], axis=1))
     designs = {name: values.reshape(keys + 2, rows) for name, values in found.items()}
     return _estimate(designs, rng)
-
-
-def check_rows(rows: int, label: str = "rows") -> None:
-    """Refuse a number of rows that a Sobol' design cannot have."""
-    if rows < FEWEST_ROWS or rows & (rows - 1):
-        required = f"a power of 2 and at least {FEWEST_ROWS}"
-        raise ValueError(refusal(label, required, repr(rows)))
 
 
 def _estimate(designs: Mapping[str, Values], rng: np.random.Generator) -> dict[str, Indices]:

@@ -89,6 +89,11 @@ class Influence:
     """Points that cannot exist, as their values contradict each other; left out."""
 
 
+def askable(plan: Plan) -> tuple[str, ...]:
+    """The variables whose sensitivity may be asked for."""
+    return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
+
+
 def influence(
     plan: Plan,
     *,
@@ -116,8 +121,8 @@ def influence(
     """
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
-    every = (*(name for name in MEASURED if name not in LEDGER or name in plan.outputs), _SETTLED)
-    asked = tuple(numbers) or (SCAN_MEASURED if plan.page else every)
+    usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
+    asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
     outputs = (*asked, "status", "reason")
     if rows is None:
         rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS

@@ -94,18 +94,6 @@ def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> s
     raise ValueError(f"{place}: unknown number {quoted(given)}; {hint}")
 
 
-def known_measured(given: object, place: str, among: Sequence[str] = OUTPUTS) -> str:
-    """The variable that a name means, if it is a number (see `is_measured`).
-
-    Raises:
-        ValueError: as for `known_output`, or it is a flag.
-    """
-    name = known_output(given, place, among)
-    if not is_measured(name):
-        raise ValueError(f"{place} {given}: is no number, but a flag")
-    return name
-
-
 def dtype(name: str) -> np.dtype[Any]:
     """How a variable is held: counts and flags as whole numbers."""
     if name in ("status", "ending", _SETTLED):

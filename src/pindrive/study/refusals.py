@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pindrive.study.plan import Columns, Plan
 
 _EXIST: Final = ("ok", "too_many_events", "standstill")
+_LONG_NUMBER: Final = re.compile(r"\d+\.\d{6,}(e[-+]?\d+)?")
 _NUMBER: Final = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 
 
@@ -64,5 +65,6 @@ def why(plan: Plan, at: Mapping[str, float]) -> str:
         else:
             motion_of(device_at(plan, at))
     except (ValueError, ArithmeticError, MemoryError) as error:
-        return str(error).splitlines()[0].removeprefix(f"{plan.device.path}: ")
+        said = str(error).splitlines()[0].removeprefix(f"{plan.device.path}: ")
+        return _LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", said)
     return ""

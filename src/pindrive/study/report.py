@@ -184,7 +184,7 @@ def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
         return []
     number = sum(refusal.count for refusal in found)
     said = f"cannot exist and {'is' if number == 1 else 'are'} left out"
-    lines = [f"{count(number)} of {counted(of, what)} {said}:"]
+    lines = [f"{count(number)} of {counted(of, what)} ({percent(number, of)}) {said}:"]
     for refusal in found:
         first = "" if refusal.count == 1 else ", the first"
         lines.append(f"  {count(refusal.count)}{first}: {refusal.reason}")
@@ -234,7 +234,7 @@ def _yield(found: Robustness, all_met: Share) -> Table:
 
 def _share(share: Share) -> tuple[str, str]:
     low, high = 100.0 * share.low, 100.0 * share.high
-    return f"{100.0 * share.met / share.of:.3f} %", f"{low:.3f} to {high:.3f} %"
+    return share.text, f"{low:.3f} to {high:.3f} %"
 
 
 def _worst_cases(plan: Plan, found: Robustness) -> Table:

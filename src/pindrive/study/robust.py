@@ -52,6 +52,14 @@ class Share:
     without: int = 0
     """How many have no number to meet the demand with, such as one that never settles."""
 
+    @property
+    def text(self) -> str:
+        """The part for a person: "97.482 %", never all nor none by rounding."""
+        shown = f"{100.0 * self.met / self.of:.3f}"
+        if shown == "100.000" and self.met < self.of:
+            return "> 99.999 %"
+        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
+
     @classmethod
     def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
         """Of so many independent draws of designs that exist, at least 1."""

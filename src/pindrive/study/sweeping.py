@@ -19,6 +19,7 @@ import numpy as np
 from pindrive.cores import worker_count
 from pindrive.kinds import STUDY_NETCDF
 from pindrive.output import Output, OutputError, check_outputs, check_unread, naming
+from pindrive.quantity import counted
 from pindrive.study.journal import Journal, Tally, difference
 from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
 from pindrive.study.workers import DIED, workers
@@ -213,9 +214,16 @@ def _keeping(part: Path, journal: Journal) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(
-            f"{part}: cannot be written: {reason}; {len(journal.done)} finished chunks are kept, "
-            "--resume goes on with them"
+            f"{part}: cannot be written: {reason}; {_kept(len(journal.done))}"
         ) from error
+
+
+def _kept(chunks: int) -> str:
+    """What an interrupted run leaves."""
+    if not chunks:
+        return "no chunk was finished yet"
+    finished = counted(chunks, "finished chunk is", "finished chunks are")
+    return f"{finished} kept, --resume goes on with {'it' if chunks == 1 else 'them'}"
 
 
 def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
