@@ -45,7 +45,7 @@ def test_init_check_simulate() -> None:
 
 
 def test_init_keeps_a_file_unless_forced() -> None:
-    Path("new.toml").write_text("mine")
+    Path("new.toml").write_text("[drive]\nmass = 'mine'\n")
     assert refused("init", "new.toml") == "new.toml: exists already; --force replaces it"
     assert run("init", "new.toml", "--force").exit_code == 0
     assert run("check", "new.toml").exit_code == 0

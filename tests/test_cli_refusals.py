@@ -120,9 +120,10 @@ def test_unknown_picture_format() -> None:
 
 def test_one_file_named_twice() -> None:
     line = refused("simulate", EXAMPLE, "--csv", "a", "--json", "./a")
-    assert line == "a: is named twice; give each file a name of its own"
+    assert line == "--json a: is named twice; give each file a name of its own"
     Path("mine.toml").write_text(GOOD)
-    assert refused("simulate", "mine.toml", "--csv", "mine.toml").startswith("mine.toml: is named")
+    line = refused("simulate", "mine.toml", "--csv", "mine.toml")
+    assert line == "--csv mine.toml: is read by this command; give another name"
 
 
 def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,10 +132,10 @@ def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("pindrive.export.write_csv", write_csv)
-    Path("a.csv").write_text("old")
+    Path("a.csv").write_text("time_s,position_m,old")
     line = refused("simulate", EXAMPLE, "--json", "a.json", "--csv", "a.csv")
     assert line == "a.csv: cannot be written: No space left on device"
-    assert Path("a.csv").read_text() == "old"
+    assert Path("a.csv").read_text() == "time_s,position_m,old"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no limit on the size of files")

@@ -121,7 +121,8 @@ def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Pa
 
 
 UNITS = {"mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N", "kinetic": "N",
-         "static": "N", "displacement": "m", "duration": "s", "plate_load": ""}  # fmt: skip
+         "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
+         "settling_band": ""}  # fmt: skip
 
 
 def _toml(key: str, value: object) -> str:
@@ -274,8 +275,8 @@ def test_where_a_conflict_comes_from(write: Write) -> None:
     path = write(PLATE, PLATE + FALLING)
     (line,) = problems(path, 'plate_load=[["0 ms", 1], ["5 ms", 2]]')
     assert line.startswith("--set plate_load: motion.plate_load must be constant")
-    (line,) = problems(path, "plate.kinetic=30 mN")
-    assert line.startswith("--set plate.kinetic: plate.curve[0] force must be the kinetic friction")
+    (line,) = problems(path, 'plate.curve=[["0 m/s", "30 mN"]]')
+    assert line.startswith("--set plate.curve: plate.curve[0] force must be the kinetic friction")
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def test_the_yield_is_that_of_other_draws(tmp_path: Path) -> None:
 
 def test_a_share_has_clopper_and_pearsons_interval() -> None:
     for met, of in ((0, 50), (7, 50), (50, 50), (99_990, 100_000)):
-        share = Share.of_draws(met, of)
+        share = Share.of_designs(met, of)
         low = stats.beta.ppf(0.025, met, of - met + 1) if met else 0.0
         high = stats.beta.ppf(0.975, met + 1, of - met) if met < of else 1.0
         assert (share.low, share.high) == pytest.approx((low, high), abs=1e-9)
@@ -125,8 +125,11 @@ def _edited(folder: Path, table: str, content: str) -> Path:
     return path
 
 
-def test_contradictory_designs_meet_nothing(tmp_path: Path) -> None:
-    """Kinetic friction above static friction: such designs are counted, and none is the worst."""
+def test_contradictory_draws_are_no_designs(tmp_path: Path) -> None:
+    """Kinetic friction above static friction: such draws are counted apart, and none is the worst.
+
+    All others settle: the yield is whole, however many draws cannot exist.
+    """
     plan = study(
         tmp_path,
         """
@@ -139,7 +142,11 @@ def test_contradictory_designs_meet_nothing(tmp_path: Path) -> None:
     )
     found = robustness(plan, count=4000)
     assert found.all_met is not None
-    assert found.all_met.met == 4000 - found.refused
+    assert found.all_met.met == found.all_met.of == found.designs == 4000 - found.refused
+    assert all(len(values) == found.designs for values in found.values.values())
+    (refusal,) = found.refusals
+    assert refusal.count == found.refused
+    assert refusal.reason.startswith("finger.static must be at least the kinetic friction, 0.00")
     # finger.kinetic is even from 2.5 to 7.5 mN, static from 5 to 9: k > s in a triangle.
     assert found.refused / 4000 == pytest.approx(0.5 * 2.5**2 / (5.0 * 4.0), abs=0.03)
     assert not np.isnan(found.worst[0].value)

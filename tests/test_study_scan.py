@@ -37,10 +37,11 @@ from pindrive.device.page import Page
 from pindrive.device.reading import Reading
 from pindrive.output import OutputError
 from pindrive.study.charts import plot_influence
-from pindrive.study.evaluate import evaluate, flags
+from pindrive.study.evaluate import evaluate
 from pindrive.study.influence import influence
 from pindrive.study.maps import plot_study
 from pindrive.study.outputs import SCAN_OUTPUTS
+from pindrive.study.points import flags
 from pindrive.study.report import influence_report
 from pindrive.study.robust import robustness
 from pindrive.study.sample import Sample
@@ -248,8 +249,8 @@ def test_a_point_without_a_scan_is_marked() -> None:
     said = run("sweep", "study.toml", "--threads", "1")
     assert said.exit_code == 0, said.output
     assert said.stdout.splitlines()[1:] == [
-        "without numbers: 25 % refused (see the variable status)",
-        "the first of them: control.hysteresis must be at most 0.04 about a threshold of 0.02, "
+        "without numbers: 25 %, by their status",
+        "  25 % refused: control.hysteresis must be at most 0.04 about a threshold of 0.02, "
         "got 0.1",
     ]
     with xr.open_dataset("study.nc") as data:
@@ -389,7 +390,7 @@ def test_robustness_is_that_of_scans() -> None:
     times = 1.875 * 0.020 / speeds + 0.050
     np.testing.assert_allclose(found.values["hand_duration"], times, rtol=1e-12)
     assert found.shares[0][1].met == (times <= 0.2).sum()
-    assert found.refused == 0
+    assert len(found.refusals) == 0
     longest, farthest = found.worst
     assert longest.value == pytest.approx(1.875 * 0.020 / 0.150 + 0.050, rel=1e-3)
     assert farthest.keys["scan.hand_speed"] == pytest.approx(0.200, rel=0.02)
@@ -406,9 +407,9 @@ def test_sobol_indices_are_those_of_scans() -> None:
     """How long the hand moves depends on its speed alone; a pin's answer on both."""
     picture("page.png", slice(80, 100))
     plan = study(TOLERANCES, ONE_LINE)
-    found = influence(plan, tolerances=True, count=128, threads=1)
+    found = influence(plan, tolerances=True, rows=128, threads=1)
     assert found.near is None
-    assert found.points == 512 and found.refused == 0
+    assert found.points == 512 and len(found.refusals) == 0
     time = found.over["hand_duration"].total
     np.testing.assert_allclose(time.value, [1.0, 0.0], atol=0.15)
     assert time.value[1] == 0.0

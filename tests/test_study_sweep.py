@@ -100,7 +100,7 @@ def test_the_file_says_everything() -> None:
         assert data.stiffness == 100.0
         assert set(data.coords) == {
             *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
-            *("mouse_velocity", "displacement", "plate_load"),
+            *("mouse_velocity", "displacement", "plate_load", "settling_band"),
         }
         assert data.transient_plate_reversals.notnull().all()
         assert "transient_peak_stretch" not in data, "the finger is rigid"
@@ -119,8 +119,10 @@ def test_points_without_numbers_are_marked_and_counted() -> None:
     plan('[axes]\nplate.kinetic = ["1 mN", "20 mN"]\nplate.static = ["2 mN", "30 mN"]\n')
     said = run("study.toml").stdout.splitlines()
     assert said[1:] == [
-        "settled: 75 %",
-        "without numbers: 25 % bad_plate_static (see the variable status)",
+        "settled: all of those with numbers",
+        "without numbers: 25 %, by their status",
+        "  25 % bad_plate_static: plate.static must be at least the kinetic friction, 0.02 N, "
+        "got 0.002 N",
     ]
     with xr.open_dataset("study.nc") as data:
         bad = data.sel(plate_kinetic=0.020, plate_static=0.002)
@@ -293,14 +295,14 @@ def test_a_failure_before_the_first_chunk_leaves_nothing() -> None:
     def broken(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    with pytest.raises(OutputError, match="No space left on device; 0 finished chunks are kept"):
+    with pytest.raises(OutputError, match="No space left on device; no chunk was finished yet"):
         sweeping.sweep(plan(), Path("study.nc"), work=broken)
     assert files() == {"study.toml"}
 
 
 REFUSED = {
     "none.toml": "none.toml: cannot be read: No such file or directory",
-    "study.toml -o study.toml": "study.toml: is named twice; give each file a name of its own",
+    "study.toml -o study.toml": "study.toml: is read by this command; give another name",
     "study.toml -o no/study.nc": "no/study.nc: cannot be written: there is no folder no",
     "study.toml -o .": ".: cannot be written: not a regular file",
     "study.toml --resume --restart": "give --resume or --restart, not both",

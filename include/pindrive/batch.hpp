@@ -36,6 +36,10 @@ Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Seg
   });
   const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
   summary.duration = duration_of(motion);
+  constexpr T never = std::numeric_limits<T>::infinity();
+  if (band < T(settling_band) && summary.outcome.end == End::decaying && !(inputs.duration < never))
+    summary.duration = std::max(summary.duration,
+                                T(1.25) * Measurement<T>(motion, never).settling_time(band));
   summary.transient = Measurement<T>(motion, summary.duration).transient(band);
   return summary;
 }

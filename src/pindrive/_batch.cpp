@@ -48,6 +48,7 @@ enum : std::size_t {
   displacement,
   velocity,
   duration,
+  settling_band,
   input_count
 };
 using Input = nb::ndarray<const double, nb::device::cpu>;
@@ -239,7 +240,7 @@ class Batch {
     const Point p = point(inputs_, i);
     const pd::Drive<double> drive = drive_of(p);
     const pd::Inputs<double> inputs = inputs_of(p);
-    const Summary summary = pd::summarise(drive, inputs, pd::settling_band, segments);
+    const Summary summary = pd::summarise(drive, inputs, p[settling_band], segments);
     status_[i] = static_cast<std::int8_t>(summary.outcome.status);
     ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
     events_[i] = static_cast<std::int32_t>(summary.events);
@@ -294,6 +295,6 @@ void bind_batch(nb::module_& m) {
   m.def("simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "energy"_a,
         "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
         "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
-        "stiffness, mouse velocity, displacement, velocity, duration). A point whose status is "
-        "not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
+        "stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose "
+        "status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
 }

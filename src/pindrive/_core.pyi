@@ -99,7 +99,7 @@ def differentiate(numbers: tuple[float, float, float, tuple[float, float, float,
 
 def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int, energy: bool) -> dict:
     """
-    Columns of numbers, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration). A point whose status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.
+    Columns of numbers, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.
     """
 
 settling_band: float = 0.05

@@ -38,15 +38,17 @@ _ARGUMENTS: Final = {
         "displacement",
         "velocity",
         "duration",
+        "settling_band",
     )
 }
-# What an argument is where it is left out: another one, or infinite.
+# What an argument is where it is left out: another one, infinite, or the usual value.
 _SAME_AS: Final = {
     "plate_static": "plate_kinetic",
     "finger_static": "finger_kinetic",
     "velocity": "mouse_velocity",
 }
 _INFINITE: Final = ("finger_stiffness", "duration")
+_LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
 
 # In the order of `Status` and `End` in model.hpp.
 _FAILURES: Final = ("too_many_events", "standstill")
@@ -72,6 +74,7 @@ def simulate_batch(
     displacement: Values,
     velocity: Values | None = None,
     duration: Values | None = None,
+    settling_band: Values | None = None,
     energy: bool = False,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -96,6 +99,8 @@ def simulate_batch(
         displacement: x(0), m.
         velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
         duration: s, greater than 0; infinite or None: long enough to see each ending.
+        settling_band: half the band about the end in which a motion counts as settled, a part of
+            |x(0) - x_end|, above 0 and at most 1; None: 0.05.
         energy: the terms of the energy ledger too; a point then takes some ten times as long.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
 
@@ -122,7 +127,7 @@ def simulate_batch(
 
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
     for name in _ARGUMENTS.keys() - given.keys():
-        aligned[name] = np.array(inf) if name in _INFINITE else aligned[_SAME_AS[name]]
+        aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
     table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
@@ -209,8 +214,7 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
             raise TypeError
         return array.astype(np.float64, copy=False)
     except (TypeError, ValueError):
-        required = f"numbers in {_ARGUMENTS[name].unit}"
-        raise ValueError(refusal(name, required, repr(values))) from None
+        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
 
 
 # ---- bad points, and what the numbers mean -------------------------------------------------------

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,9 +12,11 @@ import typer
 
 from pindrive.refusing import (
     DeviceArgument,
+    OneLine,
     OverridesOption,
-    check_distinct,
-    figure_format,
+    count_option,
+    picture,
+    picture_format,
     refusing,
 )
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="pindrive",
+    cls=OneLine,
     help="Exact dynamics of the pin drives of tactile devices.",
     no_args_is_help=True,
     add_completion=False,
@@ -66,20 +68,20 @@ def _program(
 @app.command()
 def init(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a device file that is there.")
+    ] = False,
     device: Annotated[
         bool, typer.Option("--device", help="With magnet, control block, pin array and hand.")
     ] = False,
 ) -> None:
     """Write a commented device file to start from."""
-    from pindrive.output import OutputError, atomic_write
+    from pindrive.kinds import DEVICE_FILE
+    from pindrive.output import Output, naming, writing
     from pindrive.template import template
 
-    with refusing():
-        if file.is_file() and not force:
-            raise OutputError(f"{file}: exists already; --force replaces it")
-        with atomic_write(file) as part:
-            part.write_text(template(whole=device), encoding="utf-8")
+    with refusing(), writing([Output(file, DEVICE_FILE)], consent=force) as parts, naming(file):
+        parts[file].write_text(template(whole=device), encoding="utf-8")
     command = f"scan {file} --text A" if device else f"simulate {file}"
     typer.echo(f"Wrote {file}; try: pindrive {command}")
 
@@ -111,38 +113,40 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Numbers, events and phases.")
     ] = None,
     samples: Annotated[
-        int, typer.Option(min=2, max=10_000_000, help="Even times in CSV and NetCDF.")
+        int, count_option("--samples", "Even times in CSV and NetCDF.", least=2, most=10_000_000)
     ] = 1001,
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive import export
     from pindrive.config import load, motion_of
-    from pindrive.output import atomic_write, naming
+    from pindrive.kinds import MOTION_CSV, MOTION_JSON, MOTION_NETCDF
+    from pindrive.output import Output, naming, writing
 
     with refusing():
         device = load(file, overrides or ())
-        outputs: dict[Path, Callable[[Motion, Path], None]] = {}
+        wanted: list[tuple[Output, Callable[[Motion, Path], None]]] = []
         if plot:
-            suffix = figure_format(plot)
-            outputs[plot] = lambda motion, part: export.write_figure(motion, part, suffix)
+            kind = picture_format(plot)
+            wanted.append((picture(plot), lambda m, part: export.write_figure(m, part, kind)))
         if csv:
-            outputs[csv] = lambda motion, part: export.write_csv(motion, part, samples)
+            to_csv = Output(csv, MOTION_CSV, "--csv")
+            wanted.append((to_csv, lambda m, part: export.write_csv(m, part, samples)))
         if netcdf:
-            outputs[netcdf] = lambda motion, part: export.write_netcdf(motion, part, samples)
+            to_netcdf = Output(netcdf, MOTION_NETCDF, "--netcdf")
+            wanted.append((to_netcdf, lambda m, part: export.write_netcdf(m, part, samples)))
         if json:
-            outputs[json] = lambda motion, part: export.write_json(motion, device, part)
-        check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
-        with ExitStack() as stack:
-            parts = {path: stack.enter_context(atomic_write(path)) for path in outputs}
+            to_json = Output(json, MOTION_JSON, "--json")
+            wanted.append((to_json, lambda m, part: export.write_json(m, device, part)))
+        with writing([output for output, _ in wanted], [file]) as parts:
             motion = motion_of(device)
-            for path, write in outputs.items():
-                with naming(path):
-                    write(motion, parts[path])
+            for output, write in wanted:
+                with naming(output.path):
+                    write(motion, parts[output.path])
     from pindrive.report import motion_report, show
 
     show(motion_report(motion))
-    for path in outputs:
-        typer.echo(f"Wrote {path}")
+    for output, _ in wanted:
+        typer.echo(f"Wrote {output.path}")
 
 
 def _register() -> None:

@@ -19,7 +19,9 @@ def paper(
     ] = None,
 ) -> None:
     """Recompute the paper, mend it, and judge what it says."""
-    from pindrive.output import check_folder, write_files
+    from pindrive.kinds import REPORT
+    from pindrive.output import Output, check_folder, check_outputs, write_files
+    from pindrive.quantity import counted
 
     with refusing():
         if out is None and docs is None:
@@ -28,6 +30,9 @@ def paper(
             if folder is not None:
                 check_folder(folder)
         from pindrive.paper import markdown, report
+
+        pages = [(out, report.PAGE, "--out"), (docs, markdown.NAME, "--docs")]
+        check_outputs([Output(d / name, REPORT, option) for d, name, option in pages if d])
         from pindrive.progress import steps
 
         written: dict[Path, dict[str, bytes]] = {}
@@ -42,4 +47,4 @@ def paper(
             write_files(page.parent, files)
     typer.echo(made.summary)
     for page, files in written.items():
-        typer.echo(f"Wrote {page} and {len(files) - 1} files beside it")
+        typer.echo(f"Wrote {page} and {counted(len(files) - 1, 'file')} beside it")

@@ -12,9 +12,9 @@ from pindrive.progress import bar
 from pindrive.refusing import (
     DeviceArgument,
     OverridesOption,
-    check_distinct,
-    figure_format,
     measures,
+    picture,
+    picture_format,
     refusing,
 )
 
@@ -64,14 +64,19 @@ def scan(
         device_file = load(file, overrides or (), whole=True)
         assert device_file.whole
         device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
-        inputs = [file, *(given for given in (image, font) if given)]
-        outputs = [given for given in (plot, film, lines, output) if given]
-        check_distinct([*inputs, *outputs])
-        kind = figure_format(plot) if plot else ""
+        from pindrive.kinds import FILMS, LINES_CSV, SCAN_NETCDF
+        from pindrive.output import Output, naming, writing
+
+        outputs = [picture(plot)] if plot else []
         if film:
             from pindrive.device.animation import animate, animation_format, frame_times
 
             film_kind = animation_format(film)
+            outputs.append(Output(film, FILMS[film.suffix.lower()], "--animate"))
+        if lines:
+            outputs.append(Output(lines, LINES_CSV, "--lines"))
+        if output:
+            outputs.append(Output(output, SCAN_NETCDF, "--output"))
         if pin is not None and not (plot and 0 <= pin < len(device.array)):
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
@@ -79,7 +84,6 @@ def scan(
         from pindrive.device.judging import judge
         from pindrive.device.page import Page
         from pindrive.device.scanning import scan as follow
-        from pindrive.output import atomic_write, naming
 
         page = Page(
             text=None if text is None else text.replace("\\n", "\n"),
@@ -89,11 +93,11 @@ def scan(
             path=None if path == STROKES else Path(path),
         )
         page.check("--{}")
+        parts = stack.enter_context(writing(outputs, [file, *page.files.values()]))
         scene = page.scene(reading, device.array)
         hand = page.hand(reading, scene, device.array)
         if film:
             frame_times(hand, slow)
-        parts = {target: stack.enter_context(atomic_write(target)) for target in outputs}
         with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
         judgement = judge(done, device_file.whole.criteria())
@@ -112,7 +116,7 @@ def scan(
             from pindrive.style import save
 
             with naming(plot):
-                save(plot_scan(judgement, pin), parts[plot], kind)
+                save(plot_scan(judgement, pin), parts[plot], picture_format(plot))
         if film:
             with naming(film), bar("Frames") as progress:
                 animate(judgement, parts[film], film_kind, slow=slow, progress=progress)
@@ -125,4 +129,4 @@ def scan(
     show(scan_report(done))
     show(judgement_report(judgement))
     for target in outputs:
-        typer.echo(f"Wrote {target}")
+        typer.echo(f"Wrote {target.path}")

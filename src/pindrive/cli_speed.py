@@ -12,10 +12,10 @@ from pindrive.progress import bar
 from pindrive.refusing import (
     DeviceArgument,
     OverridesOption,
-    check_distinct,
-    figure_format,
     measure,
     measures,
+    picture,
+    picture_format,
     refusing,
 )
 
@@ -55,13 +55,11 @@ def speed(
             measure(slowest, "m/s", "5 mm/s", "--slowest"),
             measure(fastest, "m/s", "1000 mm/s", "--fastest"),
         )
-        check_distinct([file, *([plot] if plot else [])])
-        kind = figure_format(plot) if plot else ""
 
         from pindrive.device.speed import largest_speeds
-        from pindrive.output import atomic_write, naming
+        from pindrive.output import naming, writing
 
-        target = stack.enter_context(atomic_write(plot)) if plot else None
+        parts = stack.enter_context(writing([picture(plot)] if plot else [], [file]))
         device, criteria = device_file.whole.device(device_file.drive), device_file.whole.criteria()
         with bar("Pitches") as progress:
             limits = largest_speeds(
@@ -74,12 +72,16 @@ def speed(
                 criteria=criteria,
                 progress=progress,
             )
-        if plot and target:
+        if plot:
             from pindrive.device.speed_picture import plot_speeds
             from pindrive.plots import save
 
             with naming(plot):
-                save(plot_speeds(limits, part, criteria, device_file.name), target, kind)
+                save(
+                    plot_speeds(limits, part, criteria, device_file.name),
+                    parts[plot],
+                    picture_format(plot),
+                )
     from pindrive.device.judged import speed_report
     from pindrive.report import show
 

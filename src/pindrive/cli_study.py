@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from pindrive.refusing import check_distinct, figure_format, refusing
+from pindrive.refusing import OverridesOption, count_option, picture, picture_format, refusing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Found = TypeVar("Found")
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
 
 
 def sweep(
@@ -32,17 +33,17 @@ def sweep(
         typer.Option("--output", "-o", metavar="FILE", help="NetCDF; STUDY.nc unless given."),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with a run cut short.")] = False,
-    restart: Annotated[bool, typer.Option("--restart", help="Throw away a run cut short.")] = False,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Replace an earlier study, or a run cut short.")
+    ] = False,
     stop_after: Annotated[
-        int | None,
-        typer.Option(metavar="POINTS", min=1, help="Stop there; --resume goes on."),
+        int | None, count_option("--stop-after", "Stop there; --resume goes on.", "POINTS")
     ] = None,
-    threads: Annotated[
-        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
-    ] = None,
+    threads: ThreadsOption = None,
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Work on a Dask cluster instead.")
     ] = None,
+    overrides: OverridesOption = None,
 ) -> None:
     """Work out all points of a study into one NetCDF file."""
     from pindrive.study.report import sweep_report
@@ -57,10 +58,9 @@ def sweep(
             raise ValueError("give --resume or --restart, not both")
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
-        plan = load_study(study)
+        plan = load_study(study, overrides or ())
         if not plan.dimensions:
             raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
-        check_distinct([*{study, plan.device.path}, target])
         if cluster:
             from pindrive.study.cluster import on_cluster
 
@@ -133,11 +133,11 @@ def map_study(
     ] = None,
 ) -> None:
     """Draw a study: maps over two keys, curves over one, slices side by side."""
-    from pindrive.output import atomic_write, naming
+    from pindrive.output import check_outputs, naming, writing
 
     with refusing():
-        kind = figure_format(output, "--output")
-        check_distinct([file, output])
+        target = picture(output, "--output")
+        check_outputs([target], [file])
 
         from pindrive.study.view import View
 
@@ -150,8 +150,9 @@ def map_study(
             from pindrive.study.maps import plot_study
             from pindrive.style import save
 
-            with atomic_write(output) as part, naming(output):
-                save(plot_study(view, names, *chosen, held), part, kind)
+            with writing([target], [file]) as parts, naming(output):
+                figure = plot_study(view, names, *chosen, held)
+                save(figure, parts[output], picture_format(output))
     typer.echo(f"Wrote {output}")
 
 
@@ -163,33 +164,46 @@ def sensitivity(
     tolerances: Annotated[
         bool, typer.Option("--tolerances", help="Over [tolerances] instead of [axes].")
     ] = False,
+    number: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A number that is asked for; all unless given."),
+    ] = None,
     rows: Annotated[
         int | None,
-        typer.Option(
-            metavar="COUNT",
-            help="Rows of the design, a power of 2; 8192 unless given, of scans 256.",
+        count_option(
+            "--rows",
+            "Rows of the design, a power of 2 from 128 on; 8192 unless given, of scans 256.",
+            least=128,
+            power_of_2=True,
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of the design and the bootstrap.")] = 1,
-    threads: Annotated[
-        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
-    ] = None,
+    seed: Annotated[int, count_option("--seed", "Of the design and the bootstrap.", least=0)] = 1,
+    threads: ThreadsOption = None,
+    overrides: OverridesOption = None,
 ) -> None:
     """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges."""
 
     def answer(plan: Plan, tell: Tell) -> Influence:
-        from pindrive.study.influence import influence
+        from pindrive.study.influence import askable, influence
+        from pindrive.study.outputs import known_output
 
+        among = askable(plan)
         return influence(
-            plan, tolerances=tolerances, count=rows, seed=seed, threads=threads, tell=tell
+            plan,
+            tolerances=tolerances,
+            numbers=[known_output(name, "--number", among) for name in number or ()],
+            rows=rows,
+            seed=seed,
+            threads=threads,
+            tell=tell,
         )
 
-    def picture(found: Influence, name: str) -> Figure:
+    def draw(found: Influence, name: str) -> Figure:
         from pindrive.study.charts import plot_influence
 
         return plot_influence(found, name)
 
-    _, found = _answered(study, answer, plot, picture)
+    _, found = _answered(study, overrides, answer, plot, draw)
     from pindrive.report import show
     from pindrive.study.report import influence_report
 
@@ -204,17 +218,11 @@ def robustness(
         Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
     ] = None,
     draws: Annotated[
-        int | None,
-        typer.Option(
-            metavar="COUNT",
-            min=1,
-            help="Random designs; 100 000 unless given, of scans 1000.",
-        ),
+        int | None, count_option("--draws", "Random draws; 100 000 unless given, of scans 1000.")
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of the draws and the search.")] = 1,
-    threads: Annotated[
-        int | None, typer.Option(metavar="COUNT", min=1, help="All cores unless given.")
-    ] = None,
+    seed: Annotated[int, count_option("--seed", "Of the draws and the search.", least=0)] = 1,
+    threads: ThreadsOption = None,
+    overrides: OverridesOption = None,
 ) -> None:
     """Say how a design fares within its tolerances: spread, yield, worst case."""
 
@@ -223,12 +231,12 @@ def robustness(
 
         return robustness(plan, count=draws, seed=seed, threads=threads, tell=tell)
 
-    def picture(found: Robustness, name: str) -> Figure:
+    def draw(found: Robustness, name: str) -> Figure:
         from pindrive.study.histograms import plot_robustness
 
         return plot_robustness(found, name)
 
-    plan, found = _answered(study, answer, plot, picture)
+    plan, found = _answered(study, overrides, answer, plot, draw)
     from pindrive.report import show
     from pindrive.study.report import robustness_report
 
@@ -239,24 +247,28 @@ def robustness(
 
 def _answered(
     study: Path,
+    overrides: list[str] | None,
     answer: Callable[[Plan, Tell], Found],
     plot: Path | None,
-    picture: Callable[[Found, str], Figure],
+    draw: Callable[[Found, str], Figure],
 ) -> tuple[Plan, Found]:
     """A study and what was asked of it, with a progress bar and, where wanted, a picture."""
-    from pindrive.output import atomic_write, naming
+    from pindrive.output import naming, writing
     from pindrive.study.studyfile import load_study
+    from pindrive.study.workers import stop_at_once
 
-    with refusing(), ExitStack() as stack:
-        plan = load_study(study)
-        check_distinct([*{study, plan.device.path}, *([plot] if plot else [])])
-        kind = figure_format(plot) if plot else ""
-        part = stack.enter_context(atomic_write(plot)) if plot else None
-        with _bar() as tell:
-            found = answer(plan, tell)
-        if plot and part:
-            from pindrive.style import save
+    with refusing():
+        plan = load_study(study, overrides or ())
+        try:
+            with writing([picture(plot)] if plot else [], plan.inputs) as parts:
+                with _bar() as tell:
+                    found = answer(plan, tell)
+                if plot:
+                    from pindrive.style import save
 
-            with naming(plot):
-                save(picture(found, plan.name), part, kind)
+                    with naming(plot):
+                        save(draw(found, plan.name), parts[plot], picture_format(plot))
+        except KeyboardInterrupt:
+            typer.echo("stopped; nothing was written", err=True)
+            stop_at_once(130)
     return plan, found

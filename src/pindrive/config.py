@@ -8,12 +8,12 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Container, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from pydantic import ValidationError
 
@@ -28,9 +28,25 @@ if TYPE_CHECKING:
     from pindrive.motion import Motion
     from pindrive.schema_device import Whole
 
+STUDY_KEYS: Final = (
+    *("base", "set", "page", "outputs", "zip", "chunk"),
+    *("axes", "sample", "tolerances", "specification"),
+)
+"""What stands at the top of a study file beside the tables of a device and the name."""
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
 AROUND: Final = ("magnet", "control", "array", "scan", "judge")
 TABLES: Final = ("device", "drive", "plate", "finger", "motion", *AROUND)
+
+
+class Setting(NamedTuple):
+    """A value that is set otherwise than in a device file."""
+
+    key: str
+    """In full, or its last part where that is unique."""
+    value: object
+    """As TOML has it."""
+    place: str
+    """Where that is written, for messages."""
 
 
 class ConfigError(ValueError):
@@ -59,7 +75,17 @@ class DeviceFile:
     velocity: float | None
     skin_stretch: float | None
     duration: float | None
+    settling_band: float
+    tables: Mapping[str, Any]
+    """What the file has, as text with units, with the values that were set otherwise."""
+    settings: tuple[Setting, ...] = ()
+    """The values that were set otherwise."""
     whole: Whole | None = None
+
+    @property
+    def by_ratio(self) -> bool:
+        """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
+        return "damping_ratio" in self.tables["drive"]
 
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
@@ -86,22 +112,37 @@ def load(
         path: a TOML file; `template()` is one.
         overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
             that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
-            Setting damping replaces damping_ratio, and vice versa.
+            Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
+            a value that is set keeps its ratio to it unless it is set too: static friction and the
+            friction curve to kinetic friction, the skin's stretch to the largest that it can have.
         whole: the whole device is wanted, also of a file without a table of it.
 
     Raises:
         ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
     """
     file = Path(path)
-    return device_of(file, read_tables(file), overrides, whole=whole)
+    settings, problems = settings_of(overrides)
+    return device_of(file, read_tables(file), settings, whole=whole, problems=problems)
 
 
 def device_of(
-    file: Path, given: Mapping[str, Any], overrides: Iterable[str] = (), *, whole: bool = False
+    file: Path,
+    given: Mapping[str, Any],
+    settings: Iterable[Setting] = (),
+    *,
+    whole: bool = False,
+    problems: Iterable[str] = (),
 ) -> DeviceFile:
-    """The device that the tables `given` describe; the rest, and what it raises, as for `load`."""
+    """The device that the tables `given` describe, with values set otherwise, one after the other.
+
+    The rest, and what it raises, as for `load`; `problems` are what was found wrong before.
+    """
+    _refuse_study(file, given)
+    settings = tuple(settings)
     tables = _with_all_tables(file, given)
-    places, problems = _override(tables, overrides)
+    places, found = _set(tables, settings)
+    problems = [*problems, *found]
+    as_written = _copied(tables)
 
     def place(*keys: str) -> str:
         return next((places[key] for key in keys if key in places), str(file))
@@ -121,7 +162,8 @@ def device_of(
         if around:
             problems += around.conflicts(schema, tables, place)
         if not problems:
-            return _device(file, schema, around, hand)
+            device = _device(file, schema, around, hand, as_written)
+            return replace(device, settings=settings)
     except ValidationError as error:
         problems += _value_problems(error, meant, place)
     except ValueError as error:  # each value in range, but not all together
@@ -141,6 +183,7 @@ def motion_of(device: DeviceFile) -> Motion:
         plate_load=device.plate_load,
         skin_stretch=device.skin_stretch,
         duration=device.duration,
+        settling_band=device.settling_band,
     )
 
 
@@ -156,7 +199,14 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
     try:
         text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ConfigError([f"{file}: is not UTF-8 text, at byte {error.start}"]) from None
+        with file.open("rb") as opened:
+            netcdf = opened.read(4) == b"\x89HDF"
+        words = (
+            "is a NetCDF file; `pindrive map` draws one that a sweep wrote"
+            if netcdf
+            else f"is not UTF-8 text, at byte {error.start}"
+        )
+        raise ConfigError([f"{file}: {words}"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError([f"{file}: cannot be read: {reason}"]) from None
@@ -167,6 +217,18 @@ def read_tables(file: Path, template: str = "`pindrive init FILE` writes a devic
     except (ValueError, RecursionError) as error:
         hint = "; a value with a unit stands in quotes" if "Expected newline" in str(error) else ""
         raise ConfigError([f"{file}: is not valid TOML: {error}{hint}"]) from None
+
+
+def _refuse_study(file: Path, given: Mapping[str, Any]) -> None:
+    found = [key for key in STUDY_KEYS if key in given]
+    if found:
+        shown = [f"[{key}]" if isinstance(given[key], dict) else key for key in found[:2]]
+        raise ConfigError(
+            [
+                f"{file}: is a study file, as it has {' and '.join(shown)}; `pindrive sweep`, "
+                "`sensitivity` and `robustness` take it"
+            ]
+        )
 
 
 def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -185,41 +247,62 @@ def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
     return tables
 
 
-def _override(tables: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[str, str], list[str]]:
-    """Set values in `tables`. Return where each set key was written, and what was wrong."""
-    places: dict[str, str] = {}
-    problems: list[str] = []
+def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
+    """What "key=value" on the command line sets, each, and what is wrong with it."""
+    settings, problems = [], []
     for override in overrides:
-        given, equals, value = (part.strip() for part in override.partition("="))
+        given, equals, text = (part.strip() for part in override.partition("="))
         place = f"--set {' '.join(given.split())}"
-        keys = keys_meant(given)
+        value: object = text
         if not equals or not given:
             problems.append(f"--set {quoted(override)}: must be key=value")
-        elif not keys:
+            continue
+        keys = keys_meant(given)
+        if len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
+            try:
+                value = _rows_as_toml(text)
+            except (ValueError, RecursionError) as error:
+                problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
+                continue
+        settings.append(Setting(given, value, place))
+    return settings, problems
+
+
+def _rows_as_toml(text: str) -> object:
+    given = tomllib.loads(f"rows = {text}")
+    if len(given) > 1:
+        raise ValueError("more than one value")
+    return given["rows"]
+
+
+def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str, str], list[str]]:
+    """Set values in `tables`. Return where each set key was written, and what was wrong."""
+    before = _copied(tables)
+    places: dict[str, str] = {}
+    problems: list[str] = []
+    for given, value, place in settings:
+        keys = keys_meant(given)
+        if not keys:
             problems.append(f"{place}: {not_known(given, tables=False)}")
         elif len(keys) > 1:
             problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
         else:
             table, _, name = keys[0].partition(".")
             places[keys[0]] = place
-            try:
-                tables[table][name] = _overridden(keys[0], value)
-            except (ValueError, RecursionError) as error:
-                problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
+            tables[table][name] = value
     for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
         if f"drive.{one}" in places and f"drive.{other}" not in places:
             tables["drive"].pop(other, None)
+    if places:
+        from pindrive.ratios import keep_ratios
+
+        keep_ratios(tables, before, places)
     return places, problems
 
 
-def _overridden(key: str, value: str) -> object:
-    """What is given for `key` on the command line: text, or rows as TOML has them."""
-    if key in NUMBERS and NUMBERS[key].rows and value.startswith("["):
-        given = tomllib.loads(f"rows = {value}")
-        if len(given) > 1:
-            raise ValueError("more than one value")
-        return given["rows"]
-    return value
+def _copied(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The known tables as they stand."""
+    return {name: dict(tables[name]) for name in TABLES}
 
 
 def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
@@ -300,7 +383,9 @@ def _around(tables: Mapping[str, Any], place: Place) -> Whole:
     return Whole.model_validate(tables, context=place)
 
 
-def _device(file: Path, schema: Schema, whole: Whole | None, hand: bool) -> DeviceFile:
+def _device(
+    file: Path, schema: Schema, whole: Whole | None, hand: bool, tables: Mapping[str, Any]
+) -> DeviceFile:
     drive, motion = schema.drive, schema.motion
     plate, finger = schema.plate.contact(), schema.finger.contact()
     body = {"mass": drive.mass, "stiffness": drive.stiffness}
@@ -321,5 +406,7 @@ def _device(file: Path, schema: Schema, whole: Whole | None, hand: bool) -> Devi
         velocity=motion.velocity,
         skin_stretch=motion.skin_stretch,
         duration=motion.duration,
+        settling_band=motion.settling_band,
+        tables=tables,
         whole=whole,
     )

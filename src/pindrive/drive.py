@@ -11,6 +11,7 @@ from operator import lt
 from typing import TYPE_CHECKING, cast, overload
 
 from pindrive.quantities import check, refusal
+from pindrive.quantity import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -126,7 +127,7 @@ def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve")
     """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal(label, required, f"{len(finger.curve or ())} rows", where))
+        raise ValueError(refusal(label, required, counted(len(finger.curve or ()), "row"), where))
 
 
 def check_load(

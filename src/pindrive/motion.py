@@ -14,7 +14,8 @@ from pindrive import _core
 from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
 from pindrive.events import Event, Segment, Table, events_of, segments_of
 from pindrive.quantities import QUANTITIES, check, refusal
-from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
+from pindrive.quantity import counted
+from pindrive.transient import DECAYING, Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,6 +48,8 @@ class Motion:
         plate_load: factor on the plate's friction, constant or a `Profile`.
         skin_stretch: stretch of a compliant finger that gripped at the start, m; None: not given.
         starts_with_plate: whether x'(0) is the plate's velocity because no other was given.
+        settling_band: half the band about the end that counts as settled, a part of
+            |x(0) - x_end|.
         core_numbers: the same as the core takes them.
         duration: s; the one asked for, or long enough to see the ending.
     """
@@ -61,6 +64,7 @@ class Motion:
         plate_load: float | Profile,
         skin_stretch: float | None,
         starts_with_plate: bool,
+        settling_band: float = _core.settling_band,
     ) -> None:
         self.core_numbers = numbers
         self._core = core = _core.simulate(*numbers)
@@ -71,18 +75,26 @@ class Motion:
         self.plate_load = plate_load
         self.skin_stretch = skin_stretch
         self.starts_with_plate = starts_with_plate
+        self.settling_band = settling_band
         self.duration: float = core.duration
+        if settling_band < _core.settling_band and self._decays_unasked():
+            settled = core.transient(inf, settling_band)["settling_time"]
+            self.duration = max(self.duration, 1.25 * settled)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what was simulated: the rest follows from it."""
         given = (self.mouse_velocity, self.displacement, self.initial_velocity, self.plate_load)
-        start = (self.skin_stretch, self.starts_with_plate)
+        start = (self.skin_stretch, self.starts_with_plate, self.settling_band)
         return Motion, (self.core_numbers, self.drive, *given, *start)
+
+    def _decays_unasked(self) -> bool:
+        """Whether it decays for ever and no duration was asked for."""
+        return self.core_numbers[-1] == inf and self._core.end == DECAYING
 
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""
         return (
-            f"<Motion of {self.duration:.6g} s, {len(self.events)} events, "
+            f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
             f"{self.ending.kind} since {self.ending.since:.6g} s, "
             f"settling time {self.transient.settling_time:.6g} s>"
         )
@@ -214,7 +226,7 @@ class Motion:
 
     @cached_property
     def _numbers(self) -> dict[str, Any]:
-        return self._core.transient(self.duration, _core.settling_band)
+        return self._core.transient(self.duration, self.settling_band)
 
     @cached_property
     def transient(self) -> Transient:
@@ -229,7 +241,10 @@ class Motion:
         return Ending.of(self._core, self._numbers)
 
     def settling_time(self, band: float = _core.settling_band) -> float:
-        """The settling time (s) for another band, a part of |x(0) - x_end| above 0; NaN if none."""
+        """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.
+
+        The band is above 0 and at most 1.
+        """
         band = check("settling_band", band, label="band")
         return float(self._core.transient(self.duration, band)["settling_time"])
 
@@ -293,7 +308,7 @@ class Motion:
         values |= {"displacement": self.displacement, "velocity": self.initial_velocity}
         if self.skin_stretch is not None:
             values["skin_stretch"] = self.skin_stretch
-        return values | {"duration": self.duration}
+        return values | {"duration": self.duration, "settling_band": self.settling_band}
 
     def sensitivity(self, parameters: Sequence[str]) -> Sensitivity:
         """Exact derivatives of the motion with respect to some of its parameters.
@@ -356,6 +371,7 @@ def simulate(
     plate_load: float | Profile = 1.0,
     skin_stretch: float | None = None,
     duration: float | None = None,
+    settling_band: float = _core.settling_band,
 ) -> Motion:
     """Follow the pin of a drive from its release, exactly.
 
@@ -369,6 +385,8 @@ def simulate(
         skin_stretch: stretch of a compliant finger that grips at the start, m; None: the stretch of
             a finger being slid along or, for a pin at rest, none.
         duration: s, greater than 0; None: long enough to see the ending.
+        settling_band: half the band about the end in which the motion counts as settled, a part of
+            |x(0) - x_end|, above 0 and at most 1.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.
@@ -385,6 +403,7 @@ def simulate(
     x = check("displacement", displacement)
     v = _value_at_start(v_plate) if velocity is None else check("velocity", velocity)
     end = inf if duration is None else check("duration", duration)
+    band = check("settling_band", settling_band)
     plate, finger = drive.plate, drive.finger
     if not plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
@@ -406,7 +425,8 @@ def simulate(
         stretch,
         end,
     )
-    return Motion(numbers, drive, mouse_velocity, x, v, plate_load, skin_stretch, velocity is None)
+    with_plate = velocity is None
+    return Motion(numbers, drive, mouse_velocity, x, v, plate_load, skin_stretch, with_plate, band)
 
 
 def _rows(given: float | Profile, name: str) -> Rows:

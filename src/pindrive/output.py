@@ -1,16 +1,108 @@
-"""Files that are whole or not there: written beside their target, renamed when complete."""
+"""Files that are whole or not there, and never in the place of what somebody needs.
+
+They are written beside their target and renamed when complete. A file that is there is replaced
+only if it is of the kind that is written, and never if the command reads it.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from secrets import token_hex
+
+_HEAD = 4096
+"""Bytes in which a file says what it is."""
 
 
 class OutputError(ValueError):
     """A file that cannot be written; says which and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of file: what it is called, and whether a file is one."""
+
+    name: str
+    holds: Callable[[Path], bool]
+    consent: str = ""
+    """The option with which one is replaced, as it took long to make; none where it did not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A file that a command is asked to write."""
+
+    path: Path
+    kind: Kind
+    option: str = ""
+    """Where it was named, for messages."""
+
+    def __str__(self) -> str:
+        """As it was named."""
+        return f"{self.option} {self.path}".lstrip()
+
+
+def check_outputs(
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+) -> None:
+    """Refuse to write over what is needed.
+
+    Args:
+        outputs: what is to be written.
+        inputs: what the command reads; compared as files, through links of any sort.
+        consent: whether files may be replaced that took long to make.
+
+    Raises:
+        OutputError: two outputs are one file, an output is an input, or a file is there that is of
+            another kind, or takes consent.
+    """
+    read = [*inputs]
+    for i, output in enumerate(outputs):
+        if any(_are_one(output.path, other.path) for other in outputs[:i]):
+            raise OutputError(f"{output}: is named twice; give each file a name of its own")
+        check_unread(output.path, read, str(output))
+        if not output.path.is_file() or not output.path.stat().st_size:
+            continue
+        try:
+            alike = output.kind.holds(output.path)
+        except OSError as error:
+            raise OutputError(f"{output}: is there, and cannot be read: {error.strerror}") from None
+        if not alike:
+            raise OutputError(
+                f"{output}: is there and is no {output.kind.name}; it stays, give another name"
+            )
+        if output.kind.consent and not consent:
+            raise OutputError(f"{output}: exists already; {output.kind.consent} replaces it")
+
+
+def check_unread(path: Path, inputs: Iterable[Path], label: str = "") -> None:
+    """Refuse to write to a file that is read."""
+    if any(_are_one(path, other) for other in inputs):
+        raise OutputError(f"{label or path}: is read by this command; give another name")
+
+
+def _are_one(one: Path, other: Path) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):  # one of them is not there
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+@contextmanager
+def writing(
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+) -> Iterator[dict[Path, Path]]:
+    """For the path of each output a path to write to, as `atomic_write` gives it.
+
+    Arguments and errors as for `check_outputs` and `atomic_write`.
+    """
+    check_outputs(outputs, inputs, consent=consent)
+    with ExitStack() as stack:
+        yield {output.path: stack.enter_context(atomic_write(output.path)) for output in outputs}
 
 
 @contextmanager
@@ -37,6 +129,21 @@ def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
             os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def _like(name: str, content: bytes) -> Kind:
+    """Files that begin as this one does."""
+
+    def beginning(content: bytes) -> tuple[bytes, list[bytes]]:
+        return content.partition(b"\n")[0], re.findall(rb"<title>.*?</title>", content)
+
+    head = beginning(content[:_HEAD])
+
+    def holds(path: Path) -> bool:
+        with path.open("rb") as file:
+            return beginning(file.read(_HEAD)) == head
+
+    return Kind(f"{Path(name).name} of an earlier run", holds)
 
 
 @contextmanager
@@ -70,12 +177,14 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> N
 
     Args:
         folder: where; other files in it stay as they are.
-        files: what, by the path in the folder.
+        files: what, by the path in the folder. One that is there is replaced if it begins with the
+            same line, and has the same title.
 
     Raises:
-        OutputError: a file or a folder cannot be written.
+        OutputError: a file or a folder cannot be written, or would replace something else.
     """
     top, made = Path(folder), []
+    check_outputs([Output(top / name, _like(name, content)) for name, content in files.items()])
     try:
         with ExitStack() as stack:
             for name, content in files.items():

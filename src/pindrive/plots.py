@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive._core import settling_band
 from pindrive.captions import NAME, duration, outcome, parameters, short, stuck_name
 from pindrive.drive import Profile
 from pindrive.style import GREY, PALETTE, SMALL, STYLE, save
@@ -178,7 +177,8 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
         colour = PALETTE["gripping"]
         handles.append(Patch(color=colour, alpha=_GRIP_TINT, lw=0.0, label=NAME["gripping"]))
     if _band(motion) > 0.0:
-        label = rf"$x_\mathrm{{end}}$ ± {100 * settling_band:g} % of $|x_0 - x_\mathrm{{end}}|$"
+        part = f"{100 * motion.settling_band:g} %"
+        label = rf"$x_\mathrm{{end}}$ ± {part} of $|x_0 - x_\mathrm{{end}}|$"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
     axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
@@ -270,7 +270,7 @@ def _band(motion: Motion) -> float:
     """Half the band that counts as settled, mm; 0 where there is none to show."""
     if motion.ending.kind not in ("resting", "decaying"):
         return 0.0
-    return settling_band * abs(motion.displacement - motion.ending.position) * MM
+    return motion.settling_band * abs(motion.displacement - motion.ending.position) * MM
 
 
 def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:

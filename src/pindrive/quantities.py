@@ -10,6 +10,7 @@ from typing import Final, SupportsFloat
 
 from pindrive.quantities_device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities_judge import JUDGE
+from pindrive.quantities_magnet import SHARE
 from pindrive.quantity import (
     FINITE,
     NON_NEGATIVE,
@@ -89,6 +90,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         STEEL.format("0.27 (oxidised)"),
         optional=True,
         remark="the kinetic one unless given",
+        follows=("plate.kinetic",),
     ),
     Quantity(
         "plate.curve",
@@ -101,6 +103,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="speeds from 0 m/s up; kinetic may then be left out",
         rows_of="curve",
         rows=((0.0, 0.022), (0.05, 0.015)),
+        follows=("plate.kinetic",),
     ),
     Quantity(
         "finger.kinetic",
@@ -121,6 +124,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
         optional=True,
         remark="the kinetic one unless given",
+        follows=("finger.kinetic",),
     ),
     Quantity(
         "finger.curve",
@@ -133,6 +137,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         remark="speeds from 0 m/s up; kinetic may then be left out",
         rows_of="curve",
         rows=((0.0, 0.005), (0.05, 0.004)),
+        follows=("finger.kinetic",),
     ),
     Quantity(
         "finger.stiffness",
@@ -211,6 +216,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         optional=True,
         example=3.75e-6,
         remark="that of skin slid along, for a pin at rest none, unless given",
+        follows=("finger.static", "finger.stiffness"),
     ),
     Quantity(
         "duration",
@@ -225,6 +231,18 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         example=0.3,
         remark="long enough to see how it ends unless given",
     ),
+    Quantity(
+        "settling_band",
+        "ε",
+        "1",
+        "half the band about the end in which the motion counts as settled, of |x(0) - x_end|",
+        SHARE,
+        0.05,
+        "usual beside 2 % in control engineering",
+        "motion",
+        optional=True,
+        remark="0.05 unless given",
+    ),
 )
 """What a device file may give, in its order."""
 
@@ -238,9 +256,6 @@ PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("curve.force", "F(|u|)", "N", "kinetic friction in a friction curve", NON_NEGATIVE),
     Quantity("profile.time", "t", "s", "time of a profile's row", FINITE),
     Quantity("profile.value", "y", "1", "value of a profile's row", FINITE),
-    Quantity(
-        "settling_band", "ε", "1", "band of the settling time, a part of |x(0) - x_end|", POSITIVE
-    ),
     Quantity(
         "natural_frequency", "ω_0", "rad/s", "undamped natural frequency, sqrt(k/m)", POSITIVE
     ),
@@ -323,7 +338,7 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
         "transient.settling_time",
         "t_s",
         "s",
-        "from then on within 5 % of the way to the resting place",
+        "from then on within the settling band about the resting place",
         source=f"{PAPER}, the time of the transitional period",
     ),
     Quantity(
@@ -429,9 +444,7 @@ def check(
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError, OverflowError):
-            raise ValueError(
-                refusal(label, f"a number in {quantity.unit}", repr(value), where)
-            ) from None
+            raise ValueError(refusal(label, quantity.kind, repr(value), where)) from None
     if number not in quantity.bounds:
         unit = "" if quantity.unit == "1" else quantity.unit
         shown = given if given is not None else f"{number!r} {unit}".rstrip()

@@ -85,6 +85,9 @@ class Quantity:
     """What its rows make where it may change, a key of `COLUMNS`: "curve", "profile"."""
     rows: Rows = ()
     """Such rows, SI, in a comment of that file; given alone, it must be rows."""
+    follows: tuple[str, ...] = ()
+    """Keys to which it keeps its ratio where they are varied and it is not: to the first, or to the
+    first over the second. Of rows, the values keep it."""
 
     @property
     def key(self) -> str:
@@ -95,6 +98,16 @@ class Quantity:
     def may_be_constant(self) -> bool:
         """Whether one value may stand for it, or it must be rows."""
         return not self.rows or self.default is not None or self.example is not None
+
+    @property
+    def kind(self) -> str:
+        """What a value of it is, for messages: "a number in kg", "a plain number"."""
+        return f"a number in {self.unit}" if self.unit not in ("", "1") else "a plain number"
+
+    @property
+    def kinds(self) -> str:
+        """What several values of it are: "numbers in kg", "plain numbers"."""
+        return f"numbers in {self.unit}" if self.unit not in ("", "1") else "plain numbers"
 
     @property
     def display_unit(self) -> str:
@@ -117,6 +130,12 @@ class Quantity:
     def text(self, value: float) -> str:
         """`value` (SI) for a person to read: "1.500 mm"."""
         return f"{self.digits(value)} {self.display_unit}".rstrip()
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """A count with its noun, thousands apart: "1 point", "10 000 points"."""
+    shown = f"{number:,}".replace(",", " ")
+    return f"{shown} {noun if number == 1 else plural or f'{noun}s'}"
 
 
 def significant(value: float, digits: int = 4) -> str:

@@ -2,22 +2,79 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Iterator
+import re
+import sys
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
+if TYPE_CHECKING:
+    from pindrive.output import Output
+
+_UsageError: Any = typer.BadParameter.__base__
 DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
 OverridesOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help='Another value, as in --set mass="12 g".'),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help='Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
+    ),
 ]
 
 
-FIGURE_FORMATS = (".png", ".svg", ".pdf")
+def count_option(
+    option: str,
+    help: str,
+    metavar: str = "COUNT",
+    *,
+    least: int = 1,
+    most: int = 10**18,
+    power_of_2: bool = False,
+) -> Any:
+    """An option that is a whole number from `least` to `most`, or such a power of 2."""
+    required = f"{'a power of 2' if power_of_2 else 'a whole number'} of at least {least}"
+    if most < 10**18:
+        required += f" and at most {most}"
+
+    def count(text: str) -> int:
+        if re.fullmatch(r"[0-9]{1,18}", str(text)):
+            number = int(text)
+            if least <= number <= most and not (power_of_2 and number & (number - 1)):
+                return number
+        typer.echo(f"{option} must be {required}, got {text}", err=True)
+        raise typer.Exit(2)
+
+    return typer.Option(option, metavar=metavar, help=help, parser=count)
+
+
+class OneLine(TyperGroup):
+    """Commands whose usage errors are one line too."""
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        *more: Any,
+        **extra: Any,
+    ) -> Any:
+        """Run the command that the arguments name."""
+        try:
+            status = super().main(args, prog_name, complete_var, False, *more, **extra)
+        except _UsageError as error:
+            if not standalone_mode:
+                raise
+            typer.echo(error.format_message(), err=True)
+            sys.exit(error.exit_code)
+        if standalone_mode:
+            sys.exit(status or 0)
+        return status
 
 
 @contextmanager
@@ -30,22 +87,24 @@ def refusing() -> Iterator[None]:
         raise typer.Exit(2) from None
 
 
-def check_distinct(paths: Iterable[Path]) -> None:
-    """Refuse to write one file over another of the same command."""
-    seen: set[str] = set()
-    for path in paths:
-        real = os.path.realpath(path)
-        if real in seen:
-            raise ValueError(f"{path}: is named twice; give each file a name of its own")
-        seen.add(real)
+def picture(path: Path, option: str = "--plot") -> Output:
+    """A picture that is to be written, in the format that its name asks for.
 
+    Raises:
+        ValueError: it asks for none.
+    """
+    from pindrive.kinds import PICTURES
+    from pindrive.output import Output
 
-def figure_format(path: Path, option: str = "--plot") -> str:
-    """The format that the name of a figure asks for."""
     suffix = path.suffix.lower()
-    if suffix not in FIGURE_FORMATS:
-        raise ValueError(f"{option} {path}: must end in {', '.join(FIGURE_FORMATS)}")
-    return suffix.removeprefix(".")
+    if suffix not in PICTURES:
+        raise ValueError(f"{option} {path}: must end in {', '.join(PICTURES)}")
+    return Output(path, PICTURES[suffix], option)
+
+
+def picture_format(path: Path) -> str:
+    """The format of a picture, as Matplotlib calls it."""
+    return path.suffix.lower().removeprefix(".")
 
 
 def measures(text: str, unit: str, example: str, option: str) -> list[float]:

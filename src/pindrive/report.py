@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pindrive.quantities import COLUMNS, QUANTITIES, TRANSIENT
-from pindrive.quantity import Rows, significant
+from pindrive.quantity import Rows, counted, significant
 
 if TYPE_CHECKING:
     from pindrive.config import DeviceFile
@@ -92,7 +92,7 @@ def _phases(motion: Motion) -> Table:
     for i, segment in enumerate(segments):
         if HEAD <= i < len(segments) - TAIL:
             if i == HEAD:
-                table.add_row("...", "", "", f"{len(segments) - HEAD - TAIL} more phases")
+                table.add_row("...", "", "", counted(len(segments) - HEAD - TAIL, "more phase"))
             continue
         lasts = isfinite(segment.end)
         table.add_row(
@@ -122,7 +122,9 @@ def _numbers(motion: Motion) -> Table:
     )
     for quantity in TRANSIENT:
         if not quantity.name.startswith(absent) and quantity.name not in unseen:
-            _add_number(table, quantity.name, values[quantity.name])
+            in_band = f"within {100.0 * motion.settling_band:g} % of the way to the resting place"
+            said = f"from then on {in_band}" if quantity.name == "transient.settling_time" else ""
+            _add_number(table, quantity.name, values[quantity.name], meaning=said)
     return table
 
 
@@ -138,11 +140,13 @@ def new_table(title: str, *headings: str) -> Table:
     return table
 
 
-def _add_number(table: Table, name: str, value: float, *before: str) -> None:
+def _add_number(table: Table, name: str, value: float, *before: str, meaning: str = "") -> None:
     """A row for the quantity called `name`: symbol, value, unit, meaning."""
     quantity = QUANTITIES[name]
     shown = f"{value:g}" if quantity.unit == "" else quantity.digits(value)
-    table.add_row(*before, quantity.symbol, shown, quantity.display_unit, quantity.meaning)
+    table.add_row(
+        *before, quantity.symbol, shown, quantity.display_unit, meaning or quantity.meaning
+    )
 
 
 def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:

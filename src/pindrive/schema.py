@@ -151,6 +151,7 @@ class _Motion(Table):
     velocity: float | None = None
     skin_stretch: float | None = None
     duration: float | None = None
+    settling_band: float = QUANTITIES["settling_band"].default or 0.0
 
 
 class Schema(BaseModel):

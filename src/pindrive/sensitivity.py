@@ -13,6 +13,7 @@ import numpy as np
 from pindrive import _core
 from pindrive.motion import flattened
 from pindrive.quantities import refusal
+from pindrive.quantity import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -162,8 +163,9 @@ class _Derivative:
     def numbers(self) -> dict[str, float]:
         """The derivatives of the numbers, NaN where one does not exist."""
         duration = self._motion.duration
-        at, slopes = _numbers(self._own, duration), _numbers(self.core, duration)
-        around = [(step, _numbers(core, duration)) for step, core in self._neighbours]
+        band = self._motion.settling_band
+        at, slopes = _numbers(self._own, duration, band), _numbers(self.core, duration, band)
+        around = [(step, _numbers(core, duration, band)) for step, core in self._neighbours]
 
         def exists(name: str) -> bool:
             known = at.get(_KNOWN_AT.get(name, ""), duration)
@@ -215,9 +217,11 @@ _KNOWN_AT = {
 """The time from which a number no longer depends on the motion; of the others, its duration."""
 
 
-def _numbers(core: _core.Motion | _core.Derivative, duration: float) -> dict[str, float]:
+def _numbers(
+    core: _core.Motion | _core.Derivative, duration: float, band: float
+) -> dict[str, float]:
     """The numbers of a motion over a fixed duration, by their names in `Motion.numbers()`."""
-    transient = core.transient(duration, _core.settling_band)
+    transient = core.transient(duration, band)
     ending = {
         "position": transient.pop("end_position"),
         "since": core.since,
@@ -260,7 +264,8 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         table, index, column = (group for group in row.groups() if group)
         rows = _entry(numbers, _TABLES[table])
         if int(index) >= len(rows):
-            raise ValueError(refusal("parameter", f"one of {len(rows)} rows of {table}", name))
+            one = f"one of {counted(len(rows), 'row')} of {table}"
+            raise ValueError(refusal("parameter", one, name))
         return [(*_TABLES[table], int(index), int(column in ("force", "value")))]
     if name not in _PLACES:
         known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"

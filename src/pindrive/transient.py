@@ -25,6 +25,7 @@ _ENDS: tuple[tuple[EndKind, Cycle | None], ...] = (
     ("steady", "limit cycle"),
 )
 """In the order of `End` in model.hpp."""
+DECAYING = _ENDS.index(("decaying", None))
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +65,8 @@ class Transient:
     first_reversal_time: float
     """First time the pin stops sliding on the plate (t_1, eq. 21), s."""
     settling_time: float
-    """The paper's time of the transitional period, s: from then on x stays within 5 % of
-    |x(0) - x_end| about x_end; for a steady oscillation, when that begins."""
+    """The paper's time of the transitional period, s: from then on x stays within the settling band
+    about x_end; for a steady oscillation, when that begins."""
     peak_stretch: float
     """Largest stretch of a compliant finger's skin, m; NaN for a rigid one."""
     peak_stretch_rate: float

@@ -14,6 +14,7 @@ from pindrive.device.history import Moment, draw_history, moment
 from pindrive.device.painting import Painting, paint, view
 from pindrive.device.printed import turnings
 from pindrive.quantities import QUANTITIES
+from pindrive.quantity import counted
 from pindrive.style import PALETTE, SMALL, STYLE
 
 if TYPE_CHECKING:
@@ -142,7 +143,7 @@ def _relief_title(judgement: Judgement) -> str:
     counts = judgement.counts
     speed = f"{MM * judgement.scan.path.peak_speed:.4g} mm/s"
     lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
-    found = f"{counts['judged.shown']} of {counts['judged.lines']} lines shown"
+    found = f"{counts['judged.shown']} of {counted(counts['judged.lines'], 'line')} shown"
     smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
     return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm, {smeared}"
 
@@ -268,5 +269,5 @@ def _title(judgement: Judgement) -> str:
             medians.append(
                 f"{label} {value:.2f}" if unit == "1" else f"{label} {MM * value:.2g} mm"
             )
-    found = f"{shown} of {lines} lines shown, {counts['judged.echoes']} false"
+    found = f"{shown} of {counted(lines, 'line')} shown, {counts['judged.echoes']} false"
     return f"{what}: {found}.\n" + (f"Medians: {', '.join(medians)}." if medians else "")

@@ -120,7 +120,7 @@ def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:
     try:
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ValueError(refusal(name, f"numbers in {quantity.unit}", repr(values))) from None
+        raise ValueError(refusal(name, quantity.kinds, repr(values))) from None
     bad = [value for value in array.flat if float(value) not in bounds]
     if bad:
         shown = f"{float(bad[0])!r} {quantity.unit}"

@@ -146,7 +146,8 @@ class AxisReader:
             )
         key = sweepable(of, f"{self._file}: {self._label}.of", self._scans)
         if key == self._key or NUMBERS[key].unit != self._quantity.unit:
-            required = f"another key in {self._quantity.unit}"
+            unit = self._quantity.unit
+            required = f"another key {'without a unit' if unit == '1' else f'in {unit}'}"
             raise ValueError(self._refusal(required, of, ".of"))
         return Linked(key, self._plain(spec["times"], ".times"))
 

@@ -131,10 +131,11 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """So many times the value of another key."""
+    """So many times the value of another key, or of one key over another."""
 
     of: str
     times: float
+    over: str = ""
 
 
 Axis = Even | Listed | Distribution | Linked

@@ -9,7 +9,8 @@ import numpy as np
 from pindrive.device.array import check_count
 from pindrive.device.coil import check_one_way
 from pindrive.study.axis import Axis, Distribution, Linked, Listed
-from pindrive.study.plan import COUNTS, base_value
+from pindrive.study.links import base_value, circle
+from pindrive.study.plan import COUNTS
 from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ def conflicts(plan: Plan, file: str) -> list[str]:
     problems = []
     tolerances: dict[str, Axis] = {**plan.tolerances, **plan.tolerance_links}
     for table, axes in (("axes", plan.axes), ("tolerances", tolerances)):
+        if keys := circle({k: axis for k, axis in axes.items() if isinstance(axis, Linked)}):
+            problems.append(f"{file}: {table}: {_in_words(keys)}")
+            continue
         problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
         if plan.page:
             problems += [f"{file}: {table}: {words}" for words in _around(plan, axes)]
@@ -57,21 +61,21 @@ def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
     if {"drive.damping", "drive.damping_ratio"} <= axes.keys():
         yield "vary drive.damping or drive.damping_ratio, not both"
     drive = device.drive
-    for contact, part in (("plate", drive.plate), ("finger", drive.finger)):
-        if part.curve and f"{contact}.kinetic" in axes:
-            yield f"{contact}.kinetic cannot be varied beside {contact}.curve: it is its first row"
     if drive.finger.curved and "finger.stiffness" in axes:
         yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
     if "motion.skin_stretch" in axes and drive.finger.rigid and "finger.stiffness" not in axes:
         yield "motion.skin_stretch cannot be varied for a rigid finger; give finger.stiffness"
     for key, link in axes.items():
-        if not isinstance(link, Linked):
+        if not isinstance(link, Linked) or link.of in axes:
             continue
-        leader = axes.get(link.of)
-        if isinstance(leader, Linked):
-            yield f"{key} follows {link.of}, which follows {leader.of}; follow that"
-        if leader is None and not isinstance(base_value(device, link.of), float):
+        if not isinstance(base_value(device, link.of), float):
             yield f"{key} follows {link.of}, which has no value"
+
+
+def _in_words(keys: tuple[str, ...]) -> str:
+    """Keys that follow each other in a circle."""
+    first, *others = keys
+    return f"{first} follows {', which follows '.join((*others, first))}; give one of them values"
 
 
 def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
@@ -79,10 +83,10 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
     magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
     if magnet:
         try:
-            check_one_way(magnet | plan.tables.get("magnet", {}).keys(), table="magnet")
+            check_one_way(magnet | plan.device.tables["magnet"].keys(), table="magnet")
         except ValueError as error:
             yield str(error)
-    if "places" in plan.tables.get("array", {}):
+    if "places" in plan.device.tables["array"]:
         for key in ("array.columns", "array.rows", "array.pitch"):
             if key in axes:
                 yield f"{key} cannot be varied beside array.places"
@@ -123,8 +127,10 @@ def _span(plan: Plan, axes: Mapping[str, Axis], key: str) -> tuple[float, float]
         value = float(base_value(plan.device, key))
         return value, value
     if isinstance(axis, Linked):
-        ends = sorted(axis.times * end for end in _span(plan, axes, axis.of))
-        return ends[0], ends[1]
+        of = _span(plan, axes, axis.of)
+        over = _span(plan, axes, axis.over) if axis.over else (1.0, 1.0)
+        ends = sorted(axis.times * end / part for end in of for part in over)
+        return ends[0], ends[-1]
     return axis.span
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +10,15 @@ import numpy as np
 from pindrive.batch import simulate_batch
 from pindrive.drive import Contact, Drive, Profile
 from pindrive.motion import Motion, simulate
+from pindrive.ratios import scaled_rows
 from pindrive.study.outputs import LEDGER, MEASURED
 from pindrive.study.plan import variable
+from pindrive.study.points import flags
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
 
     from pindrive.config import DeviceFile
     from pindrive.study.plan import Columns, Plan
@@ -26,7 +29,7 @@ Table = dict[str, Any]
 _BATCH = (
     *("mass", "stiffness", "damping", "plate_kinetic", "plate_static", "finger_kinetic"),
     *("finger_static", "finger_stiffness", "mouse_velocity", "displacement", "velocity"),
-    "duration",
+    *("duration", "settling_band"),
 )
 
 
@@ -40,17 +43,18 @@ def evaluate(
     skin) is simulated point by point: the same numbers, fifty times slower.
 
     Args:
-        plan: whose device and way of damping.
+        plan: whose device.
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
-        outputs: names of variables.
+        outputs: names of variables; `reason` among them is text: why a point cannot exist, or in
+            short which argument is bad, and empty where it exists.
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
         from pindrive.study.scans import evaluate_scans
 
         return evaluate_scans(plan, columns, count, outputs, threads)
-    inputs = _inputs(plan.device, plan.by_ratio, columns)
+    inputs = _inputs(plan.device, columns)
     if is_slow(plan.device, columns):
         table = _one_by_one(inputs, count)
     else:
@@ -63,7 +67,9 @@ def evaluate(
         given["mass"] = np.broadcast_to(given["mass"], (count,))
         energy = not set(LEDGER).isdisjoint(outputs)
         found = simulate_batch(**given, energy=energy, threads=threads)
-        table = {name: found[name].values for name in outputs}
+        table = {name: found[name].values for name in outputs if name != "reason"}
+        if "reason" in outputs:
+            table["reason"] = _bad_arguments(found["status"].values)
     return {name: table[name] for name in outputs}
 
 
@@ -74,7 +80,7 @@ def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
         ValueError: there is none, as for `simulate`.
     """
     columns = {key: np.array([value]) for key, value in at.items()}
-    return _motion(_point(_inputs(plan.device, plan.by_ratio, columns), 0))
+    return _motion(_point(_inputs(plan.device, columns), 0))
 
 
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
@@ -92,36 +98,27 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     )
 
 
-def _inputs(device: DeviceFile, by_ratio: bool, columns: Columns) -> dict[str, Any]:
+def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     """Every input of a motion by its name in Python: a column, or what the device has."""
     given: dict[str, Any] = {variable(key): value for key, value in device.values().items()}
     given |= {"mouse_velocity": device.mouse_velocity, "plate_load": device.plate_load}
     given |= {variable(key): values for key, values in columns.items()}
-    if "drive.damping_ratio" in columns or (by_ratio and "drive.damping" not in columns):
+    if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
         mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
         given["damping"] = 2.0 * given["damping_ratio"] * mass * stiffness
     return given
 
 
-@cache
-def flags(name: str) -> tuple[str, ...]:
-    """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
-    one = simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=1.0,
-        plate_kinetic=1.0,
-        finger_kinetic=1.0,
-        mouse_velocity=1.0,
-        displacement=0.0,
-    )
-    refused = ("refused",) if name == "status" else ()
-    return (*one[name].attrs["flag_meanings"].split(), *refused)
+def _bad_arguments(status: NDArray[np.int8]) -> NDArray[Any]:
+    """Of each point which argument is bad, by its flag; empty where none is."""
+    names = np.array([name if name.startswith("bad_") else "" for name in flags("status")], object)
+    return names[status]
 
 
 def _one_by_one(inputs: Mapping[str, Any], count: int) -> Table:
     rows = [_numbers(_point(inputs, i)) for i in range(count)]
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    reasons = np.array([row.pop("reason") for row in rows], object)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]} | {"reason": reasons}
 
 
 def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:
@@ -132,13 +129,14 @@ def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:
     }
 
 
-def _numbers(given: Mapping[str, Any]) -> dict[str, float]:
+def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
     """What `evaluate` gives of one point."""
     try:
         motion = _motion(given)
-    except ValueError:
+    except ValueError as error:
         refused = {"status": flags("status").index("refused"), "ending": -1, "events": 0}
-        return dict.fromkeys(MEASURED, nan) | refused | {"transient_settled": False}
+        unsettled = {"transient_settled": False, "reason": str(error)}
+        return dict.fromkeys(MEASURED, nan) | refused | unsettled
     end = motion.ending
     failures = {"ok": 0, "stopped after": 1, "stopped at": 2}
     return {name.replace(".", "_"): value for name, value in motion.numbers().items()} | {
@@ -146,6 +144,7 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, float]:
         "ending": flags("ending").index((end.cycle or end.kind).replace("-", "_").replace(" ", "_"))
         - 1,
         "events": len(motion.events),
+        "reason": "",
     }
 
 
@@ -154,13 +153,16 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         Contact(
             given[f"{name}_kinetic"],
             given[f"{name}_static"],
-            given[f"{name}_curve"],
+            scaled_rows(given[f"{name}_curve"], given[f"{name}_kinetic"]),
             stiffness,
         )
         for name, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf))
     )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    start = ("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration")
+    start = (
+        *("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration"),
+        "settling_band",
+    )
     return simulate(
         Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
     )

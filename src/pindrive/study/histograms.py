@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from pindrive.quantity import counted
 from pindrive.study.plan import variable
 from pindrive.study.words import QUANTITY, axis_label, symbol
 from pindrive.style import PALETTE, SMALL, STYLE
@@ -45,10 +46,11 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         for axes in list(grid.flat)[count:]:
             axes.set_axis_off()
         for axes in grid[:, 0]:
-            axes.set_ylabel(f"designs of {found.count:,}".replace(",", " "))
+            axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
         title = fill(f"{name}: {_outcome(found)}", _WIDTH)
-        figure.suptitle(f"{title}\n{_scatter(found)}", x=0.008, ha="left", fontsize=8.0)
+        lines = filter(None, (title, _left_out(found), _scatter(found)))
+        figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=8.0)
     return figure
 
 
@@ -90,9 +92,9 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
                 clip_on=False,
                 zorder=6,
             )
-    missing = found.count - values.size
+    missing = found.designs - values.size
     if missing:
-        share = f"{100.0 * missing / found.count:.2g} % never"
+        share = f"{100.0 * missing / found.designs:.2g} % without"
         axes.annotate(
             share,
             (1.0, 1.0),
@@ -115,9 +117,17 @@ def _outcome(found: Robustness) -> str:
     said = " and ".join(demand.text().replace("_", " ") for demand, _ in found.shares)
     share = found.all_met
     return (
-        f"{100.0 * share.met / share.of:.1f} % of the designs have {said} "
-        f"(95 % interval {100.0 * share.low:.1f} to {100.0 * share.high:.1f} %)"
+        f"{share.text} of the designs have {said} "
+        f"(95 % interval {100.0 * share.low:.3f} to {100.0 * share.high:.3f} %)"
     )
+
+
+def _left_out(found: Robustness) -> str:
+    """How many draws are in no bar, as they cannot exist."""
+    if not found.refused:
+        return ""
+    drawn = counted(found.draws, "draw")
+    return f"left out, as contradictory: {100.0 * found.refused / found.draws:.2g} % of {drawn}"
 
 
 def _scatter(found: Robustness) -> str:

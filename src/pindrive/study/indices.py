@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
 
 RESAMPLES: Final = 500
+FEWEST_ROWS: Final = 128
 FEWEST: Final = 64
 """Rows that must be left where a number does not exist everywhere."""
 _CONFIDENCE: Final = 0.95
@@ -53,32 +54,33 @@ class Indices:
 
 
 def sobol_indices(
-    function: Function, ranges: Sequence[Distribution], count: int, seed: int = 1
+    function: Function, ranges: Sequence[Distribution], rows: int, seed: int = 1
 ) -> dict[str, Indices]:
     """The indices of every number that a function gives.
 
     Args:
         function: called with columns of points (keys, n).
         ranges: how each key is distributed, independently of the others.
-        count: rows of the design, a power of 2; (keys + 2) points each.
+        rows: of the design, a power of 2, at least 128; (keys + 2) points each.
         seed: of the Sobol' sequence and the bootstrap.
 
     Raises:
-        ValueError: count is no power of 2, or below 128.
+        ValueError: `rows` is no power of 2, or below 128.
     """
     from scipy.stats import qmc
 
-    if count < 128 or count & (count - 1):
-        raise ValueError(refusal("count", "a power of 2 and at least 128", repr(count)))
+    if rows < FEWEST_ROWS or rows & (rows - 1):
+        required = f"a power of 2 of at least {FEWEST_ROWS}"
+        raise ValueError(refusal("rows", required, repr(rows)))
     keys = len(ranges)
     rng = np.random.default_rng(seed)
-    parts = qmc.Sobol(2 * keys, scramble=True, rng=rng, bits=64).random(count).T
+    parts = qmc.Sobol(2 * keys, scramble=True, rng=rng, bits=64).random(rows).T
     drawn = np.array([ranges[i % keys].ppf(part) for i, part in enumerate(parts)])
     a, b = drawn[:keys], drawn[keys:]
     # B's column i in A, for each i, one after the other.
     mixed = np.concatenate([np.where(np.arange(keys)[:, None] == i, b, a) for i in range(keys)], 1)
     found = function(np.concatenate([a, b, mixed], axis=1))
-    designs = {name: values.reshape(keys + 2, count) for name, values in found.items()}
+    designs = {name: values.reshape(keys + 2, rows) for name, values in found.items()}
     return _estimate(designs, rng)
 
 

@@ -10,17 +10,20 @@ import numpy as np
 from pindrive.study.axis import Distribution, Linked, as_distribution
 from pindrive.study.evaluate import evaluate
 from pindrive.study.indices import Indices, sobol_indices
+from pindrive.study.links import with_links
 from pindrive.study.local import Elasticities, elasticities
-from pindrive.study.outputs import LEDGER, MEASURED, SCAN_OUTPUTS
-from pindrive.study.plan import COUNTS, with_links
+from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED
+from pindrive.study.plan import COUNTS
+from pindrive.study.refusals import Refusal, exist, refusals
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from pindrive.study.plan import Columns, Plan
 
+_SETTLED: Final = "transient_settled"
 USUAL_ROWS: Final = 8192
 USUAL_ROWS_OF_SCANS: Final = 256
 """A scan takes some ten thousand times as long as a release."""
@@ -80,17 +83,23 @@ class Influence:
     near: Elasticities | None
     """None of scans, which have no exact derivatives."""
     over: Mapping[str, Indices]
-    count: int
+    rows: int
     points: int
-    refused: int
-    """Points without a motion, or a scan."""
+    refusals: tuple[Refusal, ...]
+    """Points that cannot exist, as their values contradict each other; left out."""
+
+
+def askable(plan: Plan) -> tuple[str, ...]:
+    """The variables whose sensitivity may be asked for."""
+    return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
 
 
 def influence(
     plan: Plan,
     *,
     tolerances: bool = False,
-    count: int | None = None,
+    numbers: Sequence[str] = (),
+    rows: int | None = None,
     seed: int = 1,
     threads: int | None = None,
     tell: Callable[[int, int], None] = lambda done, total: None,
@@ -100,21 +109,24 @@ def influence(
     Args:
         plan: the study.
         tolerances: over [tolerances] instead of [axes].
-        count: rows of the design, a power of 2; 8192 unless given, of scans 256.
+        numbers: the variables that are asked for; all that exist unless given, of the energy ledger
+            those that the study names in its outputs.
+        rows: of the design, a power of 2, at least 128; 8192 unless given, of scans 256.
         seed: of the sequence and the bootstrap.
         threads: all cores unless given.
         tell: called with the points done and the points in all.
 
     Raises:
-        ValueError: nothing varies, or `count` is no power of 2.
+        ValueError: nothing varies, or `rows` is no power of 2.
     """
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
-    measured = (name for name in MEASURED if name not in LEDGER or name in plan.outputs)
-    outputs = SCAN_OUTPUTS if plan.page else (*measured, "transient_settled", "status")
-    if count is None:
-        count = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
-    refused = 0
+    usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
+    asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
+    outputs = (*asked, "status", "reason")
+    if rows is None:
+        rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
+    refused: tuple[Refusal, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
@@ -126,13 +138,12 @@ def influence(
             parts.append(evaluate(plan, columns, part.shape[1], outputs, threads))
             tell(min(begin + plan.at_a_time, total), total)
         found = {name: np.concatenate([part[name] for part in parts]) for name in outputs}
-        bad = found.pop("status") != 0
-        refused = int(bad.sum())
-        if "transient_settled" in found:
-            settled = found["transient_settled"].astype(float)
-            found["transient_settled"] = np.where(bad, np.nan, settled)
+        refused = refusals(plan, ranges.columns(plan, points), found.pop("reason"))
+        designs = exist(found.pop("status"))
+        if _SETTLED in found:
+            found[_SETTLED] = np.where(designs, found[_SETTLED].astype(float), np.nan)
         return found
 
-    over = sobol_indices(function, [*ranges.scatter.values()], count, seed)
+    over = sobol_indices(function, [*ranges.scatter.values()], rows, seed)
     near = None if plan.page else elasticities(plan, keys, ranges.links)
-    return Influence(keys, ranges, near, over, count, count * (len(keys) + 2), refused)
+    return Influence(keys, ranges, near, over, rows, rows * (len(keys) + 2), refused)

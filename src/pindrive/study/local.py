@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from pindrive.config import motion_of
-from pindrive.study.plan import base_value, variable
+from pindrive.study.links import base_value, exponents
+from pindrive.study.plan import variable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from pindrive.study.axis import Linked
     from pindrive.study.plan import Plan
+
+_WITHOUT: Final = ("motion.duration", "motion.settling_band")
+"""Keys along which the core has no derivatives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +38,8 @@ class Elasticities:
 def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
     """The elasticity of every number to each key at the device's own values.
 
-    What follows a key changes with it: damping, where the device file gives its ratio, and keys
-    that are linked. The derivatives are the core's own, on dual numbers.
+    What follows a key changes with it: damping, where the device file gives its ratio, curves, and
+    keys that are linked. The derivatives are the core's own, on dual numbers.
 
     Args:
         plan: whose device.
@@ -43,43 +47,56 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         links: keys that follow others.
     """
     motion = motion_of(plan.device)
-    shares = {key: _shares(plan, key, links) for key in keys}
-    known = {key: share for key, share in shares.items() if _has_size(plan, share)}
-    parameters = list(dict.fromkeys(name for share in known.values() for name in share))
-    gaps = {key: "it is zero or not given" for key in keys if key not in known}
+    changes, gaps = {}, {}
+    for key in keys:
+        followed = [key, *exponents(key, links)]
+        if key in _WITHOUT:
+            gaps[key] = "the core has none along it"
+        elif not base_value(plan.device, key) or not all(
+            isinstance(base_value(plan.device, name), float) for name in followed
+        ):
+            gaps[key] = "it is zero or not given"
+        else:
+            changes[key] = _changes(plan, key, links)
+    parameters = list(dict.fromkeys(name for change in changes.values() for name in change))
     numbers = {k.replace(".", "_"): v for k, v in motion.numbers().items()}
     slopes: dict[str, dict[str, float]] = {}
     if parameters:
-        found = motion.sensitivity([variable(key) for key in parameters])
+        found = motion.sensitivity(parameters)
         slopes = {k.replace(".", "_"): v for k, v in found.numbers.items()}
-        for key, share in known.items():
-            reasons = [found.gaps[variable(k)] for k in share if variable(k) in found.gaps]
+        for key, change in changes.items():
+            reasons = [found.gaps[name] for name in change if name in found.gaps]
             if reasons:
                 gaps[key] = reasons[0]
 
     def elasticity(number: str, key: str) -> float:
         value = numbers[number]
-        if key not in known or number not in slopes or not isfinite(value) or value == 0.0:
+        if key not in changes or number not in slopes or not isfinite(value) or value == 0.0:
             return nan
-        change = sum(
-            share * slopes[number][variable(name)] * base_value(plan.device, name)
-            for name, share in known[key].items()
-        )
-        return float(change / value)
+        slope = slopes[number]
+        return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
     return Elasticities(tuple(keys), numbers, table, motion.duration, gaps)
 
 
-def _shares(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
-    """How much of a per cent each parameter of the motion changes when a key changes by one."""
-    shares = {key: 1.0} if key != "drive.damping_ratio" else {"drive.damping": 1.0}
-    if plan.by_ratio and key in ("drive.mass", "drive.stiffness"):
+def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
+    """By how much each parameter of the motion changes, SI, where a key grows by its own size."""
+    drive = plan.device.drive
+    if key == "drive.damping_ratio":
+        return {"damping": drive.damping}
+    shares = exponents(key, links)
+    if plan.device.by_ratio and key in ("drive.mass", "drive.stiffness"):
         shares["drive.damping"] = 0.5  # b = 2 ζ sqrt(m k)
-    return shares | {name: 1.0 for name, link in links.items() if link.of == key}
-
-
-def _has_size(plan: Plan, share: Mapping[str, float]) -> bool:
-    """Whether a per cent of each of these is something, of which the core knows derivatives."""
-    values = [base_value(plan.device, key) for key in share]
-    return "motion.duration" not in share and all(isinstance(v, float) and v for v in values)
+    found = {}
+    for name, share in shares.items():
+        table, _, part = name.rpartition(".")
+        contact = {"plate": drive.plate, "finger": drive.finger}.get(table)
+        tied = contact and part == "static" and contact.static_friction == contact.kinetic
+        if tied and name != key:
+            continue  # one number with the kinetic friction: the core changes it along
+        found[variable(name)] = share * base_value(plan.device, name)
+        if contact and part == "kinetic":  # its curve keeps its shape
+            rows = enumerate(contact.curve or ())
+            found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}
+    return found

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
+from pindrive._core import settling_band
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.words import QUANTITY, axis_label, value, values
 from pindrive.style import GREY, PALETTE, SMALL, STYLE
@@ -91,7 +92,9 @@ def _common(panels: Sequence[Panel]) -> dict[str, float]:
 
 def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -> None:
     shown = {
-        name: number for name, number in fixed.items() if (name, number) != ("plate_load", 1.0)
+        name: number
+        for name, number in fixed.items()
+        if (name, number) not in (("plate_load", 1.0), ("settling_band", settling_band))
     }
     name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
     said = [name, values(shown, width), *view.links]

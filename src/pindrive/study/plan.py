@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pindrive.study.axis import Axis, Distribution, Grid, Linked
+from pindrive.study.links import with_links
 from pindrive.study.sample import Sample
 from pindrive.template import DRIVE, NUMBERS
 
@@ -77,8 +78,6 @@ class Plan:
     text: str
     """The study file, and the device file where it names one."""
     device: DeviceFile
-    by_ratio: bool
-    """Whether the device file gives its damping as a ratio, which then stays as it is."""
     dimensions: tuple[Dimension, ...]
     links: Mapping[str, Linked]
     outputs: tuple[str, ...]
@@ -87,10 +86,14 @@ class Plan:
     tolerances: Mapping[str, Distribution]
     tolerance_links: Mapping[str, Linked]
     demands: tuple[Demand, ...] = ()
-    tables: Mapping[str, Any] = field(default_factory=dict)
-    """The device as its file has it."""
     page: StudyPage | None = None
     """What is scanned at every point; None: every point is a release."""
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from, or reads when it is worked out."""
+        page = self.page.page.files.values() if self.page else ()
+        return (self.path, self.device.path, *page)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -119,7 +122,7 @@ class Plan:
     @property
     def values(self) -> dict[str, Any]:
         """The device's value of each key that has a part in this study, SI; None: not given."""
-        derived = "drive.damping" if self.by_ratio else "drive.damping_ratio"
+        derived = "drive.damping" if self.device.by_ratio else "drive.damping_ratio"
         return {
             key: value
             for key, value in self.device.values().items()
@@ -161,25 +164,3 @@ class Plan:
             )
         )
         return found
-
-
-def with_links(device: DeviceFile, columns: Columns, links: Mapping[str, Linked]) -> Columns:
-    """The columns, and those of the keys that follow one of them or a value of the device."""
-
-    def followed(key: str) -> NDArray[np.float64]:
-        return columns[key] if key in columns else np.asarray(base_value(device, key))
-
-    return columns | {key: link.times * followed(link.of) for key, link in links.items()}
-
-
-def base_value(device: DeviceFile, key: str) -> Any:
-    """What the device has for a key, in SI; for what it leaves out, what holds then."""
-    value = device.values()[key]
-    if value is not None:
-        return value
-    followed = {
-        "plate.static": "plate.kinetic",
-        "finger.static": "finger.kinetic",
-        "motion.velocity": "motion.mouse_velocity",
-    }
-    return device.values()[followed[key]] if key in followed else None

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import re
+import json
+import shlex
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pindrive import template
-from pindrive.quantity import significant
-from pindrive.study.evaluate import flags
+from pindrive.config import keys_meant
+from pindrive.quantity import counted, significant
+from pindrive.study.links import base_value
 from pindrive.study.outputs import NUMBERS, label
-from pindrive.study.plan import base_value
+from pindrive.study.points import flags
+from pindrive.study.refusals import why
 from pindrive.study.sweeping import human_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from rich.console import RenderableType
     from rich.table import Table
@@ -24,71 +27,68 @@ if TYPE_CHECKING:
     from pindrive.study.influence import Influence
     from pindrive.study.local import Elasticities
     from pindrive.study.plan import Plan
-    from pindrive.study.robust import Robustness, Share
+    from pindrive.study.refusals import Refusal
+    from pindrive.study.robust import Robustness, Share, WorstCase
     from pindrive.study.sweeping import Result
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
-_AS_OPTION = re.compile(r"^--set [^:]*: ")
-"""How `device_of` calls the place of a value that its file does not have."""
 _SLICE = 1 << 24
 """Points of which the status is read at a time."""
 
 
 def sweep_report(plan: Plan, done: Result) -> list[str]:
     """What a sweep came to, in lines."""
-    points, size = count(done.points), human_bytes(done.path.stat().st_size)
+    points, size = counted(done.points, "point"), human_bytes(done.path.stat().st_size)
     if not done.complete:
-        lines = [f"Stopped at {points} of {count(plan.size)} points; --resume goes on"]
+        of = counted(plan.size, "point")
+        lines = [f"Stopped at {count(done.points)} of {of}; --resume goes on"]
     elif done.worked_out:
         speed = count(round(done.worked_out / done.seconds))
         resumed = (
             "" if done.worked_out == done.points else f", {count(done.worked_out)} of them now"
         )
         lines = [
-            f"Wrote {done.path}: {points} points{resumed}, {size}, "
+            f"Wrote {done.path}: {points}{resumed}, {size}, "
             f"in {significant(done.seconds, 3)} s ({speed} a second)"
         ]
     else:
-        lines = [f"{done.path} is complete: {points} points, {size}"]
-    if done.points and done.settled >= 0:
-        lines.append(f"settled: {percent(done.settled, done.points)}")
+        lines = [f"{done.path} is complete: {points}, {size}"]
+    numbered = done.points - done.refused
+    if numbered and done.settled >= 0:
+        of_them = " of those with numbers" if done.refused else ""
+        lines.append(f"settled: {percent(done.settled, numbered)}{of_them}")
     if done.refused and done.complete:
-        found = ", ".join(f"{percent(n, done.points)} {name}" for name, n in _reasons(done))
-        lines.append(f"without numbers: {found} (see the variable status)")
-        if plan.page:
-            lines.append(f"the first of them: {_first_refusal(plan, done)}")
+        lines.append(f"without numbers: {percent(done.refused, done.points)}, by their status")
+        lines += [_why_without(plan, done, *status) for status in _statuses(done)]
     return lines
 
 
-def _first_refusal(plan: Plan, done: Result) -> str:
-    """Why the first point without a scan has none."""
+def _why_without(plan: Plan, done: Result, status: str, number: int, first: int) -> str:
+    """How many points have a status, and why the first of them has."""
+    columns = plan.columns(first, first + 1)
+    at = {key: float(values.ravel()[0]) for key, values in columns.items()}
+    reason = why(plan, at)
+    shown = f"{'' if number == 1 else ', the first'}: {reason}" if reason else ""
+    return f"  {percent(number, done.points)} {status}{shown}"
+
+
+def _statuses(done: Result) -> list[tuple[str, int, int]]:
+    """Each status but ok, at how many points it is, and the first of them; most first."""
     import h5py
 
-    from pindrive.study.scans import judged_at
-
-    with h5py.File(done.path, "r") as file:
-        first = int(np.flatnonzero(file["status"][()])[0])
-    at = {key: float(values[0]) for key, values in plan.columns(first, first + 1).items()}
-    try:
-        judged_at(plan, at)
-    except (ValueError, ArithmeticError, MemoryError) as error:
-        return _AS_OPTION.sub("", str(error).splitlines()[0])
-    return "it can be scanned by now"
-
-
-def _reasons(done: Result) -> list[tuple[str, int]]:
-    """Why points have no numbers, and how many of them, most first."""
-    import h5py
-
-    found = np.zeros(256, np.int64)
+    found: dict[int, tuple[int, int]] = {}
     with h5py.File(done.path, "r") as file:
         status = file["status"]
-        rows = max(1, _SLICE // max(1, status.size // status.shape[0]))
-        for first in range(0, status.shape[0], rows):
-            found += np.bincount(status[first : first + rows].ravel(), minlength=256)
+        inner = max(1, status.size // status.shape[0])
+        rows = max(1, _SLICE // inner)
+        for begin in range(0, status.shape[0], rows):
+            part = status[begin : begin + rows].ravel()
+            for flag, first, number in zip(*np.unique(part, True, False, True), strict=True):
+                before, place = found.get(int(flag), (0, begin * inner + int(first)))
+                found[int(flag)] = (before + int(number), place)
     meanings = flags("status")
-    named = [(meanings[i], int(found[i])) for i in np.flatnonzero(found) if i]
-    return sorted(named, key=lambda pair: -pair[1])
+    named = [(meanings[flag], *of) for flag, of in found.items() if flag]
+    return sorted(named, key=lambda of: -of[1])
 
 
 def influence_report(found: Influence) -> RenderableType:
@@ -149,16 +149,14 @@ def elasticity(value: float) -> str:
 
 def _notes(found: Influence) -> list[str]:
     """What the tables leave out, and from how much they come."""
-    design = f"{count(found.points)} points (Sobol' design of {count(found.count)} rows)"
+    design = f"{counted(found.points, 'point')} (Sobol' design of {counted(found.rows, 'row')})"
     lines = [
         f"{design}; ± half of the 95 % bootstrap interval; · below 0.005.",
         f"Elasticities hold over a fixed time, the {found.near.duration:.4g} s followed."
         if found.near
         else "No elasticities: a scan has no exact derivatives.",
     ]
-    if found.refused:
-        what = "motion" if found.near else "scan"
-        lines.append(f"{percent(found.refused, found.points)} of them have no {what}: refused.")
+    lines += _refused(found.refusals, found.points, "point")
     partly = [
         f"{label(n)} {100 * x.kept:.3g} %" for n, x in found.over.items() if 0.0 < x.kept < 1.0
     ]
@@ -180,15 +178,30 @@ def _notes(found: Influence) -> list[str]:
     return lines
 
 
+def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
+    """How many cannot exist and are left out, and why."""
+    if not found:
+        return []
+    number = sum(refusal.count for refusal in found)
+    said = f"cannot exist and {'is' if number == 1 else 'are'} left out"
+    lines = [f"{count(number)} of {counted(of, what)} ({percent(number, of)}) {said}:"]
+    for refusal in found:
+        first = "" if refusal.count == 1 else ", the first"
+        lines.append(f"  {count(refusal.count)}{first}: {refusal.reason}")
+    return lines
+
+
 def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
     """Spread of the watched numbers, yield, and the worst cases."""
     from rich.console import Group
+    from rich.text import Text
 
     tables: list[RenderableType] = [_spread(found)]
     if found.all_met:
         tables.append(_yield(found, found.all_met))
         tables.append(_worst_cases(plan, found))
-    return Group(*tables, *_draws(plan, found))
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _draws(plan, found))
+    return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
 
 
 def _spread(found: Robustness) -> Table:
@@ -203,24 +216,25 @@ def _spread(found: Robustness) -> Table:
         ends = np.quantile(known, QUANTILES) if known.size else np.full(len(QUANTILES), np.nan)
         shown = (quantity.digits(float(x)) for x in (found.own[name], *ends))
         unit = quantity.display_unit
-        made.add_row(label(name), *shown, unit, percent(known.size, found.count))
+        made.add_row(label(name), *shown, unit, percent(known.size, found.designs))
     return made
 
 
 def _yield(found: Robustness, all_met: Share) -> Table:
     from pindrive.report import new_table
 
-    made = new_table("Yield", "demand", ">met by", "95 % interval")
+    title = f"Yield: of {counted(found.designs, 'design')}"
+    made = new_table(title, "demand", ">met by", "95 % interval", ">without a number")
     for demand, share in found.shares:
-        made.add_row(demand.text(), *_share(share))
+        made.add_row(demand.text(), *_share(share), percent(share.without, share.of))
     if len(found.shares) > 1:
-        made.add_row("all", *_share(all_met), style="bold")
+        made.add_row("all", *_share(all_met), "", style="bold")
     return made
 
 
 def _share(share: Share) -> tuple[str, str]:
     low, high = 100.0 * share.low, 100.0 * share.high
-    return f"{100.0 * share.met / share.of:.3f} %", f"{low:.3f} to {high:.3f} %"
+    return share.text, f"{low:.3f} to {high:.3f} %"
 
 
 def _worst_cases(plan: Plan, found: Robustness) -> Table:
@@ -248,14 +262,22 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
 
 
 def _draws(plan: Plan, found: Robustness) -> list[str]:
-    lines = [f"{count(found.count)} independent random draws, seed {found.seed}."]
-    if found.refused:
-        what = "scan" if plan.page else "motion"
-        lines.append(f"{percent(found.refused, found.count)} of them have no {what}: refused.")
+    lines = [f"{counted(found.draws, 'independent random draw')}, seed {found.seed}."]
+    lines += _refused(found.refusals, found.draws, "draw")
+    if any(share.without for _, share in found.shares):
+        lines.append("A design without a number, such as one that never settles, meets no demand.")
+    if found.stopped:
+        stopped = counted(found.stopped, "design was", "designs were")
+        lines.append(f"{stopped} followed only up to the largest number of events.")
     for case in found.worst if plan.device.path != plan.path else ():
         given = " ".join(
-            f'--set {key}="{template.NUMBERS[key].written(value)}"'
-            for key, value in case.keys.items()
+            [
+                *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
+                *(
+                    f'--set {key}="{template.NUMBERS[key].written(value)}"'
+                    for key, value in case.keys.items()
+                ),
+            ]
         )
         command = (
             f"scan {plan.device.path} {plan.page.page.options}"
@@ -266,6 +288,15 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
     if not found.all_met:
         lines.append("No specification is given: write what is demanded in [specification].")
     return lines
+
+
+def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
+    """What the study sets of its device and the case leaves, as the command line takes it."""
+    for setting in plan.device.settings:
+        (key,) = keys_meant(setting.key)
+        if key not in case.keys:
+            value = setting.value
+            yield key, value if isinstance(value, str) else json.dumps(value)
 
 
 def count(number: int) -> str:

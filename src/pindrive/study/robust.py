@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.config import motion_of
+from pindrive.quantity import counted
 from pindrive.study.evaluate import evaluate, follow
 from pindrive.study.influence import Ranges, ranges_of
+from pindrive.study.refusals import Refusal, exist, refusals
 from pindrive.study.sample import Sample
 
 if TYPE_CHECKING:
@@ -38,20 +40,33 @@ _GENERATIONS_OF_SCANS: Final = 10
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A part of all designs, with its exact 95 % confidence interval (Clopper and Pearson 1934)."""
+    """A part of the designs that exist, with its exact 95 % confidence interval.
+
+    The interval is that of Clopper and Pearson 1934.
+    """
 
     met: int
     of: int
     low: float
     high: float
+    without: int = 0
+    """How many have no number to meet the demand with, such as one that never settles."""
+
+    @property
+    def text(self) -> str:
+        """The part for a person: "97.482 %", never all nor none by rounding."""
+        shown = f"{100.0 * self.met / self.of:.3f}"
+        if shown == "100.000" and self.met < self.of:
+            return "> 99.999 %"
+        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
 
     @classmethod
-    def of_draws(cls, met: int, of: int) -> Share:
-        """Of so many independent draws."""
+    def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
+        """Of so many independent draws of designs that exist, at least 1."""
         from scipy.stats import binomtest
 
         interval = binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
-        return cls(met, of, float(interval.low), float(interval.high))
+        return cls(met, of, float(interval.low), float(interval.high), without)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,18 +89,31 @@ class Robustness:
     """What `robustness` found."""
 
     ranges: Ranges
-    count: int
+    draws: int
     seed: int
     own: Mapping[str, float]
     """Numbers of the design itself."""
     values: Mapping[str, Values]
-    """Watched numbers of every draw; NaN where one does not exist."""
-    refused: int
+    """Watched numbers of every design that exists; NaN where it has none."""
+    refusals: tuple[Refusal, ...]
+    """Draws that cannot exist, as their values contradict each other: no designs."""
+    stopped: int
+    """Designs whose motion was stopped early, after too many events."""
     shares: tuple[tuple[Demand, Share], ...]
-    """For each demand, how many designs meet it."""
+    """For each demand, how many designs meet it; without a number a design does not."""
     all_met: Share | None
     """How many meet all of them: the yield."""
     worst: tuple[WorstCase, ...]
+
+    @property
+    def designs(self) -> int:
+        """Draws that exist."""
+        return self.draws - self.refused
+
+    @property
+    def refused(self) -> int:
+        """Draws that cannot exist."""
+        return sum(refusal.count for refusal in self.refusals)
 
 
 def robustness(
@@ -98,6 +126,9 @@ def robustness(
 ) -> Robustness:
     """Draw designs within the tolerances of a study and hold them against its specification.
 
+    What keeps its ratio to another value varies with it unless it has a tolerance of its own (see
+    `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted apart.
+
     Args:
         plan: a study with tolerances.
         count: independent random draws, at least 1; the confidence interval rests on them. 100 000
@@ -107,7 +138,7 @@ def robustness(
         tell: called with the points done and the points in all.
 
     Raises:
-        ValueError: there are no tolerances.
+        ValueError: there are no tolerances, or no draw can exist.
     """
     if not plan.tolerances:
         raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
@@ -120,7 +151,7 @@ def robustness(
 
     def numbers(points: Values) -> dict[str, Values]:
         columns = ranges.columns(plan, points)
-        return evaluate(plan, columns, points.shape[1], (*watched, "status"), threads)
+        return evaluate(plan, columns, points.shape[1], (*watched, "status", "reason"), threads)
 
     parts, drawn = [], []
     for begin in range(0, count, plan.at_a_time):
@@ -133,17 +164,29 @@ def robustness(
     table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     points = np.concatenate(drawn, axis=1)
 
+    refused = refusals(plan, ranges.columns(plan, points), table["reason"])
+    designs = exist(table["status"])
+    if not designs.any():
+        words, reason = counted(count, "draw"), refused[0].reason
+        raise ValueError(f"{plan.path}: of {words} none can exist: {reason}")
+    points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
+
     met = {demand: demand.met(table[demand.name]) for demand in plan.demands}
     every = np.logical_and.reduce([*met.values()]) if met else None
+    size = points.shape[1]
     return Robustness(
         ranges,
         count,
         seed,
         _own(plan, watched),
         {name: table[name] for name in watched},
+        refused,
         int(np.count_nonzero(table["status"])),
-        tuple((demand, Share.of_draws(int(m.sum()), count)) for demand, m in met.items()),
-        None if every is None else Share.of_draws(int(every.sum()), count),
+        tuple(
+            (d, Share.of_designs(int(m.sum()), size, int(np.isnan(table[d.name]).sum())))
+            for d, m in met.items()
+        ),
+        None if every is None else Share.of_designs(int(every.sum()), size),
         tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
     )
 
@@ -174,9 +217,9 @@ def _worst(
     low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
 
     def badness(excess: Values, status: Values) -> Values:
-        """Lower is worse; what never happens is worst, what has no motion does not count."""
+        """Lower is worse; what never happens is worst, what cannot exist does not count."""
         far = 1e6 * abs(demand.limit or 1.0)
-        return np.where(status != 0, far, -np.minimum(excess, far))
+        return np.where(exist(status), -np.minimum(excess, far), far)
 
     def at(parts: Values) -> Values:
         found = numbers(low + width * parts.reshape(len(spans), -1))

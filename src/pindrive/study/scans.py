@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.config import device_of
 from pindrive.cores import worker_count
 from pindrive.device.judging import judge
 from pindrive.device.scanning import scan
 from pindrive.study.outputs import variables
+from pindrive.study.points import device_at, flags
 from pindrive.study.scanned import SCANNED, scan_numbers
 from pindrive.study.workers import standing
-from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from pindrive.device.verdict import Judgement
     from pindrive.study.plan import Columns, Plan
 
-Row = dict[str, float]
+Row = dict[str, Any]
 
 _PORTION: Final = 8
 """Points that a process takes at a time, at most."""
@@ -39,8 +38,7 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     """
     if plan.page is None:
         raise ValueError(f"{plan.path}: has no page to scan; write what is on it in [page]")
-    given = [f"{key}={_written(key, value)}" for key, value in at.items()]
-    file = device_of(plan.device.path, plan.tables, given, whole=True)
+    file = device_at(plan, at)
     assert file.whole
     device, reading = file.whole.device(file.drive), file.whole.reading()
     scene = plan.page.scene(reading, device.array)
@@ -69,7 +67,8 @@ def evaluate_scans(
     else:
         done = standing(processes).spread(_rows, plan, portions)
     rows = [row for portion in done for row in portion]
-    return {name: np.array([row[name] for row in rows]) for name in outputs}
+    kinds = {"reason": object}
+    return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
 
 
 def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
@@ -78,17 +77,11 @@ def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
 
 def _row(plan: Plan, point: Mapping[str, float]) -> Row:
     """What a point comes to; one without a scan has a status and no numbers."""
-    from pindrive.study.evaluate import flags
-
     names = variables(SCANNED)
     try:
         found = scan_numbers(judged_at(plan, point))
-    except (ValueError, ArithmeticError, MemoryError):
-        return dict.fromkeys(names, nan) | {"status": flags("status").index("refused")}
-    return {name: found[quantity.name] for name, quantity in names.items()} | {"status": 0}
-
-
-def _written(key: str, value: float) -> str:
-    """A value as a device file has it, to the last bit."""
-    unit = NUMBERS[key].unit
-    return repr(value) if unit == "1" else f"{value!r} {unit}"
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        refused = flags("status").index("refused")
+        return dict.fromkeys(names, nan) | {"status": refused, "reason": str(error)}
+    given = {name: found[quantity.name] for name, quantity in names.items()}
+    return given | {"status": 0, "reason": ""}

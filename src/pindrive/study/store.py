@@ -20,8 +20,9 @@ import numpy as np
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
 from pindrive.output import OutputError, naming
 from pindrive.study import outputs
-from pindrive.study.evaluate import evaluate, flags
+from pindrive.study.evaluate import evaluate
 from pindrive.study.plan import variable
+from pindrive.study.points import flags
 from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
@@ -185,9 +186,18 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "source": f"pindrive {__version__}",
                 "study": plan.text,
                 **({"page": plan.page.page.words} if plan.page else {}),
+                **({"links": _links(plan)} if plan.links else {}),
                 "identity": identity(plan),
             }
         )
+
+
+def _links(plan: Plan) -> str:
+    """What follows varied keys, a line each."""
+    return "\n".join(
+        f"{key} = {link.times:g} × {link.of}{f' / {link.over}' if link.over else ''}"
+        for key, link in plan.links.items()
+    )
 
 
 def _fixed(plan: Plan) -> dict[str, float]:

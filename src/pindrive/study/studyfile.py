@@ -9,36 +9,46 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.config import TABLES, ConfigError, device_of, read_tables
+from pindrive.config import (
+    STUDY_KEYS,
+    TABLES,
+    ConfigError,
+    Setting,
+    device_of,
+    read_tables,
+    settings_of,
+)
 from pindrive.quantities import refusal
 from pindrive.study.axes import AxisReader, sweepable, written_axes
 from pindrive.study.axis import Axis, Distribution, Grid, Linked
 from pindrive.study.conflicts import conflicts
 from pindrive.study.demand import demands
+from pindrive.study.links import base_value, implied_links
 from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, known_output, usual_outputs
 from pindrive.study.page import StudyPage, read_page
-from pindrive.study.plan import CHUNK, SCANS, Dimension, Plan, base_value, variable
+from pindrive.study.plan import CHUNK, SCANS, Dimension, Plan, variable
 from pindrive.study.sample import MOST_SOBOL, Sample
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from os import PathLike
 
     from pindrive.config import DeviceFile
 
-_OWN: Final = (
-    *("name", "base", "page", "outputs", "zip", "chunk"),
-    *("axes", "sample", "tolerances", "specification"),
-)
+_OWN: Final = ("name", *STUDY_KEYS)
 _SAMPLE: Final = ("method", "count", "seed")
 _TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to vary in [axes]'
 MOST_POINTS: Final = 1 << 48
 """Points of a study: a file of petabytes."""
 
 
-def load_study(path: str | PathLike[str]) -> Plan:
-    """The study file at `path`.
+def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
+    """The study file at `path`, its device with single values set otherwise.
+
+    Args:
+        path: a TOML file that names a device, or holds one, and says what to vary.
+        overrides: "key=value" each, as for `pindrive.config.load`; after those in its table [set].
 
     Raises:
         ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
@@ -46,16 +56,22 @@ def load_study(path: str | PathLike[str]) -> Plan:
     """
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
+    if not tables.keys() & {*STUDY_KEYS} and tables.keys() & {*TABLES}:
+        raise ConfigError(
+            [
+                f"{file}: is a device file; a study names it, base = {quoted(file.name)}, and says "
+                "what to vary in [axes] or [tolerances]"
+            ]
+        )
     problems = _unknown(tables, file)
     page = _page(tables, file, problems)
-    device, text, given = _device(tables, file)
+    device, text = _device(tables, file, overrides)
     reader = _Reader(str(file), tables, device, problems)
     plan = Plan(
         path=file,
         name=reader.text("name") or device.name,
         text=text,
         device=device,
-        by_ratio="damping_ratio" in given["drive"],
         dimensions=reader.dimensions,
         links=reader.links,
         outputs=reader.outputs(),
@@ -63,7 +79,6 @@ def load_study(path: str | PathLike[str]) -> Plan:
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
         demands=demands(reader.table("specification"), str(file), problems, reader.among),
-        tables=given,
         page=page,
     )
     problems += conflicts(plan, str(file))
@@ -100,9 +115,10 @@ def _page(tables: Mapping[str, Any], file: Path, problems: list[str]) -> StudyPa
 
 
 def _device(
-    tables: Mapping[str, Any], file: Path
-) -> tuple[DeviceFile, str, dict[str, dict[str, Any]]]:
-    """The device, the text of all files read, and the tables that describe it."""
+    tables: Mapping[str, Any], file: Path, overrides: Iterable[str]
+) -> tuple[DeviceFile, str]:
+    """The device, and the text of all that describes it."""
+    settings, problems = settings_of(overrides)
     text = file.read_text("utf-8-sig")
     given, source = {k: v for k, v in tables.items() if k in TABLES}, file
     if "base" in tables:
@@ -114,7 +130,25 @@ def _device(
         text = f"{text.rstrip()}\n\n# ---- {tables['base']} ----\n\n{source.read_text('utf-8-sig')}"
     elif not given:
         raise ConfigError([f'{file}: has no device; write base = "device.toml" at the top'])
-    return device_of(source, given, whole="page" in tables), text, given
+    if settings:
+        said = "\n".join(f"# {setting.place} = {setting.value}" for setting in settings)
+        text = f"{text.rstrip()}\n\n{said}\n"
+    device = device_of(
+        source,
+        given,
+        [*_settings(tables, file), *settings],
+        whole="page" in tables,
+        problems=problems,
+    )
+    return device, text
+
+
+def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
+    """What its table [set] sets of the device."""
+    given = tables.get("set", {})
+    if not isinstance(given, dict):
+        raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
+    return [Setting(key, value, f"{file}: set") for key, value in written_axes(given)]
 
 
 class _Reader:
@@ -127,9 +161,9 @@ class _Reader:
         self._problems, self._scans = problems, "page" in tables
         self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
         axes = self._axes("axes")
-        self.links = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
+        self.links = self._links(axes)
         tolerances = self._axes("tolerances")
-        self.tolerance_links = {k: v for k, v in tolerances.items() if isinstance(v, Linked)}
+        self.tolerance_links = self._links(tolerances)
         self.tolerances = {
             k: axis for k, axis in tolerances.items() if isinstance(axis, Distribution)
         }
@@ -178,6 +212,11 @@ class _Reader:
             except ValueError as error:
                 self._problems.append(str(error))
         return tuple(dict.fromkeys((*found, "status")))
+
+    def _links(self, axes: Mapping[str, Axis]) -> dict[str, Linked]:
+        """The keys that follow others: those written, and those that keep their ratio."""
+        written = {key: axis for key, axis in axes.items() if isinstance(axis, Linked)}
+        return written | implied_links(self._device, axes.keys(), self._scans)
 
     # ---- axes ------------------------------------------------------------------------------------
 

@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pindrive.cores import worker_count
-from pindrive.output import OutputError, naming
+from pindrive.kinds import STUDY_NETCDF
+from pindrive.output import Output, OutputError, check_outputs, check_unread, naming
+from pindrive.quantity import counted
 from pindrive.study.journal import Journal, Tally, difference
 from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
 from pindrive.study.workers import DIED, workers
@@ -61,21 +63,26 @@ def sweep(
 
     Args:
         plan: the study.
-        target: a NetCDF file; one that is there is replaced when the new one is whole.
+        target: a NetCDF file.
         resume: go on with what an interrupted run left, if there is any.
-        restart: throw away what an interrupted run left.
+        restart: throw away what an interrupted run left; an earlier study at `target` is replaced
+            when the new one is whole.
         stop_after: stop when at least so many points are done; `resume` goes on.
         work: how chunks are worked out; on all cores unless given.
         tell: called after each chunk with the points done and the points in all.
 
     Raises:
-        OutputError: an interrupted run is there and neither `resume` nor `restart` is given, it is
-            of another study, the disk is full or cannot be written. Finished chunks are kept.
+        OutputError: an interrupted run or an earlier study is there and neither `resume` nor
+            `restart` is given, it is of another study, another file is there, or the disk is full
+            or cannot be written. Finished chunks are kept.
     """
     started = perf_counter()
     if target.exists() and not target.is_file():
         raise OutputError(f"{target}: cannot be written: not a regular file")
     part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
+    check_outputs([Output(target, STUDY_NETCDF)], plan.inputs, consent=resume or restart)
+    for path in (part, notes):
+        check_unread(path, plan.inputs)
     if resume and not notes.exists() and _is_complete(target, plan):
         return Result(target, plan.size, 0, *_counted(target, plan), 0.0, True)
     _check_target(target, notes, resume or restart)
@@ -207,9 +214,16 @@ def _keeping(part: Path, journal: Journal) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(
-            f"{part}: cannot be written: {reason}; {len(journal.done)} finished chunks are kept, "
-            "--resume goes on with them"
+            f"{part}: cannot be written: {reason}; {_kept(len(journal.done))}"
         ) from error
+
+
+def _kept(chunks: int) -> str:
+    """What an interrupted run leaves."""
+    if not chunks:
+        return "no chunk was finished yet"
+    finished = counted(chunks, "finished chunk is", "finished chunks are")
+    return f"{finished} kept, --resume goes on with {'it' if chunks == 1 else 'them'}"
 
 
 def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
@@ -230,7 +244,7 @@ def _is_complete(target: Path, plan: Plan) -> bool:
             found: Any = file.attrs.get("identity")
         written = json.loads(found)
     except (OSError, ValueError, TypeError):
-        raise OutputError(f"{target}: is there and is no study; --restart replaces it") from None
+        raise OutputError(f"{target}: is damaged; --restart replaces it") from None
     if written != plan.identity():
         what = difference(written, plan.identity())
         raise OutputError(f"{target}: holds another study: {what}; --restart replaces it")

@@ -64,8 +64,9 @@ class View:
 
         self.path = str(path)
         try:
-            with open(path, "rb"):
-                pass  # says more of what is wrong than HDF5 does
+            with open(path, "rb") as file:  # says more of what is wrong than HDF5 does
+                if not file.read(4) == b"\x89HDF":
+                    raise ValueError("it is no NetCDF file; `pindrive sweep` writes one of a study")
             self.data: xr.Dataset = xr.open_dataset(path, engine="h5netcdf")
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
@@ -92,6 +93,7 @@ class View:
         links = json.loads(self.data.attrs["identity"])["links"]
         self.links = [
             f"{words(variable(key))} = {link['times']:g} × {words(variable(link['of']))}"
+            + (f" / {words(variable(link['over']))}" if link["over"] else "")
             for key, link in links.items()
         ]
 
