@@ -115,7 +115,7 @@ def test_wider_band_settles_no_later() -> None:
 def test_steady_motion_settles_where_it_begins() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
     motion = Release(drive, 0.1, 1.5e-3).run()
-    assert motion.transient.settling_time == motion.ending.since > 0
+    assert motion.transient.settling_time == motion.ending.steady_since > 0
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
     motion = Release(drive, 0.1, 1.5e-3).run()
     ending = motion.ending
     assert ending.cycle == cycle
-    t = ending.since + np.linspace(0.0, ending.period, SAMPLES)
+    t = ending.steady_since + np.linspace(0.0, ending.period, SAMPLES)
     x = motion.position(t)
     assert ending.position == pytest.approx((x.max() + x.min()) / 2, abs=1e-10)
     assert ending.amplitude == pytest.approx((x.max() - x.min()) / 2, abs=1e-10)

@@ -26,17 +26,19 @@ int events_at_end(const Segment<T>& segment) {
 
 /// Follows one pin and measures its motion. `segments` is a container that the caller lends for the
 /// meantime: what it held is lost, and once it has grown large enough nothing is allocated.
-template <class T, class Segments>
-Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments) {
+template <class T, class Segments, class GoOn = Unattended>
+Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments,
+                     GoOn go_on = {}) {
   Summary<T> summary;
   segments.clear();
   summary.outcome = simulate(drive, inputs, [&](const Segment<T>& segment) {
     segments.push_back(segment);
     summary.events += events_at_end(segment);
+    return go_on();
   });
   const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
-  summary.duration = duration_of(motion);
-  summary.transient = Measurement<T>(motion, summary.duration).transient(band);
+  summary.duration = duration_of(motion, go_on);
+  summary.transient = Measurement<T, GoOn>(motion, summary.duration, go_on).transient(band);
   return summary;
 }
 

@@ -32,8 +32,13 @@ struct Transient {
   T swing{none};          ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
   T first_reversal_time{none};                          ///< t_1, s
-  T settling_time{none};                                ///< s
-  T peak_stretch{none}, peak_stretch_rate{none};        ///< largest of a compliant finger's: m, m/s
+  T settling_time{none};                                ///< from then on within the band, s
+  T rest_time{none};  ///< from then on at rest, s; infinite if it never comes to rest
+  T last_event_time{
+      none};             ///< of the last change at a contact, s; 0 without any after the release,
+                         ///< infinite where they go on for ever
+  T steady_since{none};  ///< when a steady oscillation began, s
+  T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
   ContactUse<T> plate, finger;
@@ -78,10 +83,11 @@ void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, 
 }
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
-template <class T>
+template <class T, class GoOn = Unattended>
 class Measurement {
  public:
-  Measurement(const Motion<T>& motion, T duration) : motion_(motion), duration_(duration) {}
+  Measurement(const Motion<T>& motion, T duration, GoOn go_on = {})
+      : motion_(motion), duration_(duration), go_on_(go_on) {}
 
   Transient<T> transient(T band) const {
     Transient<T> result;
@@ -89,6 +95,7 @@ class Measurement {
     first_reversal(result);
     ending(result);
     result.settling_time = settled_after(result.end_position, band);
+    rest_and_events(result);
     contacts(result);
     return result;
   }
@@ -132,7 +139,7 @@ class Measurement {
     int direction = 0;
     bool more = true;
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > duration_) return;
+      if (segment.begin > duration_ || !go_on_()) return;
       const Flow<T>& flow = segment.flow;
       const int start = heading(flow);
       if (direction * start < 0 || (direction != 0 && start == 0))
@@ -187,7 +194,7 @@ class Measurement {
     using std::isnan;
     const T until = std::min(isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > until) break;
+      if (segment.begin > until || !go_on_()) break;
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
       if (from > to || (from > 0 && from == to)) continue;
@@ -233,6 +240,7 @@ class Measurement {
     }
     T low = never, high = -never;
     for (const Segment<T>& segment : motion_) {
+      if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
       highest_and_lowest(segment, segment.flow.position, T(0), segment.end - segment.begin,
                          [&](T, T position) {
@@ -244,17 +252,44 @@ class Measurement {
     result.amplitude = (high - low) / 2;
   }
 
+  /// The three ends of a motion that are no settling: at rest, steady, without further events.
+  void rest_and_events(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.end == End::moving) return;
+    result.steady_since = outcome.steady_since;
+    result.rest_time = outcome.end == End::resting ? rest_begin() : never;
+    result.last_event_time = T(0);
+    const Segment<T>* segment = motion_.end();
+    while (segment != motion_.begin() && go_on_()) {
+      --segment;
+      if (segment->event.plate == Kind::none && segment->event.finger == Kind::none) continue;
+      const bool repeats = outcome.cycles() && !(segment->begin < outcome.cycle_begin);
+      result.last_event_time = repeats ? never : segment->end;
+      return;
+    }
+  }
+
+  /// Rest is one, however many segments the rows of inputs make of it.
+  T rest_begin() const {
+    const Segment<T>* segment = std::prev(motion_.end());
+    const auto still = [](const Segment<T>& before) {
+      return before.flow.position.constant() || !(before.end > before.begin);
+    };
+    while (segment != motion_.begin() && still(*std::prev(segment))) --segment;
+    return segment->begin;
+  }
+
   T settled_after(T x_end, T band) const {
     using std::abs;
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.end == End::moving) return Transient<T>::none;
-    T since = outcome.since;
+    T since = outcome.steady_since;
     if (outcome.end == End::resting || outcome.end == End::decaying) {
       const T width = band * abs(motion_.begin()->flow.position.start - x_end);
       // The last time outside the band counts: the segments are looked at from the end.
       const Segment<T>* segment = motion_.end();
       do since = entry(*--segment, x_end, width);
-      while (since == 0 && segment != motion_.begin());
+      while (since == 0 && segment != motion_.begin() && go_on_());
     }
     return since <= duration_ && since < never ? since : Transient<T>::none;
   }
@@ -363,12 +398,13 @@ class Measurement {
           result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
           result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
         }
-      if (!skin) return;
+      if (!skin) return go_on_();
       result.finger.dissipated += times * skin_loss(segment, from, to, whole);
       const Oscillator<T>& oscillator = segment.flow.oscillator;
       const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
       peak(result.peak_stretch, segment, stretch, from, to);
       peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
+      return go_on_();
     });
   }
 
@@ -422,12 +458,13 @@ class Measurement {
 
   const Motion<T>& motion_;
   T duration_;
+  GoOn go_on_;
 };
 
 /// The duration that was asked for or, without one, long enough to see the ending: the decay of the
 /// slowest mode to a thousandth and until settled, or a few periods of what lasts.
-template <class T>
-T duration_of(const Motion<T>& motion) {
+template <class T, class GoOn = Unattended>
+T duration_of(const Motion<T>& motion, GoOn go_on = {}) {
   using std::isfinite;
   using std::log;
   using std::sqrt;
@@ -435,18 +472,19 @@ T duration_of(const Motion<T>& motion) {
   constexpr T never = std::numeric_limits<T>::infinity();
   const Outcome<T>& outcome = motion.outcome();
   const T period = T(6.283185307179586) / sqrt(motion.drive().stiffness / motion.drive().mass);
+  const T last_begin = std::prev(motion.end())->begin;
   switch (outcome.end) {
     case End::resting:
-      return std::max(outcome.since * T(1.25), period);
+      return std::max(last_begin * T(1.25), period);
     case End::decaying: {
       const T rate = -std::prev(motion.end())->flow.oscillator.slowest_rate();
-      const T settled = Measurement<T>(motion, never).settling_time(T(settling_band));
-      const T decayed = outcome.since + period + log(T(1000)) / rate;
+      const T settled = Measurement<T, GoOn>(motion, never, go_on).settling_time(T(settling_band));
+      const T decayed = last_begin + period + log(T(1000)) / rate;
       return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
     }
     case End::free:
     case End::grazing:
-      return outcome.since + 3 * outcome.period;
+      return outcome.steady_since + 3 * outcome.period;
     case End::stick_slip:
     case End::limit_cycle:
       return outcome.until + 3 * outcome.period;

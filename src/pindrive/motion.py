@@ -83,8 +83,7 @@ class Motion:
         """How it ends, and after how long, in a line."""
         return (
             f"<Motion of {self.duration:.6g} s, {len(self.events)} events, "
-            f"{self.ending.kind} since {self.ending.since:.6g} s, "
-            f"settling time {self.transient.settling_time:.6g} s>"
+            f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s>"
         )
 
     # ---- the motion over time --------------------------------------------------------------------

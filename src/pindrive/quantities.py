@@ -327,6 +327,18 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
         source=f"{PAPER}, the time of the transitional period",
     ),
     Quantity(
+        "transient.rest_time",
+        "t_r",
+        "s",
+        "from then on at rest for good; infinite for a motion that never comes to rest",
+    ),
+    Quantity(
+        "transient.last_event_time",
+        "t_e",
+        "s",
+        "last change at a contact; 0 without any, infinite where they go on for ever",
+    ),
+    Quantity(
         "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"
     ),
     Quantity(
@@ -348,7 +360,7 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
 
 ENDING: Final[tuple[Quantity, ...]] = (
     Quantity("ending.position", "x_end", "m", "resting place, or middle of the final oscillation"),
-    Quantity("ending.since", "t_end", "s", "since when the motion is at rest or steady"),
+    Quantity("ending.steady_since", "t_end", "s", "when the final oscillation began"),
     Quantity("ending.amplitude", "X_end", "m", "amplitude of the final oscillation"),
     Quantity("ending.period", "T_end", "s", "period of the final oscillation"),
 )

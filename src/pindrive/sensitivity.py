@@ -167,7 +167,7 @@ class _Derivative:
 
         def exists(name: str) -> bool:
             known = at.get(_KNOWN_AT.get(name, ""), duration)
-            ends = name.startswith("ending.") or name == "transient.settling_time"
+            ends = name.startswith("ending.") or name in _OF_THE_ENDING
             if not (isfinite(at[name]) and known < self.course_until):
                 return False
             if ends and not self._same_ending:
@@ -199,6 +199,8 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
     )
 
 
+_OF_THE_ENDING = ("transient.settling_time", "transient.rest_time", "transient.last_event_time")
+
 _KNOWN_AT = {
     f"transient.{name}": f"transient.{time}"
     for name, time in {
@@ -220,7 +222,7 @@ def _numbers(core: _core.Motion | _core.Derivative, duration: float) -> dict[str
     transient = core.transient(duration, _core.settling_band)
     ending = {
         "position": transient.pop("end_position"),
-        "since": core.since,
+        "steady_since": core.steady_since,
         "amplitude": transient.pop("amplitude"),
         "period": core.period,
     }

@@ -250,7 +250,7 @@ def steady_and_rest() -> Exhibit:
             "printed_steady": ("place", printed.periods_to_steady(r)[0]),
             "rest_after": ("finger", formulas.periods_to_rest(rest, finger)),
             "printed_rest": ("finger", printed.periods_to_rest(rest, finger)),
-            "simulated_rest": ("finger", found["ending_since"].to_numpy() / period),
+            "simulated_rest": ("finger", found["transient_rest_time"].to_numpy() / period),
         },
         coords={
             "place": _plain(places, "place"),
