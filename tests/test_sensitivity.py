@@ -160,7 +160,7 @@ def course_of(motion: Motion) -> list[object]:
 
 
 @given(releases())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_random_motions_against_differences(release: Release) -> None:
     values = {
         "mass": release.drive.mass,

@@ -44,6 +44,25 @@ struct Transient {
   ContactUse<T> plate, finger;
 };
 
+/// Calls visit(τ, value) where a vibration without a line turns between two times. Times and values
+/// follow from its start: at `from` what is left of it may have fewer digits.
+template <class T, class Visitor>
+void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
+  using std::exp;
+  using std::floor;
+  const Path<T> slope = path.derivative(oscillator);
+  const int side = side_after_start(oscillator, slope);
+  const Zeros<T> zeros = oscillator.zeros(slope.value, slope.slope);
+  if (side == 0 || !(zeros.first < to)) return;
+  const T reach = side * oscillator.reach(slope.value, slope.slope);
+  T count = zeros.first > from ? T(0) : floor((from - zeros.first) / zeros.spacing);
+  for (T tau; (tau = zeros.first + count * zeros.spacing) < to; count += T(1)) {
+    if (!(tau > from)) continue;
+    const bool even = count / 2 == floor(count / 2);
+    visit(tau, path.centre() + (even ? reach : -reach) * exp(oscillator.alpha() * tau));
+  }
+}
+
 /// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
 /// them.
 template <class T, class Visitor>
@@ -51,20 +70,18 @@ void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visit
   visit(from, path.at(segment.after(from), from));
   if (path.constant() || !(to > from)) return;
   const Oscillator<T>& oscillator = segment.flow.oscillator;
-  const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
-  const Path<T> slope = rest.derivative(oscillator);
-  const int side = side_after_start(oscillator, slope);
-  // A vibration without a line turns at a distance from its centre that is known.
-  const bool vibrates = path.straight() && oscillator.oscillates();
-  T reach = vibrates ? side * oscillator.reach(slope.value, slope.slope) : T(0);
-  using std::exp;
-  if (side != 0)
-    each_root(oscillator, slope, side, to - from, [&](T tau) {
-      visit(from + tau, vibrates ? rest.centre() + reach * exp(oscillator.alpha() * tau)
-                                 : rest.at(oscillator, tau));
-      reach = -reach;
-      return true;
-    });
+  if (path.straight() && oscillator.oscillates()) {
+    turns(oscillator, path, from, to, visit);
+  } else {
+    const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
+    const Path<T> slope = rest.derivative(oscillator);
+    const int side = side_after_start(oscillator, slope);
+    if (side != 0)
+      each_root(oscillator, slope, side, to - from, [&](T tau) {
+        visit(from + tau, rest.at(oscillator, tau));
+        return true;
+      });
+  }
   visit(to, path.at(segment.after(to), to));
 }
 
