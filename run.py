@@ -325,17 +325,22 @@ def test(arguments: list[str]) -> int:
 
 
 def explore(arguments: list[str]) -> int:
-    """The tests of random cases, with seeds that `test` does not draw: SEED, or a new one, and on."""
+    """The tests of random cases with seeds that `test` does not draw, from SEED or a new one on."""
     if len(arguments) > 2 or not all(argument.isdecimal() for argument in arguments):
         stop(f"explore takes a count and a seed, whole numbers, not {' '.join(arguments)!r}")
     count = int(arguments[0]) if arguments else 10
     first = int(arguments[1]) if len(arguments) > 1 else secrets.randbelow(10**9)
     install({"test"})
+    files = [
+        p
+        for p in sorted((ROOT / "tests").glob("test_*.py"))
+        if "hypothesis" in p.read_text("utf-8")
+    ]
     failed = []
     for seed in range(first, first + count):
         print(f"run.py: seed {seed}", flush=True)
         profile = ("-m", "hypothesis", "--hypothesis-profile=explore", f"--hypothesis-seed={seed}")
-        if status := run("python", "-m", "pytest", "-q", *profile):
+        if status := run("python", "-m", "pytest", "-q", *profile, *files):
             failed.append(seed)
             if status != 1:  # of pytest: a test failed
                 return status

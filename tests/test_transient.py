@@ -37,10 +37,14 @@ def test_numbers_against_samples(release: Release) -> None:
     # Between two samples the position changes by this at most.
     near = 2 * step * np.abs(v).max() + 1e-13 * size
     transient = motion.transient
-
     turns = turning_points(t, v)
     outward = np.sign(motion.displacement or motion.initial_velocity or release.mouse_velocity)
-    if transient.peak_time > 0:
+
+    def visible(time: float) -> bool:
+        """Whether samples can tell the sign of the velocity before it vanishes from rounding."""
+        return bool(abs(motion.velocity(max(time - step, 0.0))) > 1e-12 * np.abs(v).max())
+
+    if transient.peak_time > 0 and visible(transient.peak_time):
         assert transient.peak_displacement * outward >= motion.displacement * outward - 1e-15
         assert transient.peak_time == pytest.approx(t[turns[0]], abs=2 * step)
         assert transient.peak_displacement == pytest.approx(x[turns[0]], abs=near)

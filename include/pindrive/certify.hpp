@@ -252,7 +252,8 @@ class Certifier {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     std::array<typename Guard<T>::Flatness, 4> flatness;
     for (int i = 0; i < stage.count; ++i)
-      flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moved, to.tau - from.tau);
+      flatness[i] =
+          stage.watches[i].guard.flatness(oscillator, from.moved, from.tau, to.tau - from.tau);
     State before = from;
     const auto follow = [&](const State& now) {
       for (int i = 0; i < stage.count; ++i) {

@@ -31,12 +31,26 @@ class Guard {
   };
   /// Over a length from a time on. Both derivatives oscillate freely, and a free oscillation y stays
   /// below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0: its energy
-  /// (y'² + ω₀² y²)/2 changes by 2α y'².
-  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T length) const {
+  /// (y'² + ω₀² y²)/2 changes by 2α y'². Where two real rates lie far apart, each wave is bounded by
+  /// itself: the rounding of their sum would count as much of the fast one.
+  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T from,
+                    T length) const {
     using std::abs;
     using std::exp;
     using std::sqrt;
     if (!path_.oscillates()) return {};
+    if (!oscillator.oscillates() && 2 * oscillator.omega() > abs(oscillator.alpha())) {
+      const T one = oscillator.slowest_rate(), other = oscillator.omega0_squared() / one;
+      Flatness found;
+      const auto add = [&](T rate, T wave) {
+        const T largest = abs(wave) * exp(rate * (rate < 0 ? from : from + length));
+        found.third += abs(rate * rate * rate) * largest;
+        found.fourth += abs(rate * rate * rate * rate) * largest;
+      };
+      add(one, (path_.slope - other * path_.value) / (one - other));
+      add(other, (path_.slope - one * path_.value) / (other - one));
+      return found;
+    }
     const T bend = oscillator.bend(path_.value, path_.slope);
     const T y = path_.value + path_.value * moved.decline + path_.slope * moved.gain;
     const T y1 = path_.slope + path_.slope * moved.decline + bend * moved.gain;

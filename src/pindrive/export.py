@@ -90,7 +90,7 @@ def _units(name: str, value: object) -> str | list[str]:
 
 
 def _finite(value: Any) -> Any:
-    """`value` with null for NaN and "Infinity" for infinity, which JSON does not have as numbers."""
+    """`value` with null for NaN and the text "Infinity" for infinity, which JSON lacks."""
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

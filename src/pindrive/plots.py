@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive._core import settling_band
 from pindrive.captions import NAME, duration, outcome, parameters, short, stuck_name
 from pindrive.drive import Profile
-from pindrive.style import GREY, PALETTE, SMALL, STYLE, save
+from pindrive.style import GREY, PALETTE, SMALL, STYLE, Figure, save
 from pindrive.trace import MM, Trace
 
 if TYPE_CHECKING:

@@ -263,7 +263,12 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         rows = _entry(numbers, _TABLES[table])
         if int(index) >= len(rows):
             raise ValueError(refusal("parameter", f"one of {len(rows)} rows of {table}", name))
-        return [(*_TABLES[table], int(index), int(column in ("force", "value")))]
+        place = (*_TABLES[table], int(index), int(column in ("force", "value")))
+        if column != "time":
+            return [place]
+        # The time of a step is that of both its rows.
+        time = rows[int(index)][0]
+        return [(*_TABLES[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
     if name not in _PLACES:
         known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
@@ -323,7 +328,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and stiffness > 0.0
         and contacts
         and increase(mouse_velocity)
-        and increase(plate_load)
+        and all(before[0] <= after[0] for before, after in pairwise(plate_load))
         and all(load >= 0.0 for _, load in plate_load)
         and not abs(stretch) * finger[2] > finger[1]
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import baseline
 from pindrive.paper.exhibit import Exhibit, page, tidy
 from pindrive.paper.reading import listed, trend
@@ -58,7 +58,7 @@ def curves() -> xr.Dataset:
     values = np.array([np.linspace(p.least, p.most, POINTS) for p in PARAMETERS])
     columns: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
     for parameter, along in zip(PARAMETERS, values, strict=True):
-        found = simulate_batch(**{**baseline.DRIVE, parameter.argument: along})
+        found = batched({**baseline.DRIVE, parameter.argument: along})
         for name in names:
             columns[name].append(found[name].to_numpy())
     dims = ("parameter", "point")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pindrive.batch import simulate_batch
+from pindrive.batch import batched
 from pindrive.drive import Contact, Drive, Profile
-from pindrive.motion import Motion, simulate
+from pindrive.motion import Motion, simulated
 from pindrive.study.outputs import LEDGER, MEASURED
 from pindrive.study.plan import variable
 
@@ -62,7 +62,7 @@ def evaluate(
         given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
         given["mass"] = np.broadcast_to(given["mass"], (count,))
         energy = not set(LEDGER).isdisjoint(outputs)
-        found = simulate_batch(**given, energy=energy, threads=threads)
+        found = batched(given, energy=energy, threads=threads)
         table = {name: found[name].values for name in outputs}
     return {name: table[name] for name in outputs}
 
@@ -106,15 +106,8 @@ def _inputs(device: DeviceFile, by_ratio: bool, columns: Columns) -> dict[str, A
 @cache
 def flags(name: str) -> tuple[str, ...]:
     """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
-    one = simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=1.0,
-        plate_kinetic=1.0,
-        finger_kinetic=1.0,
-        mouse_velocity=1.0,
-        displacement=0.0,
-    )
+    names = ("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic", "mouse_velocity")
+    one = batched({**dict.fromkeys(names, 1.0), "displacement": 0.0})
     refused = ("refused",) if name == "status" else ()
     return (*one[name].attrs["flag_meanings"].split(), *refused)
 
@@ -161,6 +154,6 @@ def _motion(given: Mapping[str, Any]) -> Motion:
     )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
     start = ("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration")
-    return simulate(
+    return simulated(
         Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
     )
