@@ -3,6 +3,8 @@
 
     python3 run.py                    simulate examples/tactile-mouse.toml and draw it
     python3 run.py test [ARG...]      run the tests; arguments go to pytest
+    python3 run.py explore [COUNT [SEED]]
+                                      run the tests of random cases with COUNT (10) new seeds
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
@@ -18,6 +20,7 @@ import ast
 import hashlib
 import json
 import os
+import secrets
 import shutil
 import subprocess
 import sys
@@ -321,6 +324,33 @@ def test(arguments: list[str]) -> int:
     return run("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal", *arguments)
 
 
+def explore(arguments: list[str]) -> int:
+    """The tests of random cases with seeds that `test` does not draw, from SEED or a new one on."""
+    if len(arguments) > 2 or not all(argument.isdecimal() for argument in arguments):
+        stop(f"explore takes a count and a seed, whole numbers, not {' '.join(arguments)!r}")
+    count = int(arguments[0]) if arguments else 10
+    first = int(arguments[1]) if len(arguments) > 1 else secrets.randbelow(10**9)
+    install({"test"})
+    files = [
+        p
+        for p in sorted((ROOT / "tests").glob("test_*.py"))
+        if "hypothesis" in p.read_text("utf-8")
+    ]
+    failed = []
+    for seed in range(first, first + count):
+        print(f"run.py: seed {seed}", flush=True)
+        profile = ("-m", "hypothesis", "--hypothesis-profile=explore", f"--hypothesis-seed={seed}")
+        if status := run("python", "-m", "pytest", "-q", *profile, *files):
+            failed.append(seed)
+            if status != 1:  # of pytest: a test failed
+                return status
+    for seed in failed:
+        print(f"run.py: failed; again with: python3 run.py explore 1 {seed}")
+    if not failed:
+        print(f"run.py: no failure; seeds {first} to {first + count - 1}")
+    return 1 if failed else 0
+
+
 def bench(arguments: list[str]) -> int:
     """The timings: those of `simulate`, or those named first in the arguments."""
     named = arguments[:1] if arguments and not arguments[0].startswith("-") else []
@@ -353,7 +383,7 @@ def main(arguments: list[str]) -> int:
     if command in ("-h", "--help"):
         print(__doc__)
         return 0
-    taking = {"test": test, "lint": lint, "bench": bench}
+    taking = {"test": test, "explore": explore, "lint": lint, "bench": bench}
     alone = {"simulate": simulate, "format": layout, "stubs": stubs}
     if command in taking:
         return taking[command](rest)

@@ -139,7 +139,7 @@ def test_json_holds_every_number() -> None:
     assert document["units"]["transient.peak_time"] == "s"
     assert document["events"][0]["kind"] == "cross"
     assert document["segments"][-1]["mode"] == "resting"
-    assert document["segments"][-1]["end"] is None
+    assert document["segments"][-1]["end"] == "Infinity"
     assert document["certificate"]["worst"] < 1e-12
 
 

@@ -76,7 +76,7 @@ def test_a_part_is_the_part() -> None:
     assert_allclose(part.velocity(t), path.velocity(t), atol=1e-15)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(st.floats(0.005, 0.02), min_size=2, max_size=30), st.integers(0, 2**32 - 1))
 def test_a_record_is_followed_without_drift(lasts: list[float], seed: int) -> None:
     """Half-way between two recorded places the path is half-way between them."""

@@ -65,7 +65,7 @@ def test_pull_grows_with_the_square_and_saturates() -> None:
     assert magnet.pull(0.5) == magnet.pull(0.8) == magnet.pull(1.0) == 3.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     lasts=st.lists(st.floats(1e-5, 0.05), min_size=1, max_size=8),
     sigma=st.floats(0.05, 1.0),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, isfinite
 
 import numpy as np
 import pytest
@@ -138,7 +138,11 @@ def test_every_motion_without_a_duration_knows_its_ending(release: Release) -> N
     assert motion.status == "ok"
     assert motion.ending.kind != "moving"
     assert motion.transient.settled or motion.displacement == motion.ending.position
-    assert motion.ending.since <= motion.duration < inf
+    assert motion.duration < inf
+    ends = motion.ending.steady_since, motion.transient.rest_time, motion.transient.last_event_time
+    assert all(time <= motion.duration for time in ends if isfinite(time))
+    assert isfinite(motion.ending.steady_since) == (motion.ending.kind == "steady")
+    assert isfinite(motion.transient.rest_time) == (motion.ending.kind == "resting")
 
 
 def test_a_stick_slip_cycle_repeats_for_ever() -> None:
@@ -147,7 +151,7 @@ def test_a_stick_slip_cycle_repeats_for_ever() -> None:
     )
     motion = Release(drive, 0.1, 1.5e-3).run()
     assert motion.ending.cycle == "stick-slip"
-    t = motion.ending.since + np.linspace(0.0, 1.0, 57)
+    t = motion.ending.steady_since + np.linspace(0.0, 1.0, 57)
     for periods in (1, 7, 1000):
         later = motion.position(t + periods * motion.ending.period)
         assert np.abs(later - motion.position(t)).max() < 1e-14 * periods

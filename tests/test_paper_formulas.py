@@ -6,12 +6,13 @@ releases show that the functions are those forms, and that they describe the mot
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, pi
 
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from sympy import Expr
@@ -226,41 +227,75 @@ def releases(draw: st.DrawFn) -> Release:
     )
 
 
+def rounding(formula: Callable[..., Array], size: float, r: Release, *times: Array) -> Array:
+    """How far a formula and the simulation of it may lie apart by rounding.
+
+    Each of N roundings on the way to a value f, by a part u = 2^-53 of what is rounded, does what a
+    change of an input p by that part does, u |p df/dp|, or changes one of the terms that f is the
+    sum of, u size: the release's largest length (times ω_0, ω_0²), or a turn over ω for a time,
+    which is a sum of angles over ω. The formulas and the core's closed form take at most 32 each.
+    Near critical damping ω^2 = (ω_0 - α)(ω_0 + α) makes df/dp large: that is in it.
+    """
+    unit, step = 2.0**-53, 2.0**-20
+    terms = np.abs(formula(*times, r)) + size
+    fields = ("mass", "stiffness", "damping", "friction", "mouse_velocity", "displacement")
+    changed = [
+        [formula(*times, r.replace(**{name: getattr(r, name) * (1 + h)})) for h in (step, -step)]
+        for name in fields
+    ]
+    changed += [[formula(t * (1 + h), r) for h in (step, -step)] for t in times]
+    for greater, smaller in changed:
+        terms = terms + np.abs(greater - smaller) / (2 * step)
+    return np.asarray(2 * 32 * unit * terms)
+
+
+CRITICAL = Release(
+    mass=0.00031623,
+    stiffness=10.0,
+    damping=0.10895363,
+    friction=0.0625,
+    mouse_velocity=0.5,
+    displacement=0.00180232,
+)
+"""Near critical damping little is left at the peak of what the return velocity is read from."""
+
+
 @given(releases())
-@settings(max_examples=150, deadline=None)
+@example(CRITICAL)
+@settings(max_examples=150)
 def test_every_formula_is_the_exact_motion_until_friction_reverses(r: Release) -> None:
-    """Times in 1/ω_0, lengths in the largest of x_0 and X_m,0; the tolerance is rounding."""
-    size = max(float(paper.amplitude(r)), float(r.displacement))
+    length = max(float(paper.amplitude(r)), float(r.displacement))
     w = float(paper.natural_frequency(r))
     late = float(paper.limit_reversal_time(r))
+    turn = 2 * pi / float(paper.damped_frequency(r))
     motion = r.motion(duration=1.5 * late)
-    found = motion.transient
-    # Near-critical damping: times are angles over ω, and lose as ω gets small.
-    close = 1e-14 * w / float(paper.damped_frequency(r))
-    for name, scale in (
-        ("peak_time", 1 / w),
-        ("trough_time", 1 / w),
-        ("return_velocity_time", 1 / w),
-        ("peak_displacement", size),
-        ("trough_displacement", size),
-        ("swing", size),
-        ("return_velocity", w * size),
+    for name, size in (
+        ("peak_time", turn),
+        ("trough_time", turn),
+        ("return_velocity_time", turn),
+        ("peak_displacement", length),
+        ("trough_displacement", length),
+        ("swing", 2 * length),
+        ("return_velocity", w * length),
     ):
-        of_paper = float(getattr(paper, name)(r))
-        assert abs(of_paper - getattr(found, name)) <= close * scale * 10, name
-    end = np.nanmin([found.first_reversal_time, late])
-    times = np.linspace(0.0, end, 50)
-    kinds = (motion.position, paper.position), (motion.velocity, paper.velocity)
-    for i, (simulated, formula) in enumerate(kinds):
-        assert (
-            np.abs(formula(times, r) - simulated(times, "left")).max() <= close * size * w**i * 10
+        formula = getattr(paper, name)
+        off = float(formula(r)) - getattr(motion.transient, name)
+        assert abs(off) <= rounding(formula, size, r), name
+    end = np.nanmin([motion.transient.first_reversal_time, late])
+    times = np.linspace(0.0, end, 50)[1:]
+    for i, (simulated, formula) in enumerate(
+        (
+            (motion.position, paper.position),
+            (motion.velocity, paper.velocity),
+            (motion.acceleration, paper.acceleration),
         )
-    a = motion.acceleration(times, "left")[1:]
-    assert np.abs(paper.acceleration(times, r)[1:] - a).max() <= close * size * w**2 * 10
+    ):
+        off = np.abs(formula(times, r) - simulated(times, "left"))
+        assert (off <= rounding(formula, length * w**i, r, times)).all()
 
 
 @given(releases())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_21_the_first_reversal_is_where_the_core_finds_it(r: Release) -> None:
     t_1, late = float(paper.first_reversal_time(r)), float(paper.limit_reversal_time(r))
     margin = float(paper.forward_velocity(r) - r.mouse_velocity)
@@ -307,7 +342,9 @@ def test_steady_state_of_the_undamped_drive() -> None:
         assert motion.ending.kind == "steady"
         assert motion.ending.amplitude == pytest.approx(amplitude[i], rel=1e-12)
         assert motion.transient.plate.reversals == count[i]
-        assert motion.ending.since == pytest.approx(begins[i], rel=1e-11, abs=1e-12 * period[i])
+        assert motion.ending.steady_since == pytest.approx(
+            begins[i], rel=1e-11, abs=1e-12 * period[i]
+        )
     # The paper's "periods" are these reversals, and not the periods it takes.
     beyond = r.displacement > paper.friction_offset(r)
     of_paper = printed.periods_to_steady(r)
@@ -326,7 +363,9 @@ def test_the_undamped_release_from_the_other_side() -> None:
     )
     for i, begins in enumerate(paper.time_to_steady(r)):
         motion = r.motion(i)
-        assert motion.ending.since == pytest.approx(begins, rel=1e-12, abs=1e-15)
+        steady = motion.ending.kind == "steady"
+        found = motion.ending.steady_since if steady else motion.transient.rest_time
+        assert found == pytest.approx(begins, rel=1e-12, abs=1e-15)
         assert motion.transient.plate.reversals == paper.reversals_to_steady(r)[i]
 
 
@@ -343,7 +382,8 @@ def test_rest_under_finger_friction() -> None:
         let_go = [e.time for e in motion.events if e.contact == "plate" and e.kind == "slip"]
         if let_go:
             carried += 1
-            periods = (motion.ending.since - let_go[-1]) * paper.natural_frequency(r)[i] / (2 * pi)
+            took = motion.transient.rest_time - let_go[-1]
+            periods = took * paper.natural_frequency(r)[i] / (2 * pi)
             assert periods == pytest.approx(expected[i], rel=1e-10)
     assert carried > 100  # the others rest before the plate takes them along again
 

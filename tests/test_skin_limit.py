@@ -208,10 +208,10 @@ def test_no_drive_strays_farther_than_the_bound(case: Case, stiffer: float) -> N
 def test_a_held_pin_rings_however_stiff_the_skin(skin: float) -> None:
     """By F - |N| in force, as much as on softer skin: the force has no limit, only its mean has."""
     rigid, soft = ONE_STOP.run(), ONE_STOP.run(skin)
-    needed = rigid.force("finger", rigid.ending.since)
+    needed = rigid.force("finger", rigid.transient.rest_time)
     swing = ONE_STOP.kinetic - abs(needed)
     assert soft.ending.cycle == "free"
-    t = soft.ending.since + soft.ending.period * np.linspace(0.0, 1.0, 65)
+    t = soft.ending.steady_since + soft.ending.period * np.linspace(0.0, 1.0, 65)
     force = soft.force("finger", t)
     slack = 10 * swing * STIFFNESS / skin
     assert (force.max() + force.min()) / 2 == pytest.approx(needed, abs=slack)
@@ -229,7 +229,7 @@ def test_the_damper_alone_stills_the_ringing(skin: float) -> None:
     count = int(0.03 / period)
     a_period = np.linspace(0.0, period, 65)
     swings = [
-        np.ptp(soft.force("finger", soft.ending.since + begin + a_period))
+        np.ptp(soft.force("finger", soft.transient.last_event_time + begin + a_period))
         for begin in (0.0, count * period)
     ]
     assert swings[1] / swings[0] == pytest.approx(np.exp(-rate * count * period), rel=1e-6)
@@ -247,7 +247,7 @@ def test_the_first_swing_breaks_a_grip_that_a_rigid_finger_keeps() -> None:
     """
     case = Case(kinetic=0.005, static=0.012)
     rigid = case.run()
-    needed = abs(rigid.force("finger", rigid.ending.since))
+    needed = abs(rigid.force("finger", rigid.transient.rest_time))
     assert held_up_to(0.005, 0.012) < needed < 0.012
     soft = [case.run(skin) for skin in (*STIFFER, STIFFEST)]
     apart = [abs(motion.ending.position - rigid.ending.position) for motion in soft]

@@ -173,7 +173,7 @@ DIMENSIONS = {  # mass, length, time
     "transient_return_velocity": (0, 1, -1),
     "transient_finger_dissipated": (1, 2, -2),
     "transient_plate_peak_force": (1, 1, -2),
-    "ending_since": (0, 0, 1),
+    "transient_rest_time": (0, 0, 1),
 }
 OF_KEYS = {
     "drive.mass": (1, 0, 0),

@@ -117,7 +117,7 @@ def test_undamped_reversals_follow_the_recursion_and_end_grazing() -> None:
     assert slip.position == pytest.approx(x_d, rel=1e-15)
     assert slip.time - stick.time == pytest.approx((x_d - expected[-1]) / SPEED, rel=1e-13)
     assert motion.ending.cycle == "grazing"
-    assert motion.ending.since == slip.time
+    assert motion.ending.steady_since == slip.time
     assert motion.ending.position == pytest.approx(x_d, rel=1e-15)
     assert motion.ending.amplitude == pytest.approx(SPEED / OMEGA0, rel=1e-15)
     # It touches v_p once a period, and never passes it.
@@ -138,7 +138,7 @@ def test_finger_friction_takes_two_x_f_from_each_swing() -> None:
         x = -np.sign(x) * (abs(x) - 2 * x_f)
         turns.append(x)
     assert [e.position for e in motion.events] == pytest.approx(turns, rel=1e-12)
-    assert motion.ending.since == pytest.approx(len(turns) * pi / OMEGA0, rel=1e-14)
+    assert motion.transient.rest_time == pytest.approx(len(turns) * pi / OMEGA0, rel=1e-14)
 
 
 def test_stick_slip_repeats_one_release() -> None:
@@ -149,7 +149,7 @@ def test_stick_slip_repeats_one_release() -> None:
     released = [e for e in motion.events if e.kind == "slip"]
     for event in released:
         assert STIFFNESS * event.position + 0.1 * 0.02 == pytest.approx(0.05, rel=1e-14)
-    period, since = motion.ending.period, motion.ending.since
+    period, since = motion.ending.period, motion.ending.steady_since
     assert released[1].time - released[0].time == pytest.approx(period, rel=1e-14)
     t = since + np.linspace(0.0, period, 50)
     assert motion.position(t) == pytest.approx(motion.position(t + 3 * period), rel=1e-11)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, isnan
+from math import isfinite, isnan, pi
 from typing import Literal
 
 import numpy as np
@@ -25,6 +25,11 @@ def turning_points(t: np.ndarray, v: np.ndarray) -> list[int]:
 @settings(max_examples=60)
 def test_numbers_against_samples(release: Release) -> None:
     motion = release.run()
+    # Near critical damping a turning point may lie so late that samples up to there see nothing
+    # else: a hundred in each natural period see all.
+    longest = SAMPLES / 100 * 2 * pi / release.drive.natural_frequency
+    if motion.duration > longest:
+        motion = release.run(longest)
     t = np.linspace(0.0, motion.duration, SAMPLES)
     x, v = motion.position(t), motion.velocity(t)
     step = t[1]
@@ -32,10 +37,14 @@ def test_numbers_against_samples(release: Release) -> None:
     # Between two samples the position changes by this at most.
     near = 2 * step * np.abs(v).max() + 1e-13 * size
     transient = motion.transient
-
     turns = turning_points(t, v)
     outward = np.sign(motion.displacement or motion.initial_velocity or release.mouse_velocity)
-    if transient.peak_time > 0:
+
+    def visible(time: float) -> bool:
+        """Whether samples can tell the sign of the velocity before it vanishes from rounding."""
+        return bool(abs(motion.velocity(max(time - step, 0.0))) > 1e-12 * np.abs(v).max())
+
+    if transient.peak_time > 0 and visible(transient.peak_time):
         assert transient.peak_displacement * outward >= motion.displacement * outward - 1e-15
         assert transient.peak_time == pytest.approx(t[turns[0]], abs=2 * step)
         assert transient.peak_displacement == pytest.approx(x[turns[0]], abs=near)
@@ -117,7 +126,7 @@ def test_wider_band_settles_no_later() -> None:
 def test_steady_motion_settles_where_it_begins() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
     motion = Release(drive, 0.1, 1.5e-3).run()
-    assert motion.transient.settling_time == motion.ending.since > 0
+    assert motion.transient.settling_time == motion.ending.steady_since > 0
 
 
 @pytest.mark.parametrize(
@@ -130,7 +139,7 @@ def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
     motion = Release(drive, 0.1, 1.5e-3).run()
     ending = motion.ending
     assert ending.cycle == cycle
-    t = ending.since + np.linspace(0.0, ending.period, SAMPLES)
+    t = ending.steady_since + np.linspace(0.0, ending.period, SAMPLES)
     x = motion.position(t)
     assert ending.position == pytest.approx((x.max() + x.min()) / 2, abs=1e-10)
     assert ending.amplitude == pytest.approx((x.max() - x.min()) / 2, abs=1e-10)

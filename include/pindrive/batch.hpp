@@ -26,21 +26,23 @@ int events_at_end(const Segment<T>& segment) {
 
 /// Follows one pin and measures its motion. `segments` is a container that the caller lends for the
 /// meantime: what it held is lost, and once it has grown large enough nothing is allocated.
-template <class T, class Segments>
-Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments) {
+template <class T, class Segments, class GoOn = Unattended>
+Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Segments& segments,
+                     GoOn go_on = {}) {
   Summary<T> summary;
   segments.clear();
   summary.outcome = simulate(drive, inputs, [&](const Segment<T>& segment) {
     segments.push_back(segment);
     summary.events += events_at_end(segment);
+    return go_on();
   });
   const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
-  summary.duration = duration_of(motion);
+  summary.duration = duration_of(motion, go_on);
   constexpr T never = std::numeric_limits<T>::infinity();
   if (band < T(settling_band) && summary.outcome.end == End::decaying && !(inputs.duration < never))
-    summary.duration = std::max(summary.duration,
-                                T(1.25) * Measurement<T>(motion, never).settling_time(band));
-  summary.transient = Measurement<T>(motion, summary.duration).transient(band);
+    summary.duration = std::max(
+        summary.duration, T(1.25) * Measurement<T, GoOn>(motion, never, go_on).settling_time(band));
+  summary.transient = Measurement<T, GoOn>(motion, summary.duration, go_on).transient(band);
   return summary;
 }
 

@@ -38,19 +38,19 @@ struct Certificate {
   }
 };
 
-template <class T>
+template <class T, class GoOn = Unattended>
 class Certifier {
  public:
-  Certifier(const Motion<T>& motion, T duration)
-      : motion_(motion), drive_(motion.drive()), duration_(duration) {}
+  Certifier(const Motion<T>& motion, T duration, GoOn go_on = {})
+      : motion_(motion), drive_(motion.drive()), duration_(duration), go_on_(go_on) {}
 
   Certificate<T> certify() {
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > duration_) break;
+      if (segment.begin > duration_ || !go_on_()) break;
       scales(segment);
     }
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > duration_) break;
+      if (segment.begin > duration_ || !go_on_()) break;
       const Stage stage = stage_of(segment);
       const State last = walk(stage);
       if (segment.end > duration_) break;
@@ -225,11 +225,12 @@ class Certifier {
     State from = state(stage, T(0));
     laws(stage, from, errors);
     T low{0};
-    for (int panels = 0; low < stage.span; ++panels) {
+    for (int panels = 0; low < stage.span && go_on_(); ++panels) {
       const bool grows = !oscillator.oscillates() || -alpha * low > 40;
       const T length = !stage.waves ? stage.span : grows ? std::max(quick, low / 2) : quick;
       const bool leaps = panels == walked && stage.span - low > (walked + 1) * length;
-      const T high = leaps ? stage.span - walked * length : std::min(low + length, stage.span);
+      T high = leaps ? stage.span - walked * length : std::min(low + length, stage.span);
+      if (!(high > low)) high = stage.span;  // so late that a panel is lost in rounding
       const State to = state(stage, high);
       if (leaps)
         leap(stage, from, to);
@@ -251,7 +252,8 @@ class Certifier {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     std::array<typename Guard<T>::Flatness, 4> flatness;
     for (int i = 0; i < stage.count; ++i)
-      flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moved, to.tau - from.tau);
+      flatness[i] =
+          stage.watches[i].guard.flatness(oscillator, from.moved, from.tau, to.tau - from.tau);
     State before = from;
     const auto follow = [&](const State& now) {
       for (int i = 0; i < stage.count; ++i) {
@@ -379,6 +381,7 @@ class Certifier {
   Motion<T> motion_;
   Drive<T> drive_;
   T duration_;
+  GoOn go_on_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
   T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
   T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against

@@ -36,8 +36,9 @@ struct Ledger {
 };
 
 /// The ledger over [0, duration] of a motion whose numbers are known.
-template <class T>
-Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>& numbers) {
+template <class T, class GoOn = Unattended>
+Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>& numbers,
+                        GoOn go_on = {}) {
   const Drive<T>& drive = motion.drive();
   const bool skin = drive.finger.present() && !drive.finger.rigid();
   Ledger<T> ledger{};
@@ -64,6 +65,7 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
     ledger.plate_work += over(segment.plate_force, segment.plate_velocity);
     ledger.inertia_work +=
         over(Line<T>{drive.mass * segment.plate_velocity.rate, T(0)}, flow.velocity);
+    return go_on();
   });
   ledger.plate_dissipated = numbers.plate.dissipated;
   ledger.finger_dissipated = numbers.finger.dissipated;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/flow.hpp"
 
@@ -30,12 +31,26 @@ class Guard {
   };
   /// Over a length from a time on. Both derivatives oscillate freely, and a free oscillation y stays
   /// below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0: its energy
-  /// (y'² + ω₀² y²)/2 changes by 2α y'².
-  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T length) const {
+  /// (y'² + ω₀² y²)/2 changes by 2α y'². Where two real rates lie far apart, each wave is bounded by
+  /// itself: the rounding of their sum would count as much of the fast one.
+  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T from,
+                    T length) const {
     using std::abs;
     using std::exp;
     using std::sqrt;
     if (!path_.oscillates()) return {};
+    if (!oscillator.oscillates() && 2 * oscillator.omega() > abs(oscillator.alpha())) {
+      const T one = oscillator.slowest_rate(), other = oscillator.omega0_squared() / one;
+      Flatness found;
+      const auto add = [&](T rate, T wave) {
+        const T largest = abs(wave) * exp(rate * (rate < 0 ? from : from + length));
+        found.third += abs(rate * rate * rate) * largest;
+        found.fourth += abs(rate * rate * rate * rate) * largest;
+      };
+      add(one, (path_.slope - other * path_.value) / (one - other));
+      add(other, (path_.slope - one * path_.value) / (other - one));
+      return found;
+    }
     const T bend = oscillator.bend(path_.value, path_.slope);
     const T y = path_.value + path_.value * moved.decline + path_.slope * moved.gain;
     const T y1 = path_.slope + path_.slope * moved.decline + bend * moved.gain;
@@ -48,23 +63,36 @@ class Guard {
 
   /// The lowest value found between two times, or at either; it dips no deeper below zero than
   /// that, or than `unseen`. Proven where it is monotone, or where the cubic through both ends (by
-  /// its Bernstein coefficients), less what the guard can differ from it, stays above; else halved.
+  /// its Bernstein coefficients), less what the guard can differ from it, stays above; else halved, so
+  /// many times in all. What is not proven by then may dip as deep as that bound.
   T lowest(const Oscillator<T>& oscillator, const Level& a, const Level& b,
-           const Flatness& flatness, T unseen, int halvings = 40) const {
+           const Flatness& flatness, T unseen) const {
+    int halvings = most_halvings;
+    return lowest(oscillator, a, b, flatness, unseen, halvings);
+  }
+
+ private:
+  static constexpr int most_halvings = 4096;
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  T lowest(const Oscillator<T>& oscillator, const Level& a, const Level& b,
+           const Flatness& flatness, T unseen, int& halvings) const {
     const T least = std::min(a.value, b.value), h = b.tau - a.tau;
-    if (!(least >= -unseen) || halvings == 0) return least;
+    if (!(least >= -unseen)) return least;
     const T turn = h * h / 8 * flatness.third;
     if ((a.slope >= turn && b.slope >= turn) || (a.slope <= -turn && b.slope <= -turn))
       return least;
     const T cubic = std::min({least, a.value + h * a.slope / 3, b.value - h * b.slope / 3});
-    if (cubic - h * h * h * h / 384 * flatness.fourth >= -unseen) return least;
+    const T bound = cubic - h * h * h * h / 384 * flatness.fourth;
+    if (bound >= -unseen) return least;
     const T tau = a.tau + h / 2;
+    if (--halvings < 0 || !(tau > a.tau && tau < b.tau) || !(bound > -never))
+      return bound > -never ? bound : -never;
     const Level middle = at(path_.oscillates() ? oscillator.after(tau) : Transition<T>{}, tau);
-    return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings - 1),
-                    lowest(oscillator, middle, b, flatness, unseen, halvings - 1));
+    return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings),
+                    lowest(oscillator, middle, b, flatness, unseen, halvings));
   }
 
- private:
   Path<T> path_{}, rate_{};
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "pindrive/flow.hpp"
 
@@ -233,18 +234,35 @@ enum class End : signed char {
   limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
 };
 
-enum class Status : signed char { ok, too_many_events, standstill };
+enum class Status : signed char { ok, too_many_events, standstill, stopped };
 
 template <class T>
 struct Outcome {
   Status status{Status::ok};
   End end{End::moving};
-  T since{std::numeric_limits<T>::quiet_NaN()};   ///< when the ending began, s
-  T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
+  T steady_since{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
+  T period{std::numeric_limits<T>::quiet_NaN()};        ///< of a steady oscillation, s
   T until{0};        ///< end of the last segment, s; then a cycle begins again …
   T cycle_begin{0};  ///< … from here, s
 
   bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
 };
+
+/// Asked all along a long computation whether to go on, which this one always does. Where another one
+/// returns false, the computation ends early and what it returns means nothing.
+struct Unattended {
+  constexpr bool operator()() const { return true; }
+};
+
+/// Calls a function that may return false when it wants no more calls; whether to go on.
+template <class Function, class... Arguments>
+bool goes_on(Function& function, const Arguments&... arguments) {
+  if constexpr (std::is_void_v<std::invoke_result_t<Function&, const Arguments&...>>) {
+    function(arguments...);
+    return true;
+  } else {
+    return function(arguments...);
+  }
+}
 
 }  // namespace pindrive

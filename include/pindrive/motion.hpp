@@ -72,15 +72,16 @@ class Motion {
     return {part * plate, (1 - part) * plate};
   }
 
-  /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often).
+  /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until
+  /// the visitor returns false.
   template <class Visitor>
   void stretches(T until, Visitor&& visit) const {
-    stretch(T(0), std::min(until, outcome_.until), T(1), visit);
+    if (!stretch(T(0), std::min(until, outcome_.until), T(1), visit)) return;
     if (!outcome_.cycles() || until <= outcome_.until) return;
     using std::floor;
     const T repeats = floor((until - outcome_.until) / outcome_.period);
     const T rest = until - outcome_.until - repeats * outcome_.period;
-    if (repeats > 0) stretch(outcome_.cycle_begin, outcome_.until, repeats, visit);
+    if (repeats > 0 && !stretch(outcome_.cycle_begin, outcome_.until, repeats, visit)) return;
     stretch(outcome_.cycle_begin, outcome_.cycle_begin + rest, T(1), visit);
   }
 
@@ -95,12 +96,14 @@ class Motion {
   }
 
   template <class Visitor>
-  void stretch(T from, T to, T times, Visitor& visit) const {
+  bool stretch(T from, T to, T times, Visitor& visit) const {
     for (const Segment<T>& segment : *this) {
       if (segment.begin > to || segment.end <= from) continue;
-      visit(segment, std::max(from - segment.begin, T(0)),
-            std::min(to, segment.end) - segment.begin, times);
+      if (!goes_on(visit, segment, std::max(from - segment.begin, T(0)),
+                   std::min(to, segment.end) - segment.begin, times))
+        return false;
     }
+    return true;
   }
 
   Drive<T> drive_;

@@ -8,7 +8,7 @@
 
 namespace pindrive {
 
-/// Follows one pin and hands each segment to the sink, in order of time.
+/// Follows one pin and hands each segment to the sink, in order of time; a sink may return false to stop.
 template <class T, class Sink>
 Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink) {
   const auto plain = [](const Contact<T>& contact) {

@@ -13,7 +13,8 @@
 
 namespace pindrive {
 
-/// Follows one pin from its release and hands each segment to the sink, in order of time.
+/// Follows one pin from its release and hands each segment to the sink, in order of time; a sink may
+/// return false to stop.
 template <class T, class Surface = Contact<T>, class Input = Profile<T>>
 class Simulation {
  public:
@@ -38,8 +39,11 @@ class Simulation {
     int standing = 0;
     for (long long events = 0; events < event_limit; ++events) {
       const Segment<T> segment = next();
-      sink(segment);
       outcome_.until = segment.end;
+      if (!goes_on(sink, segment)) {
+        outcome_.status = Status::stopped;
+        return outcome_;
+      }
       if (finished_ || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
       if (standing > standstill_limit) {
@@ -424,12 +428,12 @@ class Simulation {
 
   /// How a mode without an exit ends.
   End ending(const Flow<T>& flow) {
-    outcome_.since = time_;
     if (!flow.position.oscillates())
       return flow.velocity.start == 0 && flow.velocity.straight() ? End::resting : End::moving;
     const T alpha = flow.oscillator.alpha();
     if (alpha < 0) return End::decaying;
     if (alpha > 0) return End::moving;
+    outcome_.steady_since = time_;
     outcome_.period = flow.oscillator.period();
     return tangential_ ? End::grazing : End::free;
   }
@@ -443,10 +447,10 @@ class Simulation {
     if (!before) return;
     outcome_.end = release || before->released ? End::stick_slip : End::limit_cycle;
     outcome_.period = time_ - before->time;
-    outcome_.cycle_begin = outcome_.since = before->time;
+    outcome_.cycle_begin = outcome_.steady_since = before->time;
     // The cycle began where the first carried phase joined the one that it repeats.
     if (release && mode_.finger != Slide::gripping)
-      outcome_.since = std::max(before->hold_begin, before->time - (time_ - hold_begin_));
+      outcome_.steady_since = std::max(before->hold_begin, before->time - (time_ - hold_begin_));
   }
 
   const Drive<T, Surface>& drive_;

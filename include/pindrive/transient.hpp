@@ -32,12 +32,36 @@ struct Transient {
   T swing{none};          ///< (17), m
   T return_velocity{none}, return_velocity_time{none};  ///< v_m,b at t_b: m/s, s
   T first_reversal_time{none};                          ///< t_1, s
-  T settling_time{none};                                ///< s
-  T peak_stretch{none}, peak_stretch_rate{none};        ///< largest of a compliant finger's: m, m/s
+  T settling_time{none};                                ///< from then on within the band, s
+  T rest_time{none};  ///< from then on at rest, s; infinite if it never comes to rest
+  T last_event_time{
+      none};             ///< of the last change at a contact, s; 0 without any after the release,
+                         ///< infinite where they go on for ever
+  T steady_since{none};  ///< when a steady oscillation began, s
+  T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
   ContactUse<T> plate, finger;
 };
+
+/// Calls visit(τ, value) where a vibration without a line turns between two times. Times and values
+/// follow from its start: at `from` what is left of it may have fewer digits.
+template <class T, class Visitor>
+void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
+  using std::exp;
+  using std::floor;
+  const Path<T> slope = path.derivative(oscillator);
+  const int side = side_after_start(oscillator, slope);
+  const Zeros<T> zeros = oscillator.zeros(slope.value, slope.slope);
+  if (side == 0 || !(zeros.first < to)) return;
+  const T reach = side * oscillator.reach(slope.value, slope.slope);
+  T count = zeros.first > from ? T(0) : floor((from - zeros.first) / zeros.spacing);
+  for (T tau; (tau = zeros.first + count * zeros.spacing) < to; count += T(1)) {
+    if (!(tau > from)) continue;
+    const bool even = count / 2 == floor(count / 2);
+    visit(tau, path.centre() + (even ? reach : -reach) * exp(oscillator.alpha() * tau));
+  }
+}
 
 /// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
 /// them.
@@ -46,20 +70,18 @@ void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visit
   visit(from, path.at(segment.after(from), from));
   if (path.constant() || !(to > from)) return;
   const Oscillator<T>& oscillator = segment.flow.oscillator;
-  const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
-  const Path<T> slope = rest.derivative(oscillator);
-  const int side = side_after_start(oscillator, slope);
-  // A vibration without a line turns at a distance from its centre that is known.
-  const bool vibrates = path.straight() && oscillator.oscillates();
-  T reach = vibrates ? side * oscillator.reach(slope.value, slope.slope) : T(0);
-  using std::exp;
-  if (side != 0)
-    each_root(oscillator, slope, side, to - from, [&](T tau) {
-      visit(from + tau, vibrates ? rest.centre() + reach * exp(oscillator.alpha() * tau)
-                                 : rest.at(oscillator, tau));
-      reach = -reach;
-      return true;
-    });
+  if (path.straight() && oscillator.oscillates()) {
+    turns(oscillator, path, from, to, visit);
+  } else {
+    const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
+    const Path<T> slope = rest.derivative(oscillator);
+    const int side = side_after_start(oscillator, slope);
+    if (side != 0)
+      each_root(oscillator, slope, side, to - from, [&](T tau) {
+        visit(from + tau, rest.at(oscillator, tau));
+        return true;
+      });
+  }
   visit(to, path.at(segment.after(to), to));
 }
 
@@ -78,10 +100,11 @@ void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, 
 }
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
-template <class T>
+template <class T, class GoOn = Unattended>
 class Measurement {
  public:
-  Measurement(const Motion<T>& motion, T duration) : motion_(motion), duration_(duration) {}
+  Measurement(const Motion<T>& motion, T duration, GoOn go_on = {})
+      : motion_(motion), duration_(duration), go_on_(go_on) {}
 
   Transient<T> transient(T band) const {
     Transient<T> result;
@@ -89,6 +112,7 @@ class Measurement {
     first_reversal(result);
     ending(result);
     result.settling_time = settled_after(result.end_position, band);
+    rest_and_events(result);
     contacts(result);
     return result;
   }
@@ -113,7 +137,8 @@ class Measurement {
     const T speed = motion_.begin()->flow.velocity.start;
     const T size =
         abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
-    return std::max(last_outside(result.end_position, size / 1000), motion_.outcome().since);
+    return std::max(last_outside(result.end_position, size / 1000),
+                    std::prev(motion_.end())->begin);
   }
 
  private:
@@ -147,7 +172,7 @@ class Measurement {
     int direction = 0;
     bool more = true;
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > duration_) return;
+      if (segment.begin > duration_ || !go_on_()) return;
       const Flow<T>& flow = segment.flow;
       const int start = heading(flow);
       if (direction * start < 0 || (direction != 0 && start == 0))
@@ -202,7 +227,7 @@ class Measurement {
     using std::isnan;
     const T until = std::min(isnan(result.trough_time) ? duration_ : result.trough_time, duration_);
     for (const Segment<T>& segment : motion_) {
-      if (segment.begin > until) break;
+      if (segment.begin > until || !go_on_()) break;
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
       if (from > to || (from > 0 && from == to)) continue;
@@ -248,6 +273,7 @@ class Measurement {
     }
     T low = never, high = -never;
     for (const Segment<T>& segment : motion_) {
+      if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
       highest_and_lowest(segment, segment.flow.position, T(0), segment.end - segment.begin,
                          [&](T, T position) {
@@ -259,11 +285,38 @@ class Measurement {
     result.amplitude = (high - low) / 2;
   }
 
+  /// The three ends of a motion that are no settling: at rest, steady, without further events.
+  void rest_and_events(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.end == End::moving) return;
+    result.steady_since = outcome.steady_since;
+    result.rest_time = outcome.end == End::resting ? rest_begin() : never;
+    result.last_event_time = T(0);
+    const Segment<T>* segment = motion_.end();
+    while (segment != motion_.begin() && go_on_()) {
+      --segment;
+      if (segment->event.plate == Kind::none && segment->event.finger == Kind::none) continue;
+      const bool repeats = outcome.cycles() && !(segment->begin < outcome.cycle_begin);
+      result.last_event_time = repeats ? never : segment->end;
+      return;
+    }
+  }
+
+  /// Rest is one, however many segments the rows of inputs make of it.
+  T rest_begin() const {
+    const Segment<T>* segment = std::prev(motion_.end());
+    const auto still = [](const Segment<T>& before) {
+      return before.flow.position.constant() || !(before.end > before.begin);
+    };
+    while (segment != motion_.begin() && still(*std::prev(segment))) --segment;
+    return segment->begin;
+  }
+
   T settled_after(T x_end, T band) const {
     using std::abs;
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.end == End::moving) return Transient<T>::none;
-    T since = outcome.since;
+    T since = outcome.steady_since;
     if (outcome.end == End::resting || outcome.end == End::decaying) {
       const T x = motion_.begin()->flow.position.start, way = x - x_end;
       constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
@@ -276,7 +329,8 @@ class Measurement {
   /// The last time at which |x − x_end| is beyond the width: 0 if it never is, infinite if it always is.
   T last_outside(T x_end, T width) const {
     T since{0};
-    for (const Segment<T>* segment = motion_.end(); since == 0 && segment != motion_.begin();)
+    for (const Segment<T>* segment = motion_.end();
+         since == 0 && segment != motion_.begin() && go_on_();)
       since = entry(*--segment, x_end, width);
     return since;
   }
@@ -385,12 +439,13 @@ class Measurement {
           result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
           result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
         }
-      if (!skin) return;
+      if (!skin) return go_on_();
       result.finger.dissipated += times * skin_loss(segment, from, to, whole);
       const Oscillator<T>& oscillator = segment.flow.oscillator;
       const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
       peak(result.peak_stretch, segment, stretch, from, to);
       peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
+      return go_on_();
     });
   }
 
@@ -444,31 +499,33 @@ class Measurement {
 
   const Motion<T>& motion_;
   T duration_;
+  GoOn go_on_;
 };
 
 /// The duration that was asked for or, without one, long enough to see the ending: a decay to a
 /// thousandth and until settled, or a few periods of what lasts.
-template <class T>
-T duration_of(const Motion<T>& motion) {
+template <class T, class GoOn = Unattended>
+T duration_of(const Motion<T>& motion, GoOn go_on = {}) {
   using std::isfinite;
   using std::sqrt;
   if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
   constexpr T never = std::numeric_limits<T>::infinity();
   const Outcome<T>& outcome = motion.outcome();
   const T period = T(6.283185307179586) / sqrt(motion.drive().stiffness / motion.drive().mass);
+  const T last_begin = std::prev(motion.end())->begin;
   switch (outcome.end) {
     case End::resting:
-      return std::max(outcome.since * T(1.25), period);
+      return std::max(last_begin * T(1.25), period);
     case End::decaying: {
-      const Measurement<T> measured(motion, never);
+      const Measurement<T, GoOn> measured(motion, never, go_on);
       const T settled = measured.settling_time(T(settling_band));
       const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
-      if (!(decayed < never)) return outcome.since + period;
+      if (!(decayed < never)) return last_begin + period;
       return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
     }
     case End::free:
     case End::grazing:
-      return outcome.since + 3 * outcome.period;
+      return outcome.steady_since + 3 * outcome.period;
     case End::stick_slip:
     case End::limit_cycle:
       return outcome.until + 3 * outcome.period;

@@ -8,15 +8,26 @@ if TYPE_CHECKING:
     from pindrive.batch import simulate_batch
     from pindrive.drive import Contact, Drive, Profile
     from pindrive.motion import Motion, simulate
+    from pindrive.plausible import ImplausibleValueWarning
 
     __version__: str
 
-__all__ = ["Contact", "Drive", "Motion", "Profile", "__version__", "simulate", "simulate_batch"]
+__all__ = [
+    "Contact",
+    "Drive",
+    "ImplausibleValueWarning",
+    "Motion",
+    "Profile",
+    "__version__",
+    "simulate",
+    "simulate_batch",
+]
 
 _HOME = {
     "Contact": "pindrive.drive",
     "Drive": "pindrive.drive",
     "Profile": "pindrive.drive",
+    "ImplausibleValueWarning": "pindrive.plausible",
     "Motion": "pindrive.motion",
     "simulate": "pindrive.motion",
     "simulate_batch": "pindrive.batch",
@@ -40,5 +51,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """The public names, imported or not."""
-    return sorted({*globals(), *__all__})
+    """The public names alone."""
+    return sorted(__all__)

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "interrupt.hpp"
 #include "pindrive/batch.hpp"
 #include "pindrive/energy.hpp"
 
@@ -28,9 +29,8 @@ namespace {
 using Summary = pd::Summary<double>;
 using Ledger = pd::Ledger<double>;
 
-constexpr std::size_t share = 32;           // points that a thread takes at a time
-constexpr std::size_t patience = 1U << 16;  // segments followed between two looks for Ctrl-C
-constexpr std::size_t keep = 1U << 12;      // segments that a thread keeps room for
+constexpr std::size_t share = 32;       // points that a thread takes at a time
+constexpr std::size_t keep = 1U << 12;  // segments that a thread keeps room for
 
 // ---- in ------------------------------------------------------------------------------------------
 
@@ -104,6 +104,8 @@ constexpr Number<Summary> numbers[] = {
     {"transient.first_reversal_time",
      [](const Summary& s) { return s.transient.first_reversal_time; }},
     {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; }},
+    {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; }},
+    {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; }},
     {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
     {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
     {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; }},
@@ -119,7 +121,7 @@ constexpr Number<Summary> numbers[] = {
     {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; }},
     {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; }},
     {"ending.position", [](const Summary& s) { return s.transient.end_position; }},
-    {"ending.since", [](const Summary& s) { return s.outcome.since; }},
+    {"ending.steady_since", [](const Summary& s) { return s.transient.steady_since; }},
     {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
     {"ending.period", [](const Summary& s) { return s.outcome.period; }},
     {"duration", [](const Summary& s) { return s.duration; }},
@@ -176,24 +178,23 @@ class Batch {
   std::size_t size() const { return given_.size(); }
   std::size_t rows() const { return number_count + (energy_ ? energy_count : 0); }
 
-  /// Works all points off with so many threads, of which the caller's is one. `look` is called by
-  /// the caller's now and then; when it returns false all of them stop.
-  template <class Look>
-  void run(std::size_t threads, Look&& look) {
-    const auto watch = [&] {
-      if (!stopped_ && !look()) stopped_ = true;
-    };
+  /// Works all points off with so many threads, of which the caller's is one and alone looks for an
+  /// interrupt; when it finds one, all of them stop.
+  void run(std::size_t threads, Interrupt& interrupt) {
+    const auto go_on = [&] { return !stopped_.load(std::memory_order_relaxed); };
     std::vector<std::future<void>> others;
     try {
       while (others.size() + 1 < std::min(threads, size() / share + 1))
-        others.push_back(std::async(std::launch::async, [this] { work([] {}); }));
-      work(watch);
+        others.push_back(std::async(std::launch::async, [this, go_on] { work(go_on); }));
+      work([&] { return interrupt.go_on(); });
     } catch (...) {
       stopped_ = true;
       throw;
     }
+    if (interrupt.found()) stopped_ = true;
     for (auto& other : others) {
-      while (other.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) watch();
+      while (other.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
+        if (!interrupt.look()) stopped_ = true;
       other.get();
     }
   }
@@ -209,26 +210,22 @@ class Batch {
   }
 
  private:
-  template <class Watch>
-  void work(Watch&& watch) {
+  template <class GoOn>
+  void work(GoOn go_on) {
     std::vector<pd::Segment<double>> segments;
-    std::size_t followed = 0;
     for (;;) {
       const std::size_t first = next_.fetch_add(share);
       if (first >= size()) return;
       for (std::size_t i = first; i < std::min(first + share, size()); ++i) {
-        if (stopped_) return;
-        settle(i, segments);
-        followed += segments.size();
-        if (followed < patience) continue;
-        followed = 0;
+        if (!go_on()) return;
+        settle(i, segments, go_on);
         if (segments.capacity() > keep) std::vector<pd::Segment<double>>().swap(segments);
-        watch();
       }
     }
   }
 
-  void settle(std::size_t i, std::vector<pd::Segment<double>>& segments) {
+  template <class GoOn>
+  void settle(std::size_t i, std::vector<pd::Segment<double>>& segments, GoOn go_on) {
     if (given_.data()[i] != 0) {
       status_[i] = given_.data()[i];
       ending_[i] = -1;
@@ -240,7 +237,7 @@ class Batch {
     const Point p = point(inputs_, i);
     const pd::Drive<double> drive = drive_of(p);
     const pd::Inputs<double> inputs = inputs_of(p);
-    const Summary summary = pd::summarise(drive, inputs, p[settling_band], segments);
+    const Summary summary = pd::summarise(drive, inputs, p[settling_band], segments, go_on);
     status_[i] = static_cast<std::int8_t>(summary.outcome.status);
     ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
     events_[i] = static_cast<std::int32_t>(summary.events);
@@ -248,7 +245,7 @@ class Batch {
     if (!energy_) return;
     const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
                                     summary.outcome);
-    write(energies, pd::energy_ledger(motion, summary.duration, summary.transient),
+    write(energies, pd::energy_ledger(motion, summary.duration, summary.transient, go_on),
           numbers_ + number_count * size() + i, std::make_index_sequence<energy_count>{});
   }
 
@@ -274,16 +271,12 @@ class Batch {
 nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads,
                         bool energy) {
   Batch batch(inputs, status, energy);
-  bool interrupted = false;
+  Interrupt interrupt;
   {
     const nb::gil_scoped_release unlocked;
-    batch.run(threads, [&] {
-      const nb::gil_scoped_acquire locked;
-      interrupted = PyErr_CheckSignals() != 0;
-      return !interrupted;
-    });
+    batch.run(threads, interrupt);
   }
-  if (interrupted) throw nb::python_error();
+  if (interrupt.found()) throw nb::python_error();
   return batch.table();
 }
 
@@ -292,9 +285,10 @@ nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_
 void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
-  m.def("simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "energy"_a,
-        "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
-        "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
-        "stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose "
-        "status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
+  m.def(
+      "simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "energy"_a,
+      "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
+      "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
+      "stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose "
+      "status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
 }

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "interrupt.hpp"
 #include "pindrive/certify.hpp"
 #include "pindrive/dual.hpp"
 #include "pindrive/energy.hpp"
@@ -100,7 +101,8 @@ struct OwnedContact {
 template <class T>
 class CoreMotion {
  public:
-  CoreMotion(const Numbers& at, const Numbers& along)
+  template <class GoOn>
+  CoreMotion(const Numbers& at, const Numbers& along, GoOn go_on)
       : plate_(std::get<3>(at), std::get<3>(along)),
         finger_(std::get<4>(at), std::get<4>(along)),
         mouse_velocity_(std::get<5>(at), std::get<5>(along)),
@@ -109,8 +111,9 @@ class CoreMotion {
                finger_.contact},
         inputs_{mouse_velocity_.profile(), entry<7>(at, along),   entry<8>(at, along),
                 entry<10>(at, along),      plate_load_.profile(), entry<9>(at, along)},
-        outcome_(pd::simulate(drive_, inputs_, [this](const pd::Segment<T>& segment) {
+        outcome_(pd::simulate(drive_, inputs_, [&](const pd::Segment<T>& segment) {
           segments_.push_back(segment);
+          return go_on();
         })) {}
 
   pd::Motion<T> view() const {
@@ -136,8 +139,8 @@ class CoreMotion {
 
 template <class T>
 std::unique_ptr<CoreMotion<T>> run(const Numbers& at, const Numbers& along) {
-  const nb::gil_scoped_release unlocked;
-  return std::make_unique<CoreMotion<T>>(at, along);
+  return interruptible(
+      [&](auto go_on) { return std::make_unique<CoreMotion<T>>(at, along, go_on); });
 }
 
 // ---- what Python asks for ------------------------------------------------------------------------
@@ -145,17 +148,16 @@ std::unique_ptr<CoreMotion<T>> run(const Numbers& at, const Numbers& along) {
 /// f(segment, τ) at each time.
 template <class T, class Function>
 Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool right, Function&& f) {
-  std::vector<double> values(times.size());
-  {
-    const nb::gil_scoped_release unlocked;
+  return to_array(interruptible([&](auto go_on) {
+    std::vector<double> values(times.size());
     const auto view = motion.view();
     const auto side = right ? pd::Side::right : pd::Side::left;
-    for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t i = 0; i < values.size() && go_on(); ++i) {
       const auto [segment, tau] = view.locate(times.data()[i], side);
       values[i] = result(f(*segment, tau));
     }
-  }
-  return to_array(std::move(values));
+    return values;
+  }));
 }
 
 /// The position, velocity or acceleration of a flow.
@@ -233,7 +235,9 @@ nb::dict contact_use(const pd::ContactUse<T>& use) {
 template <class T>
 nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
   const auto view = motion.view();
-  const auto t = pd::Measurement<T>(view, duration).transient(band);
+  const pd::Transient<T> t = interruptible([&](auto go_on) {
+    return pd::Measurement<T, decltype(go_on)>(view, duration, go_on).transient(band);
+  });
   nb::dict d;
   d["peak_displacement"] = result(t.peak_displacement);
   d["peak_time"] = result(t.peak_time);
@@ -244,6 +248,8 @@ nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
   d["return_velocity_time"] = result(t.return_velocity_time);
   d["first_reversal_time"] = result(t.first_reversal_time);
   d["settling_time"] = result(t.settling_time);
+  d["rest_time"] = result(t.rest_time);
+  d["last_event_time"] = result(t.last_event_time);
   d["peak_stretch"] = result(t.peak_stretch);
   d["peak_stretch_rate"] = result(t.peak_stretch_rate);
   d["end_position"] = result(t.end_position);
@@ -255,7 +261,13 @@ nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
 
 template <class T>
 nb::dict ledger(const CoreMotion<T>& motion, double duration) {
-  const auto l = pd::energy_ledger(motion.view(), T(duration));
+  const auto l = interruptible([&](auto go_on) {
+    const auto view = motion.view();
+    const T band(pd::settling_band);
+    const auto numbers =
+        pd::Measurement<T, decltype(go_on)>(view, T(duration), go_on).transient(band);
+    return pd::energy_ledger(view, T(duration), numbers, go_on);
+  });
   nb::dict d;
   d["kinetic_start"] = result(l.kinetic_start);
   d["kinetic_end"] = result(l.kinetic_end);
@@ -272,9 +284,16 @@ nb::dict ledger(const CoreMotion<T>& motion, double duration) {
   return d;
 }
 
+double duration(const CoreMotion<double>& motion) {
+  const auto view = motion.view();
+  return interruptible([&](auto go_on) { return pd::duration_of(view, go_on); });
+}
+
 nb::dict certificate(const CoreMotion<double>& motion, double duration) {
   const auto view = motion.view();
-  const auto c = pd::Certifier<double>(view, duration).certify();
+  const pd::Certificate<double> c = interruptible([&](auto go_on) {
+    return pd::Certifier<double, decltype(go_on)>(view, duration, go_on).certify();
+  });
   nb::dict d;
   d["motion_law"] = c.motion_law;
   d["kinematics"] = c.kinematics;
@@ -305,7 +324,8 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
       .def("segments", &segments<T>, "Columns, one row a segment.")
       .def("transient", &transient<T>, "duration"_a, "band"_a)
       .def("ledger", &ledger<T>, "duration"_a)
-      .def_prop_ro("since", [](const CoreMotion<T>& c) { return result(c.outcome().since); })
+      .def_prop_ro("steady_since",
+                   [](const CoreMotion<T>& c) { return result(c.outcome().steady_since); })
       .def_prop_ro("period", [](const CoreMotion<T>& c) { return result(c.outcome().period); });
 }
 
@@ -319,7 +339,7 @@ NB_MODULE(_core, m) {
   using Motion = CoreMotion<double>;
   bind<double>(m, "Motion", "A simulated motion and its segments.")
       .def("certificate", &certificate, "duration"_a)
-      .def_prop_ro("duration", [](const Motion& c) { return pd::duration_of(c.view()); })
+      .def_prop_ro("duration", &duration)
       .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })

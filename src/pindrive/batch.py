@@ -9,8 +9,9 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.cores import worker_count
-from pindrive.quantities import QUANTITIES, refusal
-from pindrive.quantity import POSITIVE_OR_RIGID, Bounds
+from pindrive.plausible import warn_of
+from pindrive.quantities import OR_INFINITE, QUANTITIES, refusal
+from pindrive.quantity import Bounds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,7 +54,7 @@ _LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFIN
 # In the order of `Status` and `End` in model.hpp.
 _FAILURES: Final = ("too_many_events", "standstill")
 _ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
-_BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "natural_frequency", "damping_ratio"))
+_BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "damping_ratio", "phase"))
 _FLAGS: Final = {
     "status": {meaning: flag for flag, meaning in enumerate(("ok", *_FAILURES, *_BAD))},
     "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
@@ -84,9 +85,9 @@ def simulate_batch(
     go by their names. No trajectory is stored. Python runs on meanwhile, and Ctrl-C ends a batch.
 
     Args:
-        mass: m, kg, greater than 0.
-        stiffness: k, N/m, greater than 0.
-        damping: b, N*s/m, at least 0.
+        mass: m, kg, from 1e-12 to 1e12.
+        stiffness: k, N/m, from 1e-12 to 1e12.
+        damping: b, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
         plate_kinetic: friction force of the sliding plate, N, at least 0.
         plate_static: largest force of the plate without sliding, N, at least the kinetic one; None:
             the kinetic one.
@@ -98,7 +99,8 @@ def simulate_batch(
         mouse_velocity: v_p, m/s.
         displacement: x(0), m.
         velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
-        duration: s, greater than 0; infinite or None: long enough to see each ending.
+        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; infinite or None:
+            long enough to see each ending.
         settling_band: half the band about the end in which a motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1; None: 0.05.
         energy: the terms of the energy ledger too; a point then takes some ten times as long.
@@ -115,18 +117,32 @@ def simulate_batch(
     Raises:
         ValueError: an argument holds something else than numbers, shapes do not fit together, or
             `threads` is no count.
+
+    Warns:
+        ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
+    given: dict[str, Values | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
+    for name, argument in given.items():
+        if argument is not None:
+            _warn(name, argument)
+    return batched(given, energy=energy, threads=threads)
+
+
+def batched(
+    given: Mapping[str, Values | None], *, energy: bool = False, threads: int | None = None
+) -> xr.Dataset:
+    """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
     import xarray as xr
 
     from pindrive import __version__
 
-    given = {k: v for k, v in locals().items() if k in _ARGUMENTS and v is not None}
     workers = worker_count(threads)
-    sizes, arguments, coordinates = _shared_shape(given)
+    named = {name: value for name, value in given.items() if value is not None}
+    sizes, arguments, coordinates = _shared_shape(named)
     shape = tuple(sizes.values())
 
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
-    for name in _ARGUMENTS.keys() - given.keys():
+    for name in _ARGUMENTS.keys() - named.keys():
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
@@ -217,6 +233,18 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
         raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
 
 
+def _warn(name: str, given: Values) -> None:
+    """Warn of the largest and the smallest value that are numbers, if no such device has them."""
+    seen, sizes = _ARGUMENTS[name].seen, np.abs(_floats(name, getattr(given, "values", given)))
+    sizes = sizes[np.isfinite(sizes)]
+    if seen is None or not sizes.size:
+        return
+    for size in (sizes.max(), sizes.min()):
+        if float(size) not in seen:
+            warn_of(_ARGUMENTS[name].name, float(size), label=name, stacklevel=3)
+            return
+
+
 # ---- bad points, and what the numbers mean -------------------------------------------------------
 
 
@@ -229,16 +257,17 @@ def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDA
             status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
 
     for name, quantity in _ARGUMENTS.items():
-        bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
+        bounds = OR_INFINITE if name in _INFINITE else quantity.bounds
         mark(name, ~_within(bounds, a[name]))
     for contact in ("plate", "finger"):
         mark(f"{contact}_static", a[f"{contact}_static"] < a[f"{contact}_kinetic"])
-    # Each in range, yet their quotient may overflow: no closed form could be computed then.
     with np.errstate(all="ignore"):
-        frequency = np.sqrt(a["stiffness"] / a["mass"])
         ratio = a["damping"] / (2.0 * np.sqrt(a["mass"]) * np.sqrt(a["stiffness"]))
-    for name, values in (("natural_frequency", frequency), ("damping_ratio", ratio)):
-        mark(name, ~_within(QUANTITIES[name].bounds, values))
+        phase = np.sqrt(a["stiffness"] / a["mass"]) * np.where(
+            np.isinf(a["duration"]), 0.0, a["duration"]
+        )
+    mark("damping_ratio", ~_within(QUANTITIES["damping_ratio"].bounds, ratio))
+    mark("phase", ~_within(QUANTITIES["phase"].bounds, phase))
     return status
 
 
@@ -246,7 +275,7 @@ def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which of the values the bounds hold; NaN is never one."""
     above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
     below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
-    return above & below
+    return (above & below) | np.isin(values, bounds.also) if bounds.also else above & below
 
 
 def _attributes(name: str) -> dict[str, Any]:

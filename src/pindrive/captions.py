@@ -77,7 +77,7 @@ def outcome(motion: Motion) -> str:
     end, numbers = motion.ending, motion.transient
     place = short("displacement", end.position)
     words = {
-        "resting": f"At rest at {place} since {duration(end.since)}",
+        "resting": f"At rest at {place} since {duration(numbers.rest_time)}",
         "decaying": f"Decays towards {place}",
         "steady": f"Steady {end.cycle} oscillation of ±{short('displacement', end.amplitude)}",
         "moving": f"Still moving after {duration(motion.duration)}",

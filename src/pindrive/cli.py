@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -57,12 +58,33 @@ def _print_version(wanted: bool) -> None:
 
 @app.callback()
 def _program(
+    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    pass
+    context.with_resource(_brief_warnings())
+
+
+@contextmanager
+def _brief_warnings() -> Iterator[None]:
+    """Warnings of implausible values are lines on the standard error, as refusals are."""
+    import warnings
+
+    from pindrive.plausible import ImplausibleValueWarning
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if issubclass(category, ImplausibleValueWarning):
+            typer.echo(f"warning: {message}", err=True)
+        else:
+            usual(message, category, *place, **more)
+
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+        warnings.simplefilter("always", ImplausibleValueWarning)
+        warnings.showwarning = show
+        yield
 
 
 @app.command()

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from pydantic import ValidationError
 
 from pindrive.drive import Drive, Profile
+from pindrive.plausible import warn_of
 from pindrive.quantities import refusal
 from pindrive.quantity import Rows
 from pindrive.schema import Place, Schema, over_time
@@ -162,8 +163,9 @@ def device_of(
         if around:
             problems += around.conflicts(schema, tables, place)
         if not problems:
-            device = _device(file, schema, around, hand, as_written)
-            return replace(device, settings=settings)
+            device = replace(_device(file, schema, around, hand, as_written), settings=settings)
+            _warn(device, place)
+            return device
     except ValidationError as error:
         problems += _value_problems(error, meant, place)
     except ValueError as error:  # each value in range, but not all together
@@ -173,9 +175,9 @@ def device_of(
 
 def motion_of(device: DeviceFile) -> Motion:
     """The release that a device file describes."""
-    from pindrive.motion import simulate
+    from pindrive.motion import simulated
 
-    return simulate(
+    return simulated(
         device.drive,
         mouse_velocity=device.mouse_velocity,
         displacement=device.displacement,
@@ -374,6 +376,13 @@ def _value_problems(error: ValidationError, meant: Set[str | None], place: Place
                 f"{place(key)}: {refusal(key, 'text in quotes', quoted(problem['input']))}"
             )
     return problems
+
+
+def _warn(device: DeviceFile, place: Place) -> None:
+    """Warn of values that no such device has, with the place where each was written."""
+    for key, value in device.values().items():
+        if key in DRIVE and value is not None:
+            warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
 
 
 def _around(tables: Mapping[str, Any], place: Place) -> Whole:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice
-from math import inf, isfinite, isinf, sqrt
+from itertools import islice, pairwise
+from math import copysign, inf, isinf, isnan, sqrt
 from operator import lt
 from typing import TYPE_CHECKING, cast, overload
 
-from pindrive.quantities import check, refusal
-from pindrive.quantity import counted
+from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.quantity import brief, counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,13 +25,14 @@ class Contact:
     """Dry friction between the pin drive and a surface: the plate or the fingertip.
 
     Args:
-        kinetic: friction force while sliding, N, at least 0; 0 with no static friction is no
+        kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
             contact at all. None with a curve: its first force.
-        static: largest friction force without sliding, N, at least `kinetic`; `kinetic` if None.
+        static: largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
+            None.
         curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
             increasing from 0, linear between rows and on beyond the last; its first force is
             `kinetic`. None: `kinetic` at every speed (Coulomb).
-        stiffness: tangential stiffness of the surface, N/m, greater than 0; infinite: rigid.
+        stiffness: tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
 
     Raises:
         ValueError: a value is no number or out of its range, static friction is below kinetic,
@@ -123,6 +124,43 @@ def check_increasing(
             raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}", where))
 
 
+def check_times(
+    times: Sequence[float],
+    *,
+    where: str = "",
+    label: str = "[{}]",
+    steps: bool = True,
+    why: str = "",
+) -> None:
+    """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
+
+    `label` takes the index of the one that is wrong, `why` says why there may be no step.
+    """
+    if not steps:
+        check_increasing(times, "s", where=where, label=label, why=why)
+        return
+    for i in range(1, len(times)):
+        before, given = f"the one before, {times[i - 1]!r} s", f"{times[i]!r} s"
+        if not times[i - 1] <= times[i]:
+            raise ValueError(refusal(label.format(i), f"at least {before}", given, where))
+        if i > 1 and times[i - 2] == times[i]:
+            required = f"greater than {before}: two rows at one time are a step, a third is none"
+            raise ValueError(refusal(label.format(i), required, given, where))
+
+
+def check_continuous(
+    profile: Profile, unit: str, *, where: str = "", label: str = "mouse_velocity"
+) -> None:
+    """Refuse a velocity (`unit`) with a step: it would take an infinite force."""
+    for t in profile.steps:
+        i = bisect_right(profile.times, t)
+        required = "without a step (a jump would take an infinite force)"
+        y, z = profile.values[i - 2 : i]
+        raise ValueError(
+            refusal(label, required, f"one from {y!r} {unit} to {z!r} {unit} at {t!r} s", where)
+        )
+
+
 def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
     """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
     if finger.curved and not finger.rigid:
@@ -166,7 +204,32 @@ def _checked_curve(curve: Iterable[tuple[float, float]]) -> tuple[tuple[float, f
         check("curve.force", force, label=f"curve[{i}] force") for i, (_, force) in enumerate(rows)
     ]
     check_increasing(speeds, "m/s", label="curve[{}] speed")
-    return tuple(zip(speeds, forces, strict=True))
+    found = tuple(zip(speeds, forces, strict=True))
+    check_slopes(found, "curve.slope", label="curve")
+    return found
+
+
+def _slopes(rows: Sequence[tuple[float, float]]) -> list[float]:
+    """The slopes between rows but for steps; infinite where the quotient overflows."""
+    return [
+        (y1 - y0) / (x1 - x0) if x1 - x0 > abs(y1 - y0) * 1e-300 else copysign(inf, y1 - y0)
+        for (x0, y0), (x1, y1) in pairwise(rows)
+        if x1 > x0
+    ]
+
+
+def check_slopes(
+    rows: Sequence[tuple[float, float]], name: str, *, where: str = "", label: str
+) -> None:
+    """Refuse rows of which two lie so close that the slope between them is out of range."""
+    bounds = QUANTITIES[name].bounds
+    slopes = _slopes(rows)
+    if all(bounds.lower <= slope <= bounds.upper for slope in slopes):
+        return
+    worst = max(slopes, key=abs)
+    unit = QUANTITIES[name].unit
+    shown = f"{worst:g} {unit}"
+    raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,9 +237,9 @@ class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
 
     Args:
-        mass: electromagnet and pin, kg, greater than 0.
-        stiffness: of the spring, N/m, greater than 0.
-        damping: viscous, N*s/m, at least 0.
+        mass: electromagnet and pin, kg, from 1e-12 to 1e12.
+        stiffness: of the spring, N/m, from 1e-12 to 1e12.
+        damping: viscous, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
         plate: friction of the moving plate on the electromagnet.
         finger: friction of the resting fingertip on the pin.
 
@@ -195,12 +258,18 @@ class Drive:
         object.__setattr__(self, "mass", check("mass", self.mass))
         object.__setattr__(self, "stiffness", check("stiffness", self.stiffness))
         object.__setattr__(self, "damping", check("damping", self.damping))
-        # Each in range, yet their quotient may overflow: no closed form could be computed then.
-        check("natural_frequency", self.natural_frequency)
-        check("damping_ratio", self.damping_ratio)
+        ratios = QUANTITIES["damping_ratio"].bounds
+        if self.damping_ratio not in ratios:
+            required = f"such that the damping ratio is {ratios.words()}"
+            given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
+            raise ValueError(refusal("damping", required, given))
         for label, contact in (("plate", self.plate), ("finger", self.finger)):
             if not isinstance(contact, Contact):
                 raise ValueError(refusal(label, "a Contact", repr(contact)))
+            steepest = max(map(abs, _slopes(contact.curve or ())), default=0.0)
+            if steepest > ratios.upper * self._critical_damping:  # it acts as damping does
+                most = f"at most {brief(ratios.upper)} times critical damping"
+                raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
 
     @classmethod
     def with_damping_ratio(
@@ -212,7 +281,7 @@ class Drive:
         plate: Contact,
         finger: Contact,
     ) -> Drive:
-        """A drive whose damping is given as a fraction of the critical one, at least 0.
+        """A drive whose damping is given as a fraction of the critical one, 0 or from 1e-11 to 1e6.
 
         Raises:
             ValueError: as for `Drive`.
@@ -229,19 +298,26 @@ class Drive:
     @property
     def damping_ratio(self) -> float:
         """Damping over critical damping, b / (2 sqrt(m k)): below 1 the drive oscillates."""
-        return self.damping / (2.0 * sqrt(self.mass) * sqrt(self.stiffness))
+        return self.damping / self._critical_damping
+
+    @property
+    def _critical_damping(self) -> float:
+        return 2.0 * sqrt(self.mass) * sqrt(self.stiffness)
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
     """A quantity over time: linear between its rows, constant before the first and after the last.
 
+    Two rows at one time are a step: from that time on the later one holds. A load may have steps, a
+    velocity may not.
+
     Args:
-        times: s, finite, strictly increasing, at least one.
-        values: one for each time, SI, finite.
+        times: s, from -1e12 to 1e12, none less than the one before, no three alike; at least one.
+        values: one for each time, SI, from -1e12 to 1e12, as is the rate between two rows.
 
     Raises:
-        ValueError: lengths differ, times do not increase, a number is not finite.
+        ValueError: lengths differ, times decrease, a number or a rate is out of range.
     """
 
     times: Sequence[float]
@@ -255,9 +331,8 @@ class Profile:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(times) != len(values):
             raise ValueError(refusal("values", f"as many as times, {len(times)}", len(values)))
-        check_increasing(
-            times, "s", label="times[{}]", why=" (a jump in velocity would take an infinite force)"
-        )
+        check_times(times, label="times[{}]")
+        check_slopes(list(zip(times, values, strict=True)), "profile.rate", label="profile")
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
 
@@ -265,6 +340,11 @@ class Profile:
     def changes(self) -> bool:
         """Whether it takes more than one value."""
         return any(value != self.values[0] for value in self.values)
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """The times at which its value jumps, s."""
+        return tuple(t for (t, y), (after, z) in pairwise(self.rows) if t == after and y != z)
 
     @property
     def rows(self) -> tuple[tuple[float, float], ...]:
@@ -276,7 +356,10 @@ class Profile:
     @overload
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
     def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
-        """The value at time t (s): a float for a float, an array of the same shape for an array."""
+        """The value at time t (s): a float for a float, an array of the same shape for an array.
+
+        At a step it is the value after it.
+        """
         if not isinstance(t, (float, int)):
             import numpy as np
 
@@ -292,7 +375,9 @@ def _column(values: Iterable[float], name: str, label: str) -> tuple[float, ...]
     """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
     try:
         listed = values.tolist() if hasattr(values, "tolist") else list(values)
-        if set(map(type, listed)) == {float} and all(map(isfinite, listed)):
+        bounds = QUANTITIES[name].bounds
+        plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
+        if plain and min(listed) in bounds and max(listed) in bounds:
             return tuple(listed)
         return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(listed))
     except TypeError:

@@ -10,7 +10,7 @@ import csv
 import json
 from dataclasses import asdict
 from io import BytesIO
-from math import isfinite
+from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +52,10 @@ def write_netcdf(motion: Motion, path: Path, samples: int) -> None:
 
 
 def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
-    """Write what was simulated and every number that came out; null where one does not exist."""
+    """Write what was simulated and every number that came out; null where one does not exist.
+
+    An infinite one is the text "Infinity".
+    """
     from pindrive import __version__
 
     inputs, numbers = motion.inputs(), motion.numbers()
@@ -87,9 +90,11 @@ def _units(name: str, value: object) -> str | list[str]:
 
 
 def _finite(value: Any) -> Any:
-    """`value` with null for NaN and infinity, which JSON does not have."""
+    """`value` with null for NaN and the text "Infinity" for infinity, which JSON lacks."""
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not isfinite(value) else value
+    if not isinstance(value, float) or isfinite(value):
+        return value
+    return None if isnan(value) else "Infinity" if value > 0 else "-Infinity"

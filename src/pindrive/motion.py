@@ -11,10 +11,18 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 
 from pindrive import _core
-from pindrive.drive import Drive, Profile, check_load, check_skin, check_stretch
+from pindrive.drive import (
+    Drive,
+    Profile,
+    check_continuous,
+    check_load,
+    check_skin,
+    check_stretch,
+)
 from pindrive.events import Event, Segment, Table, events_of, segments_of
-from pindrive.quantities import QUANTITIES, check, refusal
-from pindrive.quantity import counted
+from pindrive.plausible import warn_of
+from pindrive.quantities import INPUTS, QUANTITIES, check, refusal
+from pindrive.quantity import brief, counted
 from pindrive.transient import DECAYING, Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
@@ -24,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.sensitivity import Sensitivity
+    from pindrive.style import Figure
 
 __all__ = ["Event", "Motion", "Segment", "simulate"]
 
@@ -35,6 +44,16 @@ CoreNumbers = tuple[
 ]
 """In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
+
+_SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
+_GLANCE = (
+    *(end for name in ("mass", "stiffness") for end in (_SEEN[name].lower, _SEEN[name].upper)),
+    *(_SEEN[name].upper for name in ("damping", "plate.static", "finger.static")),
+    *(_SEEN["finger.stiffness"].lower, _SEEN["finger.stiffness"].upper),
+    *(_SEEN[name].upper for name in ("mouse_velocity", "plate_load", "displacement", "velocity")),
+    *(_SEEN["duration"].lower, _SEEN["duration"].upper),
+)
+"""What any device has, in the order of `_plausible`."""
 
 
 class Motion:
@@ -95,8 +114,7 @@ class Motion:
         """How it ends, and after how long, in a line."""
         return (
             f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
-            f"{self.ending.kind} since {self.ending.since:.6g} s, "
-            f"settling time {self.transient.settling_time:.6g} s>"
+            f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s>"
         )
 
     # ---- the motion over time --------------------------------------------------------------------
@@ -257,6 +275,16 @@ class Motion:
         """The worst residual of each law over [0, duration], computed without the solver."""
         return Certificate(**self._core.certificate(self.duration))
 
+    def plot(self) -> Figure:
+        """The motion over time and in the phase plane, as a figure that a notebook shows.
+
+        Returns:
+            A figure of 180 mm by 125 or, with skin, 150 mm; `figure.savefig(FILE)` writes it.
+        """
+        from pindrive.plots import plot_motion
+
+        return plot_motion(self)
+
     # ---- for other programs ----------------------------------------------------------------------
 
     def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
@@ -377,14 +405,16 @@ def simulate(
 
     Args:
         drive: the drive; its finger may be compliant, its contacts may have friction curves.
-        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s; constant
-            or a `Profile`, whose acceleration acts on the pin.
-        displacement: x(0), deflection from the spring's rest, m.
-        velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
-        plate_load: factor on the plate's friction, at least 0; constant or a `Profile`.
+        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s, up to 1e12
+            either way; constant or a `Profile` without steps, whose acceleration acts on the pin.
+        displacement: x(0), deflection from the spring's rest, m, up to 1e12 either way.
+        velocity: x'(0), m/s, up to 1e12 either way; None: the plate's, as for a pin that was
+            carried.
+        plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
         skin_stretch: stretch of a compliant finger that grips at the start, m; None: the stretch of
             a finger being slid along or, for a pin at rest, none.
-        duration: s, greater than 0; None: long enough to see the ending.
+        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; None: long enough
+            to see the ending.
         settling_band: half the band about the end in which the motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1.
 
@@ -395,7 +425,41 @@ def simulate(
         ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
             skin cannot hold; a friction curve at a compliant finger, or at a plate whose load
             changes: neither is piecewise linear.
+
+    Warns:
+        ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
+    motion = simulated(
+        drive,
+        mouse_velocity=mouse_velocity,
+        displacement=displacement,
+        velocity=velocity,
+        plate_load=plate_load,
+        skin_stretch=skin_stretch,
+        duration=duration,
+        settling_band=settling_band,
+    )
+    if not _plausible(motion.core_numbers):
+        given = motion.inputs()
+        for name in ("velocity",) * (velocity is None) + ("duration",) * (duration is None):
+            del given[name]
+        for name, value in given.items():
+            warn_of(name, value, stacklevel=2)
+    return motion
+
+
+def simulated(
+    drive: Drive,
+    *,
+    mouse_velocity: float | Profile,
+    displacement: float = 0.0,
+    velocity: float | None = None,
+    plate_load: float | Profile = 1.0,
+    skin_stretch: float | None = None,
+    duration: float | None = None,
+    settling_band: float = _core.settling_band,
+) -> Motion:
+    """What `simulate` does, without its warnings: for numbers that no person has written."""
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
     v_plate = _rows(mouse_velocity, "mouse_velocity")
@@ -404,6 +468,8 @@ def simulate(
     v = _value_at_start(v_plate) if velocity is None else check("velocity", velocity)
     end = inf if duration is None else check("duration", duration)
     band = check("settling_band", settling_band)
+    if duration is not None:
+        check_phase(end, drive.natural_frequency)
     plate, finger = drive.plate, drive.finger
     if not plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
@@ -434,12 +500,46 @@ def _rows(given: float | Profile, name: str) -> Rows:
     if not isinstance(given, Profile):
         return [(0.0, check(name, given))]
     bounds = QUANTITIES[name].bounds
+    if name == "mouse_velocity":
+        check_continuous(given, "m/s")
     if not (min(given.values) in bounds and max(given.values) in bounds):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
     if not given.changes:
         return [(0.0, given.values[0])]
     return list(given.rows)
+
+
+def check_phase(
+    duration: float, natural_frequency: float, *, where: str = "", label: str = "duration"
+) -> None:
+    """Refuse a duration (s) in which the phase grows beyond what doubles tell apart."""
+    bounds = QUANTITIES["phase"].bounds
+    if duration * natural_frequency > bounds.upper:
+        longest, phase = brief(bounds.upper / natural_frequency), brief(bounds.upper)
+        required = f"at most {longest} s, {phase} over the natural frequency"
+        raise ValueError(refusal(label, required, f"{duration!r} s", where))
+
+
+def _plausible(numbers: CoreNumbers) -> bool:
+    """Whether `warn_of` has nothing to say, at a glance: a motion takes microseconds."""
+    mass, stiffness, damping, plate, finger, v_plate, load, x, v, _, duration = numbers
+    m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
+    return (
+        m0 <= mass <= m1
+        and k0 <= stiffness <= k1
+        and damping <= b1
+        and plate[1] <= plate1
+        and finger[1] <= finger1
+        and (skin0 <= finger[2] <= skin1 or finger[2] == inf)
+        and not (plate[3] or finger[3])
+        and len(v_plate) == len(load) == 1
+        and abs(v_plate[0][1]) <= speed1
+        and load[0][1] <= load1
+        and abs(x) <= x1
+        and abs(v) <= v1
+        and (t0 <= duration <= t1 or duration == inf)
+    )
 
 
 def _value_at_start(rows: Rows) -> float:

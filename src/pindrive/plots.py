@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.captions import NAME, duration, outcome, parameters, short, stuck_name
 from pindrive.drive import Profile
-from pindrive.style import GREY, PALETTE, SMALL, STYLE, save
+from pindrive.style import GREY, PALETTE, SMALL, STYLE, Figure, save
 from pindrive.trace import MM, Trace
 
 if TYPE_CHECKING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from math import degrees, floor, inf, isfinite, isnan, log10
 from typing import Final
@@ -26,25 +27,32 @@ DISPLAY: Final[dict[str, tuple[str, float]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """An interval of allowed values. An open infinite end leaves infinity out."""
+    """An interval of allowed values, and single ones beside it.
+
+    An open infinite end leaves infinity out.
+    """
 
     lower: float = -inf
     upper: float = inf
     lower_closed: bool = False
     upper_closed: bool = False
+    also: tuple[float, ...] = ()
 
     def __contains__(self, value: float) -> bool:
-        """Whether `value` lies in the interval; NaN never does."""
-        return (self.lower < value or (self.lower_closed and value == self.lower)) and (
-            value < self.upper or (self.upper_closed and value == self.upper)
-        )
+        """Whether `value` is allowed; NaN never is."""
+        above = self.lower < value or (self.lower_closed and value == self.lower)
+        below = value < self.upper or (self.upper_closed and value == self.upper)
+        return (above and below) or value in self.also
 
     def words(self, unit: str = "") -> str:
-        """The interval as it reads in a sentence: "finite and greater than 0 kg"."""
+        """The values as they read in a sentence: "finite and greater than 0 kg"."""
 
         def end(value: float) -> str:
-            return f"{value:g} {unit}".rstrip()
+            return f"{brief(value)} {unit}".rstrip()
 
+        if -inf < self.lower and self.lower_closed and self.upper_closed and self.upper < inf:
+            beside = ["infinite" if value == inf else end(value) for value in self.also]
+            return " or ".join([*beside, f"from {end(self.lower)} to {end(self.upper)}"])
         parts = [] if self.upper == inf and self.upper_closed else ["finite"]
         if self.lower > -inf:
             parts.append(f"{'at least' if self.lower_closed else 'greater than'} {end(self.lower)}")
@@ -56,7 +64,6 @@ class Bounds:
 FINITE: Final = Bounds()
 POSITIVE: Final = Bounds(lower=0.0)
 NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
-POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,7 @@ class Quantity:
     """SI unit, "1" when dimensionless, "" for a count or a truth value."""
     meaning: str
     bounds: Bounds = FINITE
+    """Outside of them a value is refused."""
     default: float | None = None
     """SI value in the file that `pindrive init` writes."""
     source: str = ""
@@ -88,6 +96,8 @@ class Quantity:
     follows: tuple[str, ...] = ()
     """Keys to which it keeps its ratio where they are varied and it is not: to the first, or to the
     first over the second. Of rows, the values keep it."""
+    seen: Bounds | None = None
+    """What any such device has, either way; a value outside is taken, but warned of."""
 
     @property
     def key(self) -> str:
@@ -123,6 +133,18 @@ class Quantity:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
         return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
 
+    def doubt(self, value: float, label: str = "") -> str:
+        """Words for a value (SI) that no such device has; empty for one that may be meant."""
+        if self.seen is None or abs(value) in self.seen or not isfinite(value):
+            return ""
+        unit = "" if self.unit == "1" else self.unit
+        words = f"{label or self.name} is {brief(value)} {unit}".rstrip()
+        words += f"; any such device has {self.seen.words(unit)}"
+        meant = value / self.display_scale
+        if self.display_scale == 1.0 or abs(meant) not in self.seen:
+            return words
+        return f"{words}; did you mean {brief(value)} {self.display_unit}, {brief(meant)} {unit}?"
+
     def digits(self, value: float) -> str:
         """`value` (SI) in display units to four significant digits, without the unit."""
         return significant(value * self.display_scale)
@@ -136,6 +158,11 @@ def counted(number: int, noun: str, plural: str = "") -> str:
     """A count with its noun, thousands apart: "1 point", "10 000 points"."""
     shown = f"{number:,}".replace(",", " ")
     return f"{shown} {noun if number == 1 else plural or f'{noun}s'}"
+
+
+def brief(value: float) -> str:
+    """`value` to six digits, as short as they come: "1e-6"."""
+    return re.sub(r"e([+-])0*", lambda sign: "e" + sign[1].strip("+"), f"{value:g}")
 
 
 def significant(value: float, digits: int = 4) -> str:

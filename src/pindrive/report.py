@@ -166,14 +166,16 @@ def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:
 
 def ending(motion: Motion) -> str:
     """How the motion ends, in a sentence."""
-    end = motion.ending
-    since, place = _TIME.text(end.since), _POSITION.text(end.position)
+    end, place = motion.ending, _POSITION.text(motion.ending.position)
     if end.kind == "resting":
-        return f"At rest at x = {place} since {since}."
+        return f"At rest at x = {place} since {_TIME.text(motion.transient.rest_time)}."
     if end.kind == "decaying":
-        return f"Decays towards x = {place}, without another event since {since}."
+        last = motion.transient.last_event_time
+        events = f"last event at {_TIME.text(last)}" if last > 0.0 else "no event"
+        return f"Decays towards x = {place} and never comes to rest; {events}."
     if end.kind == "steady":
         size, period = _POSITION.text(end.amplitude), _TIME.text(end.period)
+        since = _TIME.text(end.steady_since)
         return (
             f"Steady {end.cycle} oscillation about x = {place} since {since}: "
             f"amplitude {size}, period {period}."

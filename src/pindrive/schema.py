@@ -21,8 +21,10 @@ from pindrive.drive import (
     check_increasing,
     check_load,
     check_skin,
+    check_slopes,
     check_static,
     check_stretch,
+    check_times,
 )
 from pindrive.quantities import COLUMNS, QUANTITIES, check, refusal
 from pindrive.quantity import Quantity, Rows
@@ -81,13 +83,15 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
         )
     if quantity.rows_of == "places":
         return tuple(rows)
-    check_increasing(
-        [first for first, _ in rows],
-        across.unit,
-        where=place,
-        label=f"{key}[{{}}] {words[0]}",
-        why=" (a jump would take an infinite force)" if key == "motion.mouse_velocity" else "",
-    )
+    label = f"{key}[{{}}] {words[0]}"
+    firsts = [first for first, _ in rows]
+    if quantity.rows_of == "curve":
+        check_increasing(firsts, across.unit, where=place, label=label)
+        check_slopes(rows, "curve.slope", where=place, label=key)
+    else:
+        no_step = " (a jump would take an infinite force)" if key == "motion.mouse_velocity" else ""
+        check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
+        check_slopes(rows, "profile.rate", where=place, label=key)
     return tuple(rows)
 
 

@@ -169,7 +169,7 @@ class _Derivative:
 
         def exists(name: str) -> bool:
             known = at.get(_KNOWN_AT.get(name, ""), duration)
-            ends = name.startswith("ending.") or name == "transient.settling_time"
+            ends = name.startswith("ending.") or name in _OF_THE_ENDING
             if not (isfinite(at[name]) and known < self.course_until):
                 return False
             if ends and not self._same_ending:
@@ -201,6 +201,8 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
     )
 
 
+_OF_THE_ENDING = ("transient.settling_time", "transient.rest_time", "transient.last_event_time")
+
 _KNOWN_AT = {
     f"transient.{name}": f"transient.{time}"
     for name, time in {
@@ -224,7 +226,7 @@ def _numbers(
     transient = core.transient(duration, band)
     ending = {
         "position": transient.pop("end_position"),
-        "since": core.since,
+        "steady_since": core.steady_since,
         "amplitude": transient.pop("amplitude"),
         "period": core.period,
     }
@@ -266,7 +268,12 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         if int(index) >= len(rows):
             one = f"one of {counted(len(rows), 'row')} of {table}"
             raise ValueError(refusal("parameter", one, name))
-        return [(*_TABLES[table], int(index), int(column in ("force", "value")))]
+        place = (*_TABLES[table], int(index), int(column in ("force", "value")))
+        if column != "time":
+            return [place]
+        # The time of a step is that of both its rows.
+        time = rows[int(index)][0]
+        return [(*_TABLES[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
     if name not in _PLACES:
         known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
@@ -326,7 +333,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and stiffness > 0.0
         and contacts
         and increase(mouse_velocity)
-        and increase(plate_load)
+        and all(before[0] <= after[0] for before, after in pairwise(plate_load))
         and all(load >= 0.0 for _, load in plate_load)
         and not abs(stretch) * finger[2] > finger[1]
     )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from typing import IO, TYPE_CHECKING, Any, Final
 
 import matplotlib.style
+from matplotlib.figure import Figure as _Figure
 
 if TYPE_CHECKING:
     import os
-
-    from matplotlib.figure import Figure
 
 PALETTE: Final = {
     "curve": "#0072B2",  # blue
@@ -50,8 +50,22 @@ _SAVING: Final[dict[str, dict[str, Any]]] = {
 }
 
 
+class Figure(_Figure):
+    """A figure that a notebook shows where its cell ends in one.
+
+    Matplotlib leaves that to pyplot, which this package does without: it would open windows.
+    """
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        """The picture, and its size on the screen, at which it is as large as on paper."""
+        file = BytesIO()
+        save(self, file, "png")
+        width, height = (round(96 * inches) for inches in self.get_size_inches())
+        return file.getvalue(), {"width": width, "height": height}
+
+
 def save(
-    figure: Figure, target: str | os.PathLike[str] | IO[bytes], format: str | None = None
+    figure: _Figure, target: str | os.PathLike[str] | IO[bytes], format: str | None = None
 ) -> None:
     """Write a figure, with its text as text where the format has text.
 

@@ -67,6 +67,12 @@ class Transient:
     settling_time: float
     """The paper's time of the transitional period, s: from then on x stays within the settling band
     about x_end; for a steady oscillation, when that begins."""
+    rest_time: float
+    """From then on the pin is at rest for good, s; infinite for a motion that never comes to rest:
+    one that decays without end, or a steady oscillation."""
+    last_event_time: float
+    """Last change of a contact's state after the release, s: it sticks, slips or crosses; 0 without
+    any, infinite where they go on for ever, as in a stick-slip cycle."""
     peak_stretch: float
     """Largest stretch of a compliant finger's skin, m; NaN for a rigid one."""
     peak_stretch_rate: float
@@ -92,8 +98,8 @@ class Ending:
     `stick-slip`, or a `limit cycle` that falling friction sustains without a carried phase."""
     position: float
     """Resting place, or middle of the final oscillation, m."""
-    since: float
-    """When it began, s."""
+    steady_since: float
+    """When a steady oscillation began, s."""
     amplitude: float
     """Of a steady oscillation, m."""
     period: float
@@ -104,7 +110,12 @@ class Ending:
         """The ending that the core found, with the numbers measured on the segments."""
         kind, cycle = _ENDS[core.end]
         return cls(
-            kind, cycle, numbers["end_position"], core.since, numbers["amplitude"], core.period
+            kind,
+            cycle,
+            numbers["end_position"],
+            core.steady_since,
+            numbers["amplitude"],
+            core.period,
         )
 
 

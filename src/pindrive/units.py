@@ -48,6 +48,7 @@ _NUMBER_AND_UNIT = re.compile(
     r"\s*(?P<number>[+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))(?P<unit>.*)",
     re.IGNORECASE,
 )
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?![\d,])")
 _PLAIN = str.maketrans({"·": "*", "⋅": "*", "×": "*", "−": "-", "²": "^2"})
 
 
@@ -66,9 +67,14 @@ def to_si(text: str, unit: str, example: str) -> float:
     Raises:
         UnitError: no number, no unit, an unknown unit or one of another dimension.
     """
-    match = _NUMBER_AND_UNIT.fullmatch(text.translate(_PLAIN))
+    plain = text.translate(_PLAIN)
+    if _DECIMAL_COMMA.match(plain):
+        point = text.strip().replace(",", ".", 1)
+        raise UnitError(f"a number whose decimal sign is a point, like {quoted(point)}")
+    match = _NUMBER_AND_UNIT.fullmatch(plain)
     if match is None:
-        raise UnitError(f'a number with its unit, like "{example}"')
+        kind = "a number" if unit == "1" else "a number with its unit"
+        raise UnitError(f'{kind}, like "{example}"')
     number, written = match["number"], match["unit"].strip().replace("%", "percent")
     if not written and unit != "1":
         raise UnitError(f'a number with its unit (give a unit, like "{example}")')

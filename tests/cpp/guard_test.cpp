@@ -18,7 +18,7 @@ constexpr double unseen = 1e-10;
 double lowest(const pd::Oscillator<double>& oscillator, const Guard& guard, double low,
               double high) {
   const auto at = [&](double tau) { return guard.at(oscillator.after(tau), tau); };
-  const auto flatness = guard.flatness(oscillator, oscillator.after(low), high - low);
+  const auto flatness = guard.flatness(oscillator, oscillator.after(low), low, high - low);
   return guard.lowest(oscillator, at(low), at(high), flatness, unseen);
 }
 

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib.style
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
-from matplotlib.figure import Figure
 
 from pindrive.device.history import Moment, draw_history, moment
 from pindrive.device.painting import Painting, paint, view
 from pindrive.device.printed import turnings
 from pindrive.quantities import QUANTITIES
 from pindrive.quantity import counted
-from pindrive.style import PALETTE, SMALL, STYLE
+from pindrive.style import PALETTE, SMALL, STYLE, Figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

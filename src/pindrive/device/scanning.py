@@ -22,7 +22,7 @@ from pindrive.device.hand import HandPath
 from pindrive.device.magnet import CoilState, Current
 from pindrive.device.scene import Scene
 from pindrive.drive import Profile
-from pindrive.motion import Event, Motion, simulate
+from pindrive.motion import Event, Motion, simulated
 from pindrive.quantities import QUANTITIES, refusal
 
 if TYPE_CHECKING:
@@ -235,7 +235,7 @@ class PreparedPin:
 
     def follow(self) -> PinScan:
         """The motion that they lead to."""
-        motion = simulate(
+        motion = simulated(
             self.device.drive,
             mouse_velocity=self.plate_velocity,
             displacement=self.start.position,

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
 import numpy as np
-from matplotlib.figure import Figure
 
 from pindrive.device.speed import criterion
-from pindrive.style import GREY, PALETTE, SMALL, STYLE
+from pindrive.style import GREY, PALETTE, SMALL, STYLE, Figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

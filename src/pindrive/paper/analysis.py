@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import formulas, printed
 from pindrive.paper.exhibit import Exhibit, page, tidy
 from pindrive.paper.reading import by_case, trend
@@ -132,15 +132,17 @@ def first_reversal() -> Exhibit:
     fine = np.linspace(0.0, 0.8, 161)
     wide = np.linspace(0.01, 2.0, 161)
     limit = formulas.limit_damping_ratio(release(0.0, wide, 0.2, 1.2))
-    found = simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=xr.DataArray(2 * fine, dims="ratio_of_map"),
-        plate_kinetic=0.2,
-        finger_kinetic=0.0,
-        mouse_velocity=xr.DataArray(wide, dims="speed_of_map"),
-        displacement=1.2,
-        duration=20.0,
+    found = batched(
+        dict(
+            mass=1.0,
+            stiffness=1.0,
+            damping=xr.DataArray(2 * fine, dims="ratio_of_map"),
+            plate_kinetic=0.2,
+            finger_kinetic=0.0,
+            mouse_velocity=xr.DataArray(wide, dims="speed_of_map"),
+            displacement=1.2,
+            duration=20.0,
+        )
     ).transpose("ratio_of_map", "speed_of_map")
     angles = {"units": "rad"}
     times = found["transient_first_reversal_time"].to_numpy()
@@ -233,14 +235,16 @@ def steady_and_rest() -> Exhibit:
     ratio = np.linspace(0.05, 7.93, 320)  # v_p / ω_0 x_f, nowhere on a step
     finger = 1 / ratio
     rest = release(0.0, 1.0, 3.0, 0.0)
-    found = simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=0.0,
-        plate_kinetic=3.0 + finger,
-        finger_kinetic=finger,
-        mouse_velocity=1.0,
-        displacement=3.0,  # where the plate lets go: x_p - x_f
+    found = batched(
+        dict(
+            mass=1.0,
+            stiffness=1.0,
+            damping=0.0,
+            plate_kinetic=3.0 + finger,
+            finger_kinetic=finger,
+            mouse_velocity=1.0,
+            displacement=3.0,  # where the plate lets go: x_p - x_f
+        )
     )
     period = 2 * np.pi
     data = xr.Dataset(
@@ -250,7 +254,7 @@ def steady_and_rest() -> Exhibit:
             "printed_steady": ("place", printed.periods_to_steady(r)[0]),
             "rest_after": ("finger", formulas.periods_to_rest(rest, finger)),
             "printed_rest": ("finger", printed.periods_to_rest(rest, finger)),
-            "simulated_rest": ("finger", found["ending_since"].to_numpy() / period),
+            "simulated_rest": ("finger", found["transient_rest_time"].to_numpy() / period),
         },
         coords={
             "place": _plain(places, "place"),

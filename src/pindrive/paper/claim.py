@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import population
 
 if TYPE_CHECKING:
@@ -58,15 +58,17 @@ class Claim:
 
 def batch(r: Release, finger: Array | float = 0.0, *, velocity: Array | None = None) -> xr.Dataset:
     """The exact numbers of these releases, with finger friction (N), from another velocity."""
-    return simulate_batch(
-        mass=r.mass,
-        stiffness=r.stiffness,
-        damping=r.damping,
-        plate_kinetic=r.friction,
-        finger_kinetic=finger,
-        mouse_velocity=r.mouse_velocity,
-        displacement=r.displacement,
-        velocity=velocity,
+    return batched(
+        dict(
+            mass=r.mass,
+            stiffness=r.stiffness,
+            damping=r.damping,
+            plate_kinetic=r.friction,
+            finger_kinetic=finger,
+            mouse_velocity=r.mouse_velocity,
+            displacement=r.displacement,
+            velocity=velocity,
+        )
     )
 
 

@@ -260,7 +260,9 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         for of in (r, far)
     ]
     rate_changes = np.abs(shrink[1] / shrink[0] - 1) > TINY
-    near_rest, far_rest = (batch(of, finger + 1e-4)["ending_since"].to_numpy() for of in (r, far))
+    near_rest, far_rest = (
+        batch(of, finger + 1e-4)["transient_rest_time"].to_numpy() for of in (r, far)
+    )
     longer = np.abs(far_rest / near_rest - 1) > TINY
     yield Claim(
         place,

@@ -42,7 +42,7 @@ def steady_state() -> Iterator[Claim]:
     )
     taken = formulas.time_to_steady(r) / period
     simulated = batch(r)
-    agree = np.abs(simulated["ending_since"].to_numpy() / period - taken) < TINY
+    agree = np.abs(simulated["ending_steady_since"].to_numpy() / period - taken) < TINY
     of_paper = printed.periods_to_steady(r)
     beyond = r.displacement > formulas.friction_offset(r)
     reversals = simulated["transient_plate_reversals"].to_numpy()
@@ -61,7 +61,7 @@ def steady_state() -> Iterator[Claim]:
     found = batch(r, finger)
     rest = formulas.periods_to_rest(r, finger)
     of_paper = printed.periods_to_rest(r, finger)
-    from_release = found["ending_since"].to_numpy() / period
+    from_release = found["transient_rest_time"].to_numpy() / period
     let_go = np.full(count, np.nan)
     for i in range(count):
         slips = [

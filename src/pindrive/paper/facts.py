@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import formulas, population
 
 if TYPE_CHECKING:
@@ -34,15 +34,17 @@ class Facts:
     def batch(self) -> xr.Dataset:
         """The numbers of every release, the finger frictionless."""
         r = self.r
-        return simulate_batch(
-            mass=r.mass,
-            stiffness=r.stiffness,
-            damping=r.damping,
-            plate_kinetic=r.friction,
-            finger_kinetic=0.0,
-            mouse_velocity=r.mouse_velocity,
-            displacement=r.displacement,
-            duration=1.01 * formulas.limit_reversal_time(r),
+        return batched(
+            dict(
+                mass=r.mass,
+                stiffness=r.stiffness,
+                damping=r.damping,
+                plate_kinetic=r.friction,
+                finger_kinetic=0.0,
+                mouse_velocity=r.mouse_velocity,
+                displacement=r.displacement,
+                duration=1.01 * formulas.limit_reversal_time(r),
+            )
         )
 
     def number(self, name: str) -> Array:
@@ -85,15 +87,17 @@ class Facts:
         trough, t_c = self.number("trough_displacement"), self.number("trough_time")
         r = self.r
         chosen = np.isnan(self.number("first_reversal_time")) & (trough < 0.0)
-        found = simulate_batch(
-            mass=r.mass,
-            stiffness=r.stiffness,
-            damping=r.damping,
-            plate_kinetic=r.friction,
-            finger_kinetic=0.0,
-            mouse_velocity=r.mouse_velocity,
-            displacement=np.where(chosen, trough, -1.0),
-            velocity=0.0,
+        found = batched(
+            dict(
+                mass=r.mass,
+                stiffness=r.stiffness,
+                damping=r.damping,
+                plate_kinetic=r.friction,
+                finger_kinetic=0.0,
+                mouse_velocity=r.mouse_velocity,
+                displacement=np.where(chosen, trough, -1.0),
+                velocity=0.0,
+            )
         )
         time = t_c + found["transient_return_velocity_time"].to_numpy()
         speed = found["transient_return_velocity"].to_numpy()

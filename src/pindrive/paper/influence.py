@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import baseline
 from pindrive.paper.exhibit import Exhibit, page, tidy
 from pindrive.paper.reading import listed, trend
@@ -54,11 +54,11 @@ PARAMETERS: Final = (
 
 def curves() -> xr.Dataset:
     """The numbers along each of the six ranges, the other parameters at the baseline."""
-    names = ("transient_settling_time", "ending_since", "transient_peak_displacement")
+    names = ("transient_settling_time", "transient_rest_time", "transient_peak_displacement")
     values = np.array([np.linspace(p.least, p.most, POINTS) for p in PARAMETERS])
     columns: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
     for parameter, along in zip(PARAMETERS, values, strict=True):
-        found = simulate_batch(**{**baseline.DRIVE, parameter.argument: along})
+        found = batched({**baseline.DRIVE, parameter.argument: along})
         for name in names:
             columns[name].append(found[name].to_numpy())
     dims = ("parameter", "point")
@@ -113,7 +113,7 @@ def settling(data: xr.Dataset) -> Exhibit:
         "The time of the transitional period against each of the six parameters",
         f"Blue: settled, within 5 % of |x_0 − x_end| for good. Orange: at rest for good. Dot: the "
         f"baseline ({baseline.stated()}), which every other parameter keeps.",
-        data[["value", "settling_time", "since"]],
+        data[["value", "settling_time", "rest_time"]],
         _draw_settling,
         (
             f"Between the ends of these ranges the settling time changes most with {order[0]}, "
@@ -163,7 +163,7 @@ def _draw_settling(data: xr.Dataset) -> Figure:
     def draw(axes: Axes, p: Parameter) -> None:
         of = data.sel(parameter=p.argument)
         x = p.scale * of.value.values
-        _jumping(axes, x, 1e3 * of.since.values, PALETTE["resting"])
+        _jumping(axes, x, 1e3 * of.rest_time.values, PALETTE["resting"])
         _jumping(axes, x, 1e3 * of.settling_time.values, PALETTE["curve"])
         _mark_baseline(axes, p, of.value.values, 1e3 * of.settling_time.values)
 

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm, Normalize
 
-from pindrive import simulate_batch
+from pindrive.batch import batched
 from pindrive.paper import baseline, formulas
 from pindrive.paper.exhibit import Exhibit, page, tidy
 from pindrive.paper.population import SEED
@@ -78,14 +78,16 @@ DISPLACEMENT_MAPS: Final = (("speed", "damping"), ("plate", "speed"), ("plate", 
 def numbers(groups: Mapping[str, xr.DataArray | float]) -> xr.Dataset:
     """What `simulate_batch` says of a drive given by its groups, in units of m, x_0 and 1/ω_0."""
     values = {name: groups.get(name, group.baseline) for name, group in GROUPS.items()}
-    return simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=2 * values["damping"],
-        plate_kinetic=values["plate"],
-        finger_kinetic=values["finger"],
-        mouse_velocity=values["speed"],
-        displacement=1.0,
+    return batched(
+        dict(
+            mass=1.0,
+            stiffness=1.0,
+            damping=2 * values["damping"],
+            plate_kinetic=values["plate"],
+            finger_kinetic=values["finger"],
+            mouse_velocity=values["speed"],
+            displacement=1.0,
+        )
     )
 
 
@@ -185,14 +187,16 @@ def _checks() -> tuple[float, float]:
     groups = {n: xr.DataArray(draw.uniform(0.02, g.most, count)) for n, g in GROUPS.items()}
     m, k, x0 = draw.uniform(2e-3, 2e-2, count), draw.uniform(20, 400, count), 1e-3
     w0 = np.sqrt(k / m)
-    real = simulate_batch(
-        mass=m,
-        stiffness=k,
-        damping=2 * groups["damping"].values * np.sqrt(m * k),
-        plate_kinetic=groups["plate"].values * k * x0,
-        finger_kinetic=groups["finger"].values * k * x0,
-        mouse_velocity=groups["speed"].values * w0 * x0,
-        displacement=x0,
+    real = batched(
+        dict(
+            mass=m,
+            stiffness=k,
+            damping=2 * groups["damping"].values * np.sqrt(m * k),
+            plate_kinetic=groups["plate"].values * k * x0,
+            finger_kinetic=groups["finger"].values * k * x0,
+            mouse_velocity=groups["speed"].values * w0 * x0,
+            displacement=x0,
+        )
     )
     unit = numbers(groups)
     pairs = (

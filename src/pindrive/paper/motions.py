@@ -107,7 +107,7 @@ def displacement() -> Exhibit:
             "peak": numbers("transient.peak_displacement"),
             "trough": numbers("transient.trough_displacement"),
             "settling_time": numbers("transient.settling_time"),
-            "rest_since": numbers("ending.since"),
+            "rest_time": numbers("transient.rest_time"),
         },
         coords={
             "time": ("time", t, {"units": "s", "long_name": "time since the release"}),

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.quantities import QUANTITIES, refusal
-from pindrive.quantity import NON_NEGATIVE
+from pindrive.quantities import FROM_ZERO, QUANTITIES, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -97,7 +96,8 @@ class Release:
             finger: friction force of the finger, N, kinetic = static; the analysis has none.
             duration: as for `pindrive.simulate`.
         """
-        from pindrive import Contact, Drive, simulate
+        from pindrive import Contact, Drive
+        from pindrive.motion import simulated
 
         drive = Drive(
             mass=float(self.mass[index]),
@@ -106,7 +106,7 @@ class Release:
             plate=Contact(float(self.friction[index])),
             finger=Contact(finger),
         )
-        return simulate(
+        return simulated(
             drive,
             mouse_velocity=float(self.mouse_velocity[index]),
             displacement=float(self.displacement[index]),
@@ -116,7 +116,7 @@ class Release:
 
 def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:
     quantity = QUANTITIES[_QUANTITY.get(name, name)]
-    bounds = NON_NEGATIVE if name == "mouse_velocity" else quantity.bounds
+    bounds = FROM_ZERO if name == "mouse_velocity" else quantity.bounds
     try:
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib.style
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -15,7 +14,7 @@ from pindrive.study.axis import as_distribution
 from pindrive.study.plan import variable
 from pindrive.study.report import elasticity
 from pindrive.study.words import QUANTITY, symbol, words
-from pindrive.style import PALETTE, SMALL, STYLE
+from pindrive.style import PALETTE, SMALL, STYLE, Figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

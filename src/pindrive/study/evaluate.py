@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pindrive.batch import simulate_batch
+from pindrive.batch import batched
 from pindrive.drive import Contact, Drive, Profile
-from pindrive.motion import Motion, simulate
+from pindrive.motion import Motion, simulated
 from pindrive.ratios import scaled_rows
 from pindrive.study.outputs import LEDGER, MEASURED
 from pindrive.study.plan import variable
@@ -66,7 +66,7 @@ def evaluate(
         given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
         given["mass"] = np.broadcast_to(given["mass"], (count,))
         energy = not set(LEDGER).isdisjoint(outputs)
-        found = simulate_batch(**given, energy=energy, threads=threads)
+        found = batched(given, energy=energy, threads=threads)
         table = {name: found[name].values for name in outputs if name != "reason"}
         if "reason" in outputs:
             table["reason"] = _bad_arguments(found["status"].values)
@@ -163,6 +163,6 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         *("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration"),
         "settling_band",
     )
-    return simulate(
+    return simulated(
         Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
     )

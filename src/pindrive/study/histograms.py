@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.quantity import counted
 from pindrive.study.plan import variable
 from pindrive.study.words import QUANTITY, axis_label, symbol
-from pindrive.style import PALETTE, SMALL, STYLE
+from pindrive.style import PALETTE, SMALL, STYLE, Figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

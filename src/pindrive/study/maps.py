@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib.style
 import numpy as np
 from matplotlib.colors import ListedColormap
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
@@ -15,7 +14,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from pindrive._core import settling_band
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.words import QUANTITY, axis_label, value, values
-from pindrive.style import GREY, PALETTE, SMALL, STYLE
+from pindrive.style import GREY, PALETTE, SMALL, STYLE, Figure
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

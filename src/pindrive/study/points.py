@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
-from pindrive.batch import simulate_batch
+from pindrive.batch import batched
 from pindrive.config import Setting, device_of
 from pindrive.ratios import written
 
@@ -29,14 +29,7 @@ def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
 @cache
 def flags(name: str) -> tuple[str, ...]:
     """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
-    one = simulate_batch(
-        mass=1.0,
-        stiffness=1.0,
-        damping=1.0,
-        plate_kinetic=1.0,
-        finger_kinetic=1.0,
-        mouse_velocity=1.0,
-        displacement=0.0,
-    )
+    names = ("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic", "mouse_velocity")
+    one = batched({**dict.fromkeys(names, 1.0), "displacement": 0.0})
     refused = ("refused",) if name == "status" else ()
     return (*one[name].attrs["flag_meanings"].split(), *refused)
