@@ -30,6 +30,7 @@ gap = "60 um"
 wire_diameter = "0.1 mm"
 turn_length = "16 mm"
 supply_voltage = "3 V"
+thermal_resistance = "100 K/W"
 """
 
 Write = Callable[[str], Path]
@@ -154,7 +155,7 @@ MISTAKES = {
     '[magnet]\nhold_force = "-1 N"': (
         'magnet.hold_force must be finite and greater than 0 N, got "-1 N"'
     ),
-    '[magnet]\nresidual = "4 N"': "residual must be less than the hold force, 3.0 N, got 4.0 N",
+    '[magnet]\nresidual = "4 N"': "residual must be less than the hold force, 1.0 N, got 4.0 N",
     f'[magnet]\nhold_force = "1 N"\n{COIL}': (
         "magnet.hold_force must be left out where turns describes the coil, got both, hold_force "
         "and turns"
@@ -214,7 +215,7 @@ def test_scan_of_a_letter(device: Path) -> None:
     assert result.exit_code == 0, result.output
     assert result.stderr == ""
     assert "Wrote a.nc" in result.stdout
-    assert "The hand moves for " in result.stdout
+    assert "The hand's path takes " in result.stdout
     told = xr.load_dataset("a.nc", engine="h5netcdf")
     assert dict(told.sizes)["pin"] == 16
     file = load(device)
@@ -263,7 +264,7 @@ def test_other_scenes_and_paths(device: Path) -> None:
     Path("hand.csv").write_text("\n".join(["t [s], x [mm], y [mm]", *rows]))
     result = run("scan", device, "--image", "p.png", "--set", "pixel=0.1 mm", "--path", "hand.csv")
     assert result.exit_code == 0
-    assert "The hand moves for 0.3 s, at 30.00 mm/s at the most" in result.stdout
+    assert "The hand's path takes 0.3 s, at 30.00 mm/s at the most" in result.stdout
 
 
 def test_line_by_line_over_an_image() -> None:

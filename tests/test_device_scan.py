@@ -137,7 +137,8 @@ def test_the_motion_converges_as_the_bound_falls() -> None:
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (left + 0.003, y))
     errors = []
     for deviation in (1e-2, 1e-3, 1e-4, 1e-5):
-        device = Device(drive=drive(), magnet=Electromagnet.from_times(deviation=deviation))
+        magnet = Electromagnet.from_times(hold_force=3.0, deviation=deviation)
+        device = Device(drive=drive(), magnet=magnet)
         (pin,) = scan(device, scene, path, start=[PinState(velocity=None)]).pins
         released = pin.energised[0][1]
         slip = next(e for e in pin.events if e.kind == "slip" and e.time > released)

@@ -325,7 +325,5 @@ class JudgedPin:
 
     def _puller(self, low: float, high: float) -> int | None:
         """The last pull that has a part in a swing."""
-        mine = [
-            k for k, p in enumerate(self.pulls) if p.on < high and max(p.off, p.release) > low
-        ]
+        mine = [k for k, p in enumerate(self.pulls) if p.on < high and max(p.off, p.release) > low]
         return mine[-1] if mine else None
