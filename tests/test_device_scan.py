@@ -292,6 +292,26 @@ def test_states_must_fit() -> None:
         scan(Device(drive=drive()), blank(), across(grating(0.004)), start=[PinState()] * 2)
 
 
+@pytest.mark.parametrize("threads", [0, -1, 2.5, 2.0, True, "2", np.float64(1.0)])
+def test_threads_are_a_count(threads: Any) -> None:
+    with pytest.raises(ValueError) as refused:
+        scan(Device(drive=drive()), grating(0.004), across(grating(0.004)), threads=threads)
+    assert str(refused.value) == (f"threads must be a whole number of at least 1, got {threads!r}")
+
+
+def test_a_count_may_be_numpys() -> None:
+    scene = grating(0.004)
+    one: Any = np.int64(1)
+    (pin,) = scan(Device(drive=drive()), scene, across(scene), threads=one).pins
+    assert pin.number == 0
+
+
+@pytest.mark.parametrize("count", [0, 1.5, True])
+def test_a_grating_has_a_count_of_lines(count: Any) -> None:
+    with pytest.raises(ValueError, match="count must be a whole number of at least 1, got "):
+        Scene.from_grating([0.004], count=count)
+
+
 def test_plates_that_no_magnet_can_hold_by() -> None:
     with pytest.raises(ValueError, match=r"plate.kinetic must be greater than 0 N where a magnet"):
         Device(drive=drive(plate=Contact(0.0)))

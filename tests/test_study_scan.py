@@ -330,7 +330,7 @@ def test_a_page_says_how_it_is_scanned() -> None:
     assert Page(grating=(0.004, 0.0025)).options == '--grating "4 mm, 2.5 mm"'
     page = Page(text="A\nb", font=Path("a.ttf"), path=Path("hand.csv"))
     assert page.options == '--text "A\\nb" --font "a.ttf" --path "hand.csv"'
-    assert page.words == 'text "A\\nb" along hand.csv'
+    assert page.words == 'text "A / b" along hand.csv'
 
 
 def test_the_identity_holds_the_page() -> None:
@@ -474,11 +474,11 @@ def test_the_example_is_a_study_of_scans() -> None:
     found = evaluate(plan, columns, 2, SCAN_OUTPUTS)
     assert (found["status"] == 0).all()
     drive = Drive.with_damping_ratio(
-        mass=0.010,
-        stiffness=100.0,
-        damping_ratio=0.32,
-        plate=Contact(0.022, 0.0265),
-        finger=Contact(0.020, 0.030, stiffness=300.0),
+        mass=0.001,
+        stiffness=250.0,
+        damping_ratio=0.5,
+        plate=Contact(0.0022, 0.00265),
+        finger=Contact(0.015, 0.0225, stiffness=300.0),
     )
     magnet = Electromagnet.from_times(fall_time=columns["magnet.fall_time"][1])
     device = Device(drive=drive, magnet=magnet)

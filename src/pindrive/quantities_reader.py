@@ -25,8 +25,8 @@ READER: Final[dict[str, dict[str, Any]]] = {
     },
     "drive.damping_ratio": {
         "default": 0.5,
-        "source": "assumed, an elastic sleeve: half again the largest of 0.04, 0.16, 0.32 in Fig. 4 "
-        'of "Dynamics of tactile device drive", read as ratios, for it settles sooner',
+        "source": "assumed, an elastic sleeve: half as much again as the largest of 0.04, 0.16, "
+        '0.32 in Fig. 4 of "Dynamics of tactile device drive", read as ratios; it settles sooner',
     },
     "plate.kinetic": {
         "default": 0.0022,
@@ -44,8 +44,8 @@ READER: Final[dict[str, dict[str, Any]]] = {
     },
     "finger.kinetic": {
         "default": 0.030,
-        "source": "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 60 mN of touch: 1 N "
-        "of a finger on sixteen pins, assumed",
+        "source": "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 60 mN of touch: "
+        "1 N of a finger on sixteen pins, assumed",
     },
     "finger.static": {"default": 0.045},
     "finger.curve": {
@@ -57,6 +57,10 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "example": None,
         "source": "1000 N/m of the whole finger pad (ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, "
         "Table 1); a pin touches a part of it, assumed: a third",
+    },
+    "array.spot_scale": {
+        "default": 0.5,
+        "source": "assumed: sixteen spots on letters 10 mm high; the page is felt twice as large",
     },
     "motion.plate_load": {
         "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, lets go in "

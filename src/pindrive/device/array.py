@@ -159,8 +159,10 @@ class PinArray:
         return tuple(found)
 
     def _rows_apart(self, least: float) -> Iterator[tuple[Row, Row, float]]:
-        """Pairs of rows across the drive axis that are more than `least` and less than a diameter
-        apart, and how much, m; of each row the places along the axis with their pins, in order.
+        """Pairs of rows more than `least` and less than a diameter apart, and how much, m.
+
+        Rows across the drive axis; each is the places of its pins along it, with their numbers, in
+        order.
         """
         rows: defaultdict[float, Row] = defaultdict(list)
         for number, (x, y) in enumerate(self.places):

@@ -227,7 +227,5 @@ def _gaps(scan: Scan) -> dict[str, Any]:
     }
     for name, attribute in (("pin_gap", "size"), ("pin_gap.time", "time")):
         quantity, values = QUANTITIES[name], [getattr(gap, attribute) for gap in scan.gaps]
-        table[name.replace(".", "_")] = _over(
-            "neighbours", values, quantity.unit, quantity.meaning
-        )
+        table[name.replace(".", "_")] = _over("neighbours", values, quantity.unit, quantity.meaning)
     return table

@@ -7,9 +7,9 @@ rows of their inputs each x is one closed form, whose acceleration y obeys
     m y'' + c y' + κ y = 0,    so that    |y|, as long as that lasts, <= sqrt(y² + (y'/ω)²) now
 
 with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). With |y|
-of both together below A, a gap is nowhere in a time h more than A h²/8 below both its ends. Times in
-which it might become smaller than what was found so far are cut into pieces until there are none:
-no smaller gap is missed by more than `CLOSE`.
+of both together below A, a gap is nowhere in a time h more than A h²/8 below both its ends. Times
+in which it might become smaller than what was found so far are cut into pieces until there are
+none: no smaller gap is missed by more than `CLOSE`.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ class _Pieces:
 
     @cached_property
     def _coefficients(self) -> dict[str, NDArray[Any]]:
-        """Of each piece: c over m, κ over m, the slope g of its force over m; whether it is stuck."""
+        """Of each piece c and κ over m, the slope g of its force over m, whether it is stuck."""
         motion, drive = self.motion, self.motion.drive
         begin, end = self.knots[:-1], self.knots[1:]
         middle = 0.5 * (begin + end)

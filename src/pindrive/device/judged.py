@@ -77,20 +77,21 @@ def verdict_words(judgement: Judgement) -> list[str]:
         )
         if counts[fate]
     )
-    limits, rigid = judgement.criteria, judgement.scan.device.drive.finger.rigid
-    return [
+    limits = judgement.criteria
+    words = [
         f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown, "
         f"{missed} missed{f' ({why})' if why else ''}; {_number(counts['echoes'], 'false line')}.",
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
-        f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false line "
-        f"is {limits.echo:.0%} as high as the line before, or more.",
-        *(
-            ["The finger is rigid: the pin's motion stands for the skin's, the most that skin could move."]
-            if rigid
-            else []
-        ),
+        f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
+        f"line is {limits.echo:.0%} as high as the line before, or more.",
     ]
+    if judgement.scan.device.drive.finger.rigid:
+        words.append(
+            "The finger is rigid: the pin's motion stands for the skin's, the most that skin could "
+            "move."
+        )
+    return words
 
 
 def _number(count: int, noun: str) -> str:

@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 HEAD, TAIL = 24, 8
 """How many pins of a large array are shown, from its first and from its last."""
 HEADINGS: Final = {
-    "pin.energised": "on",
-    "pin.switchings": "times",
-    "pin.slips": "slips",
-    "pin.captures": "caught",
-    "pin.carried": "held",
-    "pin.peak_displacement": "peak |x|",
-    "pin.peak_skin_force": "peak force",
-    "pin.peak_stretch": "peak stretch",
-    "pin_gap": "gap",
+    "pin.energised": "magnet\non",
+    "pin.switchings": "times\non",
+    "pin.slips": "slips\nwhile on",
+    "pin.captures": "times\ncaught",
+    "pin.carried": "time\nheld",
+    "pin.peak_displacement": "peak\n|x|",
+    "pin.peak_skin_force": "peak\nforce",
+    "pin.peak_stretch": "peak\nstretch",
+    "pin_gap": "least\ngap",
 }
 _MM: Final = 1e3
 

@@ -399,7 +399,7 @@ def _overlaps(scan: Scan) -> list[str]:
         pairs = f"; {len(touching)} of {len(gaps)} pairs of neighbours do" if len(gaps) > 1 else ""
         found.append(
             f"pins {worst.behind} and {worst.ahead} overlap by {-1e3 * worst.size:.4g} mm at "
-            f"{worst.time:.4g} s{pairs}: real pins would push each other; the motions found ignore it"
+            f"{worst.time:.4g} s{pairs}: real pins would push each other, these pass through"
         )
     for one, other in array.abreast[:1]:
         apart = abs(array.places[other][1] - array.places[one][1])

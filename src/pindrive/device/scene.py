@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.quantities import check, refusal
+from pindrive.quantities import check, check_whole, refusal
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
@@ -190,12 +190,12 @@ class Scene:
             margin: white around the groups, m, and with the pitch between them.
 
         Raises:
-            ValueError: no pitch, or a number out of its range.
+            ValueError: no pitch, no lines, or a number out of its range.
         """
         steps = [check("pitch", pitch) for pitch in pitches]
         if not steps:
             raise ValueError(refusal("pitches", "at least one", "none"))
-        size = check("pixel", pixel)
+        size, count = check("pixel", pixel), check_whole(count, "count")
         begins, ends, x = [], [], margin
         for pitch in steps:
             begins += [x + i * pitch for i in range(count)]

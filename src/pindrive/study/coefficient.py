@@ -1,4 +1,4 @@
-"""What a study does to the plate's coefficient of friction: forces are given, and mass may change."""
+"""What a study does to the plate's coefficient of friction: forces are given, mass may change."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
 
 
 def coefficient_words(plan: Plan, *, tolerances: bool = False) -> str | None:
-    """The same in a sentence, with what handbooks say where it leaves that; None: nothing to say."""
+    """The same in a sentence, and what handbooks say where it leaves that; None: no change."""
     found = coefficient_range(plan, tolerances=tolerances)
     if found is None:
         return None
