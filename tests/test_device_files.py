@@ -323,3 +323,13 @@ def test_a_magnet_that_would_be_too_hot_is_warned_of(write: Write) -> None:
     assert result.exit_code == 0
     (line,) = result.stderr.splitlines()
     assert line == ("warning: a magnet is on for 23% of the time; 0.854 W warm it by 1 K at 1%")
+
+
+def test_a_table_of_pins_cuts_no_number_off(device: Path) -> None:
+    """The longest numbers: those of pins that hardly move."""
+    result = run("scan", device, "--grating", "4 mm", "--set", "hold_force=1 mN")
+    assert result.exit_code == 0
+    assert "…" not in result.stdout
+    assert "A magnet does not carry its pin: it holds with 2.920 mN of friction" in result.stdout
+    title = run("scan", device, "--text", r"a\nb").stdout.splitlines()[0]
+    assert title.strip() == 'Pins, over text "a / b"'

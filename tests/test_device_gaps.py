@@ -267,7 +267,7 @@ def test_pins_with_room_are_said_to_have_it() -> None:
 
 def test_the_table_shows_the_least_gap_of_each_pin() -> None:
     done = scanned(PinArray.grid(3, 1, 0.015))
-    rows = [line.split() for line in said(done).splitlines() if line[:8].strip().isdigit()]
+    rows = [line.split() for line in said(done).splitlines() if line[:5].strip().isdigit()]
     least = [row[-1] for row in rows]
     (first, second) = (f"{1e3 * gap.size:.3f}"[:5] for gap in done.gaps)
     assert least == [first, min(first, second, key=float), second]

@@ -289,6 +289,13 @@ def test_a_pin_that_is_not_let_go_merges_lines() -> None:
     assert told.counts["judged.merged"] == 1
 
 
+def test_pins_that_no_magnet_moves_show_faint_lines_not_merged_ones() -> None:
+    weak = Electromagnet.from_times(hold_force=0.001)
+    scene = grating(0.004, count=4)
+    told = judge(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
+    assert fates(told) == ["faint"] * 4
+
+
 def test_skin_that_hardly_gives_makes_lines_faint() -> None:
     stiff = Contact(0.005, 0.0075, stiffness=2000.0)
     scene = grating(0.006)

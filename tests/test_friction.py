@@ -24,9 +24,8 @@ PLATE = Contact(0.022, 0.0265)
 def test_it_is_friction_over_weight(mass: float, kinetic: float, static: float) -> None:
     found = Coefficients.of(PLATE, mass)
     assert (round(found.kinetic, 3), round(found.static, 3)) == (kinetic, static)
-    assert found.words.startswith(
-        f"friction coefficient {kinetic}, static {static:.3g}: force over"
-    )
+    words = f"friction coefficient {kinetic:.3f}, static {static:.3f}: its friction over "
+    assert found.words.startswith(words)
     assert found.words.endswith(" of weight")
 
 

@@ -51,7 +51,7 @@ class Coefficients:
         """Both, and over which force."""
         over = QUANTITIES["pressing"].text(self.pressing)
         return (
-            f"friction coefficient {self.kinetic:.3g}, static {self.static:.3g}: force over "
+            f"friction coefficient {self.kinetic:.3f}, static {self.static:.3f}: its friction over "
             f"{over} of {'weight' if self.weighs else 'pressing force'}"
         )
 

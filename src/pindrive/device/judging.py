@@ -238,8 +238,8 @@ class JudgedPin:
     def _still_held(self, k: int) -> bool:
         """Whether the pin had not gone back from the pull before when pull k moved it on."""
         before, pull = self.pulls[max(k - 1, 0)], self.pulls[k]
-        if k == 0 or before.sign != pull.sign:
-            return False
+        if k == 0 or before.sign != pull.sign or before.begin != before.begin:
+            return False  # nothing before it, or nothing that had moved the pin
         until = pull.begin if pull.begin == pull.begin else self._until(k)
         back = -Values(self.pin.motion.position, pull.sign)
         return not self.course.climbs(back, self.criteria.felt, before.off, until)

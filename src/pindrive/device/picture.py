@@ -147,7 +147,7 @@ def _relief_title(judgement: Judgement) -> str:
     smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
     gap = judgement.scan.smallest_gap
     overlap = f"\npins overlap by {-MM * gap.size:.2g} mm" if gap and gap.size < 0.0 else ""
-    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm, {smeared}{overlap}"
+    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm\n{smeared}{overlap}"
 
 
 def _draw_print(scan: Scan, axes: Axes, chosen: Moment | None) -> None:

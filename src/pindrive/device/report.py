@@ -49,6 +49,7 @@ def _pins(scan: Scan) -> Table:
         names.append("pin_gap")
     title = f"Pins, over {scan.scene.title}"
     found = new_table(title, ">pin", ">place", *(f">{HEADINGS[name]}" for name in names))
+    found.collapse_padding, found.pad_edge = True, False  # all of it in a hundred columns
     found.add_row("", "mm", *(QUANTITIES[name].display_unit for name in names), style="dim")
     for pin in scan.pins:
         if HEAD <= pin.number < len(scan.pins) - TAIL:

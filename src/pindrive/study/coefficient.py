@@ -26,7 +26,10 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
         tolerances: over its tolerances, not over its axes.
     """
     links = plan.tolerance_links if tolerances else plan.links
-    followed = {*_PARTS, *(link.of for key, link in links.items() if key in _PARTS)}
+    followed = list(_PARTS)
+    for key in followed:  # and what they follow, and so on
+        if key in links and links[key].of not in followed:
+            followed.append(links[key].of)
     groups = [plan.tolerances] if tolerances else [d.axes for d in plan.dimensions]
     columns: list[Columns] = []
     for i, axes in enumerate(groups):

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.transforms import nonsingular
 
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.words import QUANTITY, axis_label, value, values
@@ -120,6 +121,7 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
     ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
     stepped = is_stepped(panels[0].number)
     levels = ticks[(ticks > low) & (ticks < high) & (not stepped)]
+    low, high = nonsingular(low, high, expander=0.1)  # one colour where all are the same
     drawn: ScalarMappable | None = None
     for panel, values_shown, axes in zip(panels, shown, row, strict=True):
         drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
