@@ -294,7 +294,7 @@ def test_no_pin_goes_beyond_its_excursion() -> None:
 @pytest.mark.parametrize(
     ("pitch", "words"),
     [
-        (0.0010, "Neighbouring pins overlap by 0.5000 mm at rest: they cannot be."),
+        (0.0010, "Neighbouring pins overlap by 0.5000 mm at rest."),
         (
             0.0025,
             "Neighbouring pins have 1.000 mm between them at rest, and can meet: at 60.00 mm/s",

@@ -94,7 +94,8 @@ def gap_words(scan: Scan) -> list[str]:
         return []
     pins = f"pins {smallest.behind} and {smallest.ahead} at {smallest.time:.4g} s"
     if smallest.size < 0.0:
-        return [f"Pins overlap by up to {length.text(-smallest.size)}, {pins}: they cannot be."]
+        overlap = f"Pins overlap by up to {length.text(-smallest.size)}, {pins}"
+        return [f"{overlap}: real pins would push each other."]
     return [f"Smallest gap between neighbouring pins: {length.text(smallest.size)}, {pins}."]
 
 
@@ -134,7 +135,7 @@ def meeting_words(device: Device, speed: float) -> list[str]:
     array, length = device.array, QUANTITIES["pin_gap"]
     neighbours = array.neighbours
     words = [
-        f"Pins {one} and {other} stand abreast, closer than their diameter: they cannot be."
+        f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
         for one, other in array.abreast[:1]
     ]
     if not neighbours:
@@ -143,7 +144,7 @@ def meeting_words(device: Device, speed: float) -> list[str]:
     at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"
     gone = f"{at} {length.text(reach)} either way"
     if room < 0.0:
-        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest: they cannot be.")
+        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest.")
     elif room < 2.0 * reach:
         words.append(
             f"Neighbouring pins have {length.text(room)} between them at rest, and can meet: "

@@ -134,7 +134,7 @@ def _names(
         axes.annotate(
             "settled in between",
             (float(pitch[last]), float(settled[last])),
-            (-4, -24),
+            (-4, -40),
             textcoords="offset points",
             ha="right",
             va="top",
