@@ -13,7 +13,7 @@ from statistics import median
 from time import perf_counter, process_time
 
 from pindrive import Contact, Drive
-from pindrive.device import Device, PinArray, scan
+from pindrive.device import Device, Electromagnet, PinArray, scan
 from pindrive.device.reading import Reading
 from pindrive.device.scanning import prepare
 
@@ -33,7 +33,8 @@ def main() -> None:
         plate=Contact(0.022, 0.0265),
         finger=Contact(0.005, 0.0075),
     )
-    device = Device(drive=drive, array=PinArray.grid(4, 4))
+    magnet = Electromagnet.from_times(hold_force=3.0)
+    device = Device(drive=drive, magnet=magnet, array=PinArray.grid(4, 4, 0.0025))
     reading = Reading()
     begin = perf_counter()
     scene = reading.text(TEXT, device.array)

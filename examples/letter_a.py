@@ -1,5 +1,7 @@
 """The letter A, read at three hand speeds: what a column of eight pins shows of it.
 
+The pins stand 5 mm apart along a finger, their spots on the letter a quarter of that.
+
 python examples/letter_a.py [PICTURE]
 """
 
@@ -13,7 +15,7 @@ from pindrive.style import save
 
 SPEEDS = (30, 60, 120)  # mm/s
 DEVICE = Path(__file__).with_name("tactile-reader.toml")
-COLUMN = ["array.columns=1", "array.rows=8", "array.pitch=1.25 mm"]
+COLUMN = ["array.columns=1", "array.rows=8", "array.spot_scale=0.25"]
 
 judgements = []
 for speed in SPEEDS:

@@ -289,6 +289,13 @@ def test_a_pin_that_is_not_let_go_merges_lines() -> None:
     assert told.counts["judged.merged"] == 1
 
 
+def test_pins_that_no_magnet_moves_show_faint_lines_not_merged_ones() -> None:
+    weak = Electromagnet.from_times(hold_force=0.001)
+    scene = grating(0.004, count=4)
+    told = judge(scan(Device(drive=drive(SKIN), magnet=weak), scene, across(scene)))
+    assert fates(told) == ["faint"] * 4
+
+
 def test_skin_that_hardly_gives_makes_lines_faint() -> None:
     stiff = Contact(0.005, 0.0075, stiffness=2000.0)
     scene = grating(0.006)
@@ -325,6 +332,39 @@ def test_rebounds_are_false_lines_unless_damped() -> None:
             assert float(told.scan.pins[0].velocity(echo.time)) == pytest.approx(0.0, abs=1e-9)
     ringing = judge(told.scan, Criteria(echo=1e-3))
     assert len(ringing.echoes) >= len(told.echoes)
+
+
+def test_a_ripple_on_a_line_is_not_its_height() -> None:
+    """A pin that breaks loose at its reach ripples there; a rebound is held against the line."""
+    weight = 0.001 * 9.80665
+    body = Drive.with_damping_ratio(
+        mass=0.001,
+        stiffness=150.0,
+        damping_ratio=0.5,
+        plate=Contact(0.225 * weight, 0.27 * weight),
+        finger=Contact(0.030, 0.045, stiffness=300.0),
+    )
+    device = Device(drive=body, magnet=Electromagnet.from_times(hold_force=1.0))
+    scene = grating(0.006, 0.012)
+    told = judge(scan(device, scene, across(scene)))
+    assert fates(told) == ["shown"] * 4
+    assert told.echoes == ()
+    swings = judge(told.scan, Criteria(echo=0.03)).echoes
+    assert len(swings) == 4, "one rebound each, a twentieth as high as its line"
+    for echo in swings:
+        assert 0.03 < echo.stroke / told.lines[0].stroke < 0.05
+
+
+def test_a_swing_that_the_skin_hardly_follows_is_no_false_line() -> None:
+    """Lines are judged by the skin, and so are swings that look like them."""
+    scene = grating(0.006, count=1, margin=0.03)
+    ringing = [
+        judge(scan(Device(drive=drive(finger, damping=0.05)), scene, evenly(scene, 0.06)))
+        for finger in (RIGID, Contact(0.005, 0.0075, stiffness=2000.0))
+    ]
+    assert ringing[0].echoes
+    assert fates(ringing[1]) == ["faint"]
+    assert ringing[1].echoes == ()
 
 
 def test_overdamped_pins_do_not_swing_over() -> None:

@@ -20,6 +20,7 @@ COIL = Coil(
     wire_diameter=1e-4,
     turn_length=0.016,
     supply_voltage=3.0,
+    thermal_resistance=100.0,
 )
 
 

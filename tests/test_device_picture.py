@@ -133,7 +133,7 @@ def test_the_moment_holds_lines_of_the_pin(judged: Judgement) -> None:
             and line.end.time <= chosen.end
         ]
         assert len(inside) > 1
-    with pytest.raises(ValueError, match="pin must be from 0 to 5, got 6"):
+    with pytest.raises(ValueError, match="pin must be a whole number from 0 to 5, got 6"):
         moment(judged, 6)
 
 

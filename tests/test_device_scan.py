@@ -137,7 +137,8 @@ def test_the_motion_converges_as_the_bound_falls() -> None:
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (left + 0.003, y))
     errors = []
     for deviation in (1e-2, 1e-3, 1e-4, 1e-5):
-        device = Device(drive=drive(), magnet=Electromagnet.from_times(deviation=deviation))
+        magnet = Electromagnet.from_times(hold_force=3.0, deviation=deviation)
+        device = Device(drive=drive(), magnet=magnet)
         (pin,) = scan(device, scene, path, start=[PinState(velocity=None)]).pins
         released = pin.energised[0][1]
         slip = next(e for e in pin.events if e.kind == "slip" and e.time > released)
@@ -289,6 +290,26 @@ def test_a_motion_askew_is_warned_of() -> None:
 def test_states_must_fit() -> None:
     with pytest.raises(ValueError, match="start must be one state for each pin, 1, got 2"):
         scan(Device(drive=drive()), blank(), across(grating(0.004)), start=[PinState()] * 2)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 2.5, 2.0, True, "2", np.float64(1.0)])
+def test_threads_are_a_count(threads: Any) -> None:
+    with pytest.raises(ValueError) as refused:
+        scan(Device(drive=drive()), grating(0.004), across(grating(0.004)), threads=threads)
+    assert str(refused.value) == (f"threads must be a whole number of at least 1, got {threads!r}")
+
+
+def test_a_count_may_be_numpys() -> None:
+    scene = grating(0.004)
+    one: Any = np.int64(1)
+    (pin,) = scan(Device(drive=drive()), scene, across(scene), threads=one).pins
+    assert pin.number == 0
+
+
+@pytest.mark.parametrize("count", [0, 1.5, True])
+def test_a_grating_has_a_count_of_lines(count: Any) -> None:
+    with pytest.raises(ValueError, match="count must be a whole number of at least 1, got "):
+        Scene.from_grating([0.004], count=count)
 
 
 def test_plates_that_no_magnet_can_hold_by() -> None:

@@ -120,7 +120,7 @@ def test_wider_pitches_weaker_demands_and_faster_magnets_allow_more(
     wide, narrow = limits
     assert narrow.speed < wide.speed
     (strict,) = largest_speeds(DEVICE, [0.004], part=0.9, slowest=0.05, fastest=0.2)
-    slow = replace(DEVICE, magnet=Electromagnet.from_times(fall_time=0.02))
+    slow = replace(DEVICE, magnet=Electromagnet.from_times(fall_time=0.03))
     (slower,) = largest_speeds(slow, [0.004], slowest=0.03, fastest=0.2)
     assert strict.speed < wide.speed
     assert slower.speed < 0.8 * wide.speed

@@ -229,3 +229,26 @@ def test_refusals(folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: str)
     assert said.stderr.startswith(REFUSED[arguments]), said.stderr
     assert len(said.stderr.splitlines()) == 1
     assert {path.name for path in folder.iterdir()} == before
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_number_that_is_the_same_everywhere_has_one_colour() -> None:
+    """In every panel, and at the middle of the scale."""
+    grid = """
+[axes]
+mouse_velocity = ["20 mm/s", "30 mm/s"]
+drive.stiffness = ["100 N/m", "200 N/m"]
+damping_ratio = [0.1, 0.2, 0.3]
+"""
+    Path("study.toml").write_text(BASE + grid)
+    sweep(load_study("study.toml"), Path("study.nc"))
+    with View("study.nc") as view:
+        number = "transient_plate_peak_force"
+        figure = plot_study(view, [number], *view.axes("mouse_velocity", "stiffness", {}), {})
+    meshes = [
+        mesh for axes in figure.axes for mesh in axes.collections if isinstance(mesh, QuadMesh)
+    ]
+    assert len(meshes) >= 3
+    assert {mesh.get_clim() for mesh in meshes[:3]} == {meshes[0].get_clim()}
+    low, high = meshes[0].get_clim()
+    assert low < float(np.asarray(meshes[0].get_array()).flat[0]) < high

@@ -115,8 +115,13 @@ def check(file: DeviceArgument) -> None:
 
     with refusing():
         device = load(file)
+        pressing = device.whole.magnet.magnet().pressing if device.whole else None
+    from pindrive.friction import Coefficients
     from pindrive.report import device_report, show
 
+    doubt = Coefficients.of(device.drive.plate, device.drive.mass, pressing).doubt
+    if doubt:
+        typer.echo(f"warning: {doubt}", err=True)
     show(device_report(device))
 
 

@@ -85,6 +85,7 @@ def sweep(
             stop_at_once(130)
     for line in sweep_report(plan, done):
         typer.echo(line)
+    _say_coefficient(plan)
 
 
 @contextmanager
@@ -203,11 +204,12 @@ def sensitivity(
 
         return plot_influence(found, name)
 
-    _, found = _answered(study, overrides, answer, plot, draw)
+    plan, found = _answered(study, overrides, answer, plot, draw)
     from pindrive.report import show
     from pindrive.study.report import influence_report
 
     show(influence_report(found))
+    _say_coefficient(plan, tolerances=tolerances)
     if plot:
         typer.echo(f"Wrote {plot}")
 
@@ -241,8 +243,18 @@ def robustness(
     from pindrive.study.report import robustness_report
 
     show(robustness_report(plan, found))
+    _say_coefficient(plan, tolerances=True)
     if plot:
         typer.echo(f"Wrote {plot}")
+
+
+def _say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
+    """What becomes of the plate's friction coefficient, where the study changes it."""
+    from pindrive.study.coefficient import coefficient_words
+
+    words = coefficient_words(plan, tolerances=tolerances)
+    if words:
+        typer.echo(words)
 
 
 def _answered(

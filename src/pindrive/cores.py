@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from pindrive.quantities import refusal
+from pindrive.quantities import check_whole
 
 
 def usable_cores() -> int:
@@ -19,8 +19,4 @@ def worker_count(threads: int | None) -> int:
     Raises:
         ValueError: that is no count.
     """
-    if threads is None:
-        return usable_cores()
-    if type(threads) is not int or threads < 1:
-        raise ValueError(refusal("threads", "a whole number of at least 1", repr(threads)))
-    return threads
+    return usable_cores() if threads is None else check_whole(threads, "threads")

@@ -7,7 +7,8 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 from math import inf
-from typing import Final, SupportsFloat, cast
+from operator import index
+from typing import Final, SupportsFloat, SupportsIndex, cast
 
 from pindrive.quantities_device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities_judge import JUDGE
@@ -505,4 +506,24 @@ def check(
         unit = "" if quantity.unit == "1" else quantity.unit
         shown = given if given is not None else f"{number!r} {unit}".rstrip()
         raise ValueError(refusal(label, quantity.bounds.words(unit), shown, where))
+    return number
+
+
+def check_whole(
+    value: object, label: str, least: int = 1, most: int | None = None, *, where: str = ""
+) -> int:
+    """`value` as an int, if it is a whole number from `least` up, to `most` where that is given.
+
+    Truth values are none, nor are floats; NumPy's integers are.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    upper = f"from {least} to {most}" if most is not None else f"of at least {least}"
+    try:
+        number = least - 1 if isinstance(value, bool) else index(cast(SupportsIndex, value))
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        raise ValueError(refusal(label, f"a whole number {upper}", repr(value), where))
     return number

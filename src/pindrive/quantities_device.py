@@ -94,11 +94,23 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "m",
         "distance between neighbouring pins",
         POSITIVE,
-        0.0025,
-        "the dots of a Braille cell stand 2.3-2.5 mm apart",
+        0.005,
+        "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
         "array",
         optional=True,
-        remark="2.5 mm unless given",
+        remark="5 mm unless given",
+    ),
+    Quantity(
+        "pin_diameter",
+        "d_p",
+        "m",
+        "diameter of a pin: two pins meet where their axes come as close as that",
+        POSITIVE,
+        0.0015,
+        "as a Braille dot at its base, 1.4-1.6 mm",
+        "array",
+        optional=True,
+        remark="1.5 mm unless given",
     ),
     Quantity(
         "places",
@@ -283,6 +295,13 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "kinetic friction of the plate over what presses",
         NON_NEGATIVE,
     ),
+    Quantity(
+        "pin_gap",
+        "g_p",
+        "m",
+        "smallest gap between neighbouring pins along the drive axis; negative where they overlap",
+    ),
+    Quantity("pin_gap.time", "t_g", "s", "when it is so small"),
 )
 """What the parts of a device are made of in Python, and what follows from them."""
 

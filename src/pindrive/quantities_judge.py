@@ -96,15 +96,15 @@ LINE: Final[tuple[Quantity, ...]] = tuple(
 JUDGED: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"judged.{name}", symbol, "", meaning)
     for name, symbol, meaning in (
-        ("lines", "n", "lines that passed under a pin"),
-        ("shown", "n_1", "of them shown: the pin went along, and the skin moved enough to be felt"),
+        ("lines", "n", "printed lines that passed whole under a pin, counted under each pin"),
+        ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
         ("unseen", "n_2", "missed: the control block did not see them"),
         ("merged", "n_3", "missed: the pin or the magnet had not let go of the line before"),
         ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
-        ("echoes", "n_5", "false lines: swings that no line explains"),
-        ("unsettled", "n_6", "of those shown, not settled before the next line or the hand's stop"),
-        ("direction", "n_7", "of those shown, moved the skin enough for its direction"),
-        ("sure", "n_8", "of those, enough for 95 % right answers"),
+        ("echoes", "n_5", "false: swings forward that no magnet made, felt like a line"),
+        ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),
+        ("direction", "n_7", "shown, and the skin moved enough to tell its direction"),
+        ("sure", "n_8", "shown, and it moved enough to tell it right in 95 % of cases"),
     )
 )
 """What is found of a scan."""

@@ -10,6 +10,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from pindrive.friction import Coefficients
 from pindrive.quantities import COLUMNS, QUANTITIES, TRANSIENT
 from pindrive.quantity import Rows, counted, significant
 
@@ -56,9 +57,13 @@ def device_report(device: DeviceFile) -> RenderableType:
     words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
     lines = [f"{device.name or 'The drive'}: {words}."]
     if device.whole:
-        from pindrive.device.report import device_words
+        from pindrive.device.report import device_words, meeting_words
 
-        lines += device_words(device.whole.device(drive))
+        whole, hand = device.whole.device(drive), device.whole.reading()
+        lines += device_words(whole)
+        lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
+    elif not drive.plate.frictionless:
+        lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
     return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
 
 

@@ -71,13 +71,14 @@ class _Array(Table):
     columns: float = 1.0
     rows: float = 1.0
     pitch: float = _standard("pitch")
+    pin_diameter: float = _standard("pin_diameter")
     places: Rows | None = None
     spot_scale: float = _standard("spot_scale")
     axis: float = _standard("axis")
 
     def array(self) -> PinArray:
         """What it describes: pins at given places, or a grid."""
-        how = {"spot_scale": self.spot_scale, "axis": self.axis}
+        how = {name: getattr(self, name) for name in ("spot_scale", "axis", "pin_diameter")}
         if self.places is not None:
             return PinArray.at(self.places, **how)
         return PinArray.grid(self.columns, self.rows, self.pitch, **how)

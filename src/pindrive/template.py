@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from textwrap import wrap
 from typing import Final
 
 from pindrive.quantities import COLUMNS, INPUTS, QUANTITIES
 from pindrive.quantities_device import DEVICE_INPUTS
+from pindrive.quantities_reader import READER
 from pindrive.quantity import Quantity
 
 DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
@@ -51,15 +53,18 @@ def template(whole: bool = False) -> str:
         whole: with the tables of the whole device, as `pindrive init --device` writes it.
     """
     lines = [
-        "# A pin drive of a tactile mouse, for pindrive.",
+        "# A tactile device, for pindrive."
+        if whole
+        else "# A pin drive of a tactile mouse, for pindrive.",
         "# Every value is written with its unit; the bounds below are in SI units.",
         "",
         "[device]",
-        'name = "my pin drive"',
+        'name = "my tactile device"' if whole else 'name = "my pin drive"',
         '# description = "what is special about it"',
     ]
     table = "device"
-    for key, quantity in (NUMBERS if whole else DRIVE).items():
+    for key, usual_one in (NUMBERS if whole else DRIVE).items():
+        quantity = replace(usual_one, **READER.get(key, {})) if whole else usual_one
         if key.partition(".")[0] != table:
             table = key.partition(".")[0]
             lines += ["", f"[{table}]"]

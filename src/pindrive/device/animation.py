@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib.style
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, FancyBboxPatch
 
@@ -307,7 +307,18 @@ def _finger(scan: Scan, axes: Axes, times: NDArray[np.float64]) -> Part:
         ends = place + np.outer((-farthest, farthest), direction)
         axes.plot(*ends.T, color="0.55", lw=0.6, solid_capstyle="round")
         axes.plot(*place, "+", color="0.35", ms=4.0, mew=0.6)
-    pins = axes.scatter(places[:, 0], places[:, 1], s=46.0, lw=0.8, ec="black", zorder=4)
+    pins = EllipseCollection(
+        *np.broadcast_to(
+            [[MM * array.pin_diameter], [MM * array.pin_diameter], [0.0]], (3, len(array))
+        ),
+        units="xy",
+        offsets=places,
+        offset_transform=axes.transData,
+        lw=0.8,
+        ec="black",
+        zorder=4,
+    )
+    axes.add_collection(pins)
     arrows = LineCollection([], colors="black", lw=1.6, zorder=5)
     axes.add_collection(arrows)
     longest = 2.2 / max(float(np.abs(force).max()), 1e-12)  # mm for each newton

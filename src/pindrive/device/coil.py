@@ -48,7 +48,7 @@ class Coil:
     supply_voltage: float
     release_resistance: float = 0.0
     saturation_field: float = 1.6
-    thermal_resistance: float = 100.0
+    thermal_resistance: float = 430.0
     temperature_rise: float = 20.0
 
     def __post_init__(self) -> None:

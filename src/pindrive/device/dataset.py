@@ -64,7 +64,7 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
     spots = scan.spots(t)
     luminance = scan.scene.at(spots[..., 0], spots[..., 1])
     data["luminance"] = _over(("pin", "time"), luminance, "1", "luminance under the pin's spot")
-    data |= _events(pins) | _switchings(pins) | _numbers(pins)
+    data |= _events(pins) | _switchings(pins) | _numbers(pins) | _gaps(scan)
     data["scene"] = _over(("row", "column"), scan.scene.luminance, "1", "luminance of the scene")
     places, shown = np.array(device.array.places), np.array(device.array.spots)
     coords = {
@@ -82,6 +82,7 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
         "source": f"pindrive {__version__}",
         "warnings": "\n".join(scan.warnings),
         **inputs(scan),
+        **({} if scan.smallest_gap is None else {"smallest_pin_gap": scan.smallest_gap.size}),
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
 
@@ -114,6 +115,8 @@ def inputs(scan: Scan) -> dict[str, float]:
         **asdict(device.control),
         **({} if magnet.coil is None else asdict(magnet.coil)),
         "axis": device.array.axis,
+        "pin_diameter": device.array.pin_diameter,
+        "friction_coefficient": device.friction.kinetic,
         "pixel": scan.scene.pixel,
     }
     angles = scan.path.angles(device.array.axis)
@@ -211,4 +214,18 @@ def _numbers(pins: tuple[PinScan, ...]) -> dict[str, Any]:
             np.array([row[name] for row in rows]),
             attributes | ({"units": quantity.unit} if quantity.unit else {}),
         )
+    return table
+
+
+def _gaps(scan: Scan) -> dict[str, Any]:
+    """A row for each two neighbouring pins; nothing where no pin stands ahead of another."""
+    if not scan.gaps:
+        return {}
+    table: dict[str, Any] = {
+        f"pin_gap_{name}": ("neighbours", [getattr(gap, name) for gap in scan.gaps])
+        for name in ("behind", "ahead")
+    }
+    for name, attribute in (("pin_gap", "size"), ("pin_gap.time", "time")):
+        quantity, values = QUANTITIES[name], [getattr(gap, attribute) for gap in scan.gaps]
+        table[name.replace(".", "_")] = _over("neighbours", values, quantity.unit, quantity.meaning)
     return table

@@ -9,6 +9,7 @@ from pindrive.device.array import PinArray
 from pindrive.device.control import ControlBlock
 from pindrive.device.magnet import Electromagnet
 from pindrive.drive import Contact, Drive
+from pindrive.friction import Coefficients
 from pindrive.quantities import refusal
 
 if TYPE_CHECKING:
@@ -46,15 +47,27 @@ class Device:
         return self.magnet.pressed(self.drive.mass)
 
     @property
-    def friction_coefficient(self) -> float:
-        """Kinetic friction of the plate over the force that presses: μ = F / W."""
-        return self.drive.plate.kinetic / self.pressing
+    def friction(self) -> Coefficients:
+        """The plate's friction over the force that presses: μ = F / W, kinetic and static."""
+        return Coefficients.of(self.drive.plate, self.drive.mass, self.magnet.pressing)
 
     @property
     def reach(self) -> float:
         """How far a magnet carries a pin at most before the spring overcomes it, m, slowly."""
         held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
         return max(0.0, held - self.drive.finger.kinetic) / self.drive.stiffness
+
+    def excursion(self, speed: float) -> float:
+        """How far a pin can come from its rest at most, either way, m.
+
+        Carried to where the plate's static friction ends against the spring, it has the plate's
+        velocity left. A hand that speeds up by a adds m a / k.
+
+        Args:
+            speed: of the hand at most, m/s.
+        """
+        held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
+        return held / self.drive.stiffness + speed / self.drive.natural_frequency
 
     @property
     def drag(self) -> float:

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from pindrive.device.course import Course
 from pindrive.device.printed import printed
-from pindrive.quantities import refusal
+from pindrive.quantities import check_whole
 from pindrive.style import GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
@@ -59,9 +59,9 @@ def moment(judgement: Judgement, pin: int | None = None) -> Moment:
     """
     scan = judgement.scan
     count = len(scan.pins)
-    if pin is not None and pin not in range(count):
-        raise ValueError(refusal("pin", f"from 0 to {count - 1}", str(pin)))
-    if pin is None:
+    if pin is not None:
+        pin = check_whole(pin, "pin", 0, count - 1)
+    else:
         shown = np.bincount([line.pin for line in judgement.shown], minlength=count)
         middle = np.hypot(*np.array(scan.device.array.places).T)
         pin = int(np.lexsort((middle, -shown))[0])

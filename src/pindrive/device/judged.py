@@ -24,15 +24,28 @@ if TYPE_CHECKING:
     from pindrive.device.verdict import Criteria, Judgement
 
 _MM: Final = 1e3
+COUNTED: Final = (
+    *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
+)
+"""The counts in the order in which they are told: what was shown, what was missed, what was not."""
 PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y")
 
 
 def judgement_report(judgement: Judgement) -> RenderableType:
     """What became of the lines, in words, and the numbers of those shown."""
     lines = (Text(line, no_wrap=True, overflow="ignore") for line in verdict_words(judgement))
-    if not judgement.shown:
-        return Group(*lines)
-    return Group(_spreads(judgement), *lines)
+    tables = [_counts(judgement)] if judgement.lines else []
+    if judgement.shown:
+        tables.append(_spreads(judgement))
+    return Group(*tables, *lines)
+
+
+def _counts(judgement: Judgement) -> Table:
+    table = new_table("What became of the lines", "symbol", ">count", "meaning")
+    for name in COUNTED:
+        quantity = QUANTITIES[f"judged.{name}"]
+        table.add_row(quantity.symbol, str(judgement.counts[quantity.name]), quantity.meaning)
+    return table
 
 
 def _spreads(judgement: Judgement) -> Table:
@@ -64,21 +77,20 @@ def verdict_words(judgement: Judgement) -> list[str]:
         )
         if counts[fate]
     )
+    limits = judgement.criteria
     words = [
         f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown, "
-        f"{missed} missed{f' ({why})' if why else ''}; "
-        f"{_number(counts['echoes'], 'false line')}, swings that no line explains.",
+        f"{missed} missed{f' ({why})' if why else ''}; {_number(counts['echoes'], 'false line')}.",
+        f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
+        f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
+        f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
+        f"line is {limits.echo:.0%} as high as the line before, or more.",
     ]
-    if counts["shown"]:
-        limits, rigid = judgement.criteria, judgement.scan.device.drive.finger.rigid
-        words += [
-            f"Their beginning moved the skin {limits.direction * _MM:g} mm or more, enough for its "
-            f"direction, at {counts['direction']}; {limits.direction_sure * _MM:g} mm at "
-            f"{limits.direction_speed * _MM:g} mm/s, enough for 95 % right answers, at "
-            f"{counts['sure']}"
-            + (" (of a rigid finger: the pin, the most that skin could move)." if rigid else "."),
-            f"{counts['unsettled']} had not settled before the next line or the hand's stop.",
-        ]
+    if judgement.scan.device.drive.finger.rigid:
+        words.append(
+            "The finger is rigid: the pin's motion stands for the skin's, the most that skin could "
+            "move."
+        )
     return words
 
 

@@ -20,8 +20,9 @@ plate passes under the mouse while the line is read.
 - **Skin** moves as far as a compliant finger stretches. A rigid finger has no skin that gives: the
   pin's own way is taken, which is the most that skin could move.
 - **False lines** are swings forward that no magnet made, at least `echo` times as high as the line
-  before (before the first of a stroke of the hand: as that one); in a stroke without lines,
-  enough for a sure direction.
+  before (before the first of a stroke of the hand: as that one), which move the skin enough for
+  its direction; in a stroke without lines, enough for a sure direction. The height of a line is
+  that of the highest swing while its magnet pulled, not of a ripple on top of it.
 """
 
 from __future__ import annotations
@@ -237,8 +238,8 @@ class JudgedPin:
     def _still_held(self, k: int) -> bool:
         """Whether the pin had not gone back from the pull before when pull k moved it on."""
         before, pull = self.pulls[max(k - 1, 0)], self.pulls[k]
-        if k == 0 or before.sign != pull.sign:
-            return False
+        if k == 0 or before.sign != pull.sign or before.begin != before.begin:
+            return False  # nothing before it, or nothing that had moved the pin
         until = pull.begin if pull.begin == pull.begin else self._until(k)
         back = -Values(self.pin.motion.position, pull.sign)
         return not self.course.climbs(back, self.criteria.felt, before.off, until)
@@ -299,24 +300,30 @@ class JudgedPin:
 
     def _echoes(self, begin: float, end: float) -> list[Echo]:
         """Those of one stroke of the hand."""
-        x = Values(self.pin.motion.position, self._sign(0.5 * (begin + end)))
+        sign = self._sign(0.5 * (begin + end))
+        x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
         swings = [
-            (high, float(x(high) - x(low)), self._made(low, high))
+            (low, high, float(x(high) - x(low)), self._puller(low, high))
             for low, high in self.course.swings(x, begin, end)
         ]
-        before = next((height for _, height, made in swings if made), nan)
+        heights: dict[int, float] = {}  # of the line for which each pull was: its highest swing
+        for _, _, height, k in swings:
+            if k is not None:
+                heights[k] = max(heights.get(k, 0.0), height)
+        before = next(iter(heights.values()), nan)
         found = []
-        for time, height, made in swings:
-            if made:
-                before = height
+        for low, high, height, k in swings:
+            if k is not None:
+                before = heights[k]
                 continue
             usual = self.criteria.echo * before if before == before else 0.0
             least = self.criteria.direction if usual else self.criteria.direction_sure
-            if height >= max(usual, least):
-                px, py = self._spot(time)
-                found.append(Echo(self.pin.number, self.begin + time, px, py, height))
+            if height >= max(usual, least) and self._moved(skin, low, high)[0] >= least:
+                px, py = self._spot(high)
+                found.append(Echo(self.pin.number, self.begin + high, px, py, height))
         return found
 
-    def _made(self, low: float, high: float) -> bool:
-        """Whether a magnet has a part in a swing."""
-        return any(p.on < high and max(p.off, p.release) > low for p in self.pulls)
+    def _puller(self, low: float, high: float) -> int | None:
+        """The last pull that has a part in a swing."""
+        mine = [k for k, p in enumerate(self.pulls) if p.on < high and max(p.off, p.release) > low]
+        return mine[-1] if mine else None

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
+from pindrive.friction import GRAVITY
 from pindrive.quantities import check, refusal
 
 if TYPE_CHECKING:
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from pindrive.device.coil import Coil
     from pindrive.device.control import Commands
 
-GRAVITY: Final = 9.80665
-"""Standard gravity, m/s²."""
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this
 part of its deviation."""
@@ -48,7 +47,7 @@ class Electromagnet:
         ValueError: a value is no number or out of its range.
     """
 
-    hold_force: float = 3.0
+    hold_force: float = 1.0
     rise_constant: float = 0.001
     fall_constant: float = 0.004
     saturation: float = 1.0
@@ -69,7 +68,7 @@ class Electromagnet:
     def from_times(
         cls,
         *,
-        hold_force: float = 3.0,
+        hold_force: float = 1.0,
         rise_time: float = 0.003,
         fall_time: float = 0.005,
         saturation: float = 1.0,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from pindrive.device.scene import in_words
 from pindrive.quantities import refusal
-from pindrive.units import quoted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -65,7 +65,7 @@ class Page:
     def words(self) -> str:
         """What it is, for a title."""
         if self.text is not None:
-            shown = f"text {quoted(self.text)}"
+            shown = in_words(self.text)
         elif self.image is not None:
             shown = f"picture {self.image.name}"
         else:

@@ -12,6 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from pindrive.device.history import Moment, draw_history, moment
 from pindrive.device.painting import Painting, paint, view
 from pindrive.device.printed import turnings
+from pindrive.device.report import gap_words
 from pindrive.quantities import QUANTITIES
 from pindrive.quantity import counted
 from pindrive.style import PALETTE, SMALL, STYLE, Figure
@@ -144,7 +145,9 @@ def _relief_title(judgement: Judgement) -> str:
     lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
     found = f"{counts['judged.shown']} of {counted(counts['judged.lines'], 'line')} shown"
     smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
-    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm, {smeared}"
+    gap = judgement.scan.smallest_gap
+    overlap = f"\npins overlap by {-MM * gap.size:.2g} mm" if gap and gap.size < 0.0 else ""
+    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm\n{smeared}{overlap}"
 
 
 def _draw_print(scan: Scan, axes: Axes, chosen: Moment | None) -> None:
@@ -259,7 +262,7 @@ def _title(judgement: Judgement) -> str:
     speed = QUANTITIES["hand_speed"].text(scan.path.peak_speed)
     what = f"{pins}, {scan.path.end - scan.path.begin:.3g} s, hand at up to {speed}"
     if not lines:
-        return f"{what}; no line passed whole under a pin."
+        return "\n".join([f"{what}; no line passed whole under a pin.", *gap_words(scan)])
     medians = []
     for name in ("lag_on", "lag_off", "smear", "overshoot", "contrast"):
         value, unit = judgement.spread(f"line.{name}")[1], QUANTITIES[f"line.{name}"].unit
@@ -269,4 +272,5 @@ def _title(judgement: Judgement) -> str:
                 f"{label} {value:.2f}" if unit == "1" else f"{label} {MM * value:.2g} mm"
             )
     found = f"{shown} of {counted(lines, 'line')} shown, {counts['judged.echoes']} false"
-    return f"{what}: {found}.\n" + (f"Medians: {', '.join(medians)}." if medians else "")
+    told = [*([f"Medians: {', '.join(medians)}."] if medians else []), *gap_words(scan)]
+    return "\n".join([f"{what}: {found}.", *told])

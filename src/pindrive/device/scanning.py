@@ -10,14 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import degrees
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.cores import usable_cores
+from pindrive.cores import worker_count
 from pindrive.device.control import Commands, Decision
 from pindrive.device.device import Device
+from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.magnet import CoilState, Current
 from pindrive.device.scene import Scene
@@ -133,7 +135,7 @@ class PinScan:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Scan:
     """What a device did while a hand moved it over a scene."""
 
@@ -141,8 +143,24 @@ class Scan:
     scene: Scene
     path: HandPath
     pins: tuple[PinScan, ...]
-    warnings: tuple[str, ...]
-    """What is doubtful about it, in words with numbers."""
+    max_angle: float
+    """Between motion and drive axis beyond which a warning is given, rad."""
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about it, in words with numbers."""
+        return (*_doubts(self), *_overlaps(self))
+
+    @cached_property
+    def gaps(self) -> tuple[Gap, ...]:
+        """The smallest gap of each two neighbouring pins, as the array's `neighbours` has them."""
+        motions = [pin.motion for pin in self.pins]
+        return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
+
+    @property
+    def smallest_gap(self) -> Gap | None:
+        """The smallest of its gaps; None where no pin stands ahead of another."""
+        return min(self.gaps, key=lambda gap: gap.size, default=None)
 
     @property
     def state(self) -> tuple[PinState, ...]:
@@ -185,34 +203,28 @@ def scan(
         start: where each pin stands at the path's begin, as `Scan.state` of a scan that ended
             there; None: at the springs' rest, all magnets off.
         max_angle: between motion and drive axis beyond which a warning is given, rad.
-        threads: how many pins are followed at once; None: as many as the machine has processors.
+        threads: how many pins are followed at once, at least 1; None: as many as there are cores.
         progress: told after each pin.
 
     Returns:
         The scan, with its warnings.
 
     Raises:
-        ValueError: a spot leaves the scene, a state is missing or cannot be, or a simulation had
-            to be given up.
+        ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
+            count, or a simulation had to be given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"
         raise ValueError(refusal("start", required, str(len(start))))
+    workers = worker_count(threads)
     prepared = prepare(device, scene, path, start)
     pins: list[PinScan] = []
-    workers = threads or usable_cores()
     with ThreadPoolExecutor(max_workers=min(workers, len(prepared))) as pool:
         for pin in pool.map(PreparedPin.follow, prepared):
             pins.append(pin)
             if progress:
                 progress(len(pins), len(prepared))
-    return Scan(
-        device=device,
-        scene=scene,
-        path=path,
-        pins=tuple(pins),
-        warnings=tuple(_warnings(device, scene, path, pins, max_angle)),
-    )
+    return Scan(device=device, scene=scene, path=path, pins=tuple(pins), max_angle=max_angle)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -339,11 +351,10 @@ def _check_on_page(scene: Scene, spots: NDArray[np.float64], t: NDArray[np.float
     )
 
 
-def _warnings(
-    device: Device, scene: Scene, path: HandPath, pins: Sequence[PinScan], max_angle: float
-) -> list[str]:
-    """What is doubtful about a scan."""
+def _doubts(scan: Scan) -> list[str]:
+    """What is doubtful about a scan, but for pins that overlap."""
     found = []
+    device, scene, path, max_angle = scan.device, scan.scene, scan.path, scan.max_angle
     control, speed = device.control, path.peak_speed
     enough = control.enough_rate(speed, scene.pixel)
     if control.sample_rate < enough * (1.0 - ROUNDING):
@@ -352,6 +363,8 @@ def _warnings(
             f"{1e3 * speed / control.sample_rate:.3g} mm at {1e3 * speed:.4g} mm/s, past pixels of "
             f"{1e3 * scene.pixel:.3g} mm: thin lines may be missed; {enough:.4g} Hz sees each"
         )
+    if device.friction.doubt:
+        found.append(device.friction.doubt)
     largest, mean = path.angles(device.array.axis)
     if largest > max_angle:
         found.append(
@@ -359,7 +372,7 @@ def _warnings(
             f"the drive axis, more than scan.max_angle, {degrees(max_angle):.3g} deg: the pins "
             f"feel {np.cos(largest):.0%} of the speed, and the plate's friction pulls askew"
         )
-    if not any(len(pin.commands.times) or pin.commands.at_first for pin in pins):
+    if not any(len(pin.commands.times) or pin.commands.at_first for pin in scan.pins):
         found.append(
             f"no pin met information: nothing under their spots is darker than "
             f"{control.threshold - 0.5 * control.hysteresis:g}"
@@ -367,10 +380,31 @@ def _warnings(
     coil = device.magnet.coil
     if coil is not None:
         lasts = path.end - path.begin
-        most = max(sum(end - begin for begin, end in pin.energised) for pin in pins) / lasts
+        most = max(sum(end - begin for begin, end in pin.energised) for pin in scan.pins) / lasts
         if most > coil.duty:
             found.append(
                 f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
             )
+    return found
+
+
+def _overlaps(scan: Scan) -> list[str]:
+    """Pins that would have to pass through each other: the motions know nothing of that."""
+    found = []
+    gaps, array = scan.gaps, scan.device.array
+    touching = [gap for gap in gaps if gap.size < 0.0]
+    if touching:
+        worst = min(touching, key=lambda gap: gap.size)
+        pairs = f"; {len(touching)} of {len(gaps)} pairs of neighbours do" if len(gaps) > 1 else ""
+        found.append(
+            f"pins {worst.behind} and {worst.ahead} overlap by {-1e3 * worst.size:.4g} mm at "
+            f"{worst.time:.4g} s{pairs}: real pins would push each other, these pass through"
+        )
+    for one, other in array.abreast[:1]:
+        apart = abs(array.places[other][1] - array.places[one][1])
+        found.append(
+            f"pins {one} and {other} stand {1e3 * apart:.4g} mm apart across the drive axis, less "
+            f"than array.pin_diameter, {1e3 * array.pin_diameter:.4g} mm: they overlap at rest"
+        )
     return found

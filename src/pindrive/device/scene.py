@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.quantities import check, refusal
+from pindrive.quantities import check, check_whole, refusal
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ class Scene:
         pitch = 2.0 * size if line_pitch is None else check("line_pitch", line_pitch)
         values, middles = draw(text, size / step, pitch / step, margin / step, font)
         lines = tuple(middle * step for middle in middles)
-        return cls(values, step, (0.0, 0.0), lines, title=f"text {quoted(text)}")
+        return cls(values, step, (0.0, 0.0), lines, title=in_words(text))
 
     @classmethod
     def from_grating(
@@ -190,12 +190,12 @@ class Scene:
             margin: white around the groups, m, and with the pitch between them.
 
         Raises:
-            ValueError: no pitch, or a number out of its range.
+            ValueError: no pitch, no lines, or a number out of its range.
         """
         steps = [check("pitch", pitch) for pitch in pitches]
         if not steps:
             raise ValueError(refusal("pitches", "at least one", "none"))
-        size = check("pixel", pixel)
+        size, count = check("pixel", pixel), check_whole(count, "count")
         begins, ends, x = [], [], margin
         for pitch in steps:
             begins += [x + i * pitch for i in range(count)]
@@ -213,6 +213,11 @@ class Scene:
         page[top : rows - top] = row
         words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)
         return cls(page, size, lines=(0.5 * rows * size,), title=f"lines every {words} mm")
+
+
+def in_words(text: str) -> str:
+    """A text for a title, its lines apart by slashes."""
+    return f"text {quoted(' / '.join(text.splitlines()))}"
 
 
 def _between(

@@ -270,7 +270,7 @@ def _pass(
     begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
     shifts = [speed * look * i / PHASES for i in range(PHASES)]
-    phases = PinArray([(float(i), 0.0) for i in range(PHASES)], [(s, 0.0) for s in shifts])
+    phases = PinArray([(0.0, float(i)) for i in range(PHASES)], [(s, 0.0) for s in shifts])
     page = _page(begins, width, begin - pixel, end + speed * look + pixel, pixel)
     lasts = (end - begin) / speed
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))

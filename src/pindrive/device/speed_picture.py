@@ -96,10 +96,11 @@ def _names(
     """The regions by their names, where they are widest."""
     axes.annotate(
         "hands in finger studies",
-        (0.0, HANDS[1]),
-        (3, -3),
+        (1.0, HANDS[1]),
+        (-3, -3),
         xycoords=axes.get_yaxis_transform(),
         textcoords="offset points",
+        ha="right",
         va="top",
         fontsize=SMALL,
         color="#8a5a00",
@@ -132,10 +133,10 @@ def _names(
         axes.annotate(
             "settled in between",
             (float(pitch[last]), float(settled[last])),
-            (-4, 5),
+            (-4, -40),
             textcoords="offset points",
             ha="right",
-            va="bottom",
+            va="top",
             fontsize=SMALL,
             color=PALETTE["curve"],
         )
