@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.friction import GRAVITY, KINETIC, within
-from pindrive.study.plan import with_links
+from pindrive.study.links import with_links
 
 if TYPE_CHECKING:
     from pindrive.study.plan import Columns, Plan
