@@ -289,12 +289,12 @@ REFUSALS = {
     ),
     ("--text", " "): 'text must be at least one character that is drawn, got " "',
     ("--image", "none.png"): "none.png: cannot be read: No such file or directory",
-    ("--image", "device.toml"): "device.toml: is named twice; give each file a name of its own",
+    ("--image", "device.toml"): "device.toml: cannot be read: it is no image, or a damaged one",
     ("--grating", "4"): '--grating 4: must be a number with its unit (give a unit, like "4 mm")',
     ("--grating", "4 mm", "--font", "x.ttf"): "--font x.ttf: goes with --text alone",
     ("--text", "A", "--path", "none.csv"): "none.csv: cannot be read: No such file or directory",
     ("--text", "A", "-o", "device.toml"): (
-        "device.toml: is named twice; give each file a name of its own"
+        "--output device.toml: is read by this command; give another name"
     ),
     ("--text", "A", "-o", "nowhere/a.nc"): "nowhere/a.nc: cannot be written: No such file or",
     ("--text", "A", "--set", "pitch=100 mm", "--set", "spot_scale=0", "--path", "off.csv"): (

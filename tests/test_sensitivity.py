@@ -377,7 +377,7 @@ def test_without_damping_the_ending_changes_but_not_the_motion() -> None:
         (["finger_stiffness"], "this motion was given"),
         (["skin_stretch"], "this motion was given"),
         (["plate_curve[0].force"], "one of 0 rows of plate_curve"),
-        (["mouse_velocity[1].value"], "one of 1 rows of mouse_velocity"),
+        (["mouse_velocity[1].value"], "one of 1 row of mouse_velocity"),
     ],
 )
 def test_unknown_parameters_are_refused(parameters: Any, words: str) -> None:

@@ -234,6 +234,7 @@ def test_a_study_that_varies_nothing_is_refused(tmp_path: Path) -> None:
     for command, words in (
         ("sensitivity", "nothing varies; write what in [axes] or [tolerances]"),
         ("robustness", "has no tolerances; write them in [tolerances]"),
+        ("sensitivity --tolerances", "has no tolerances; write them in [tolerances]"),
     ):
-        said = CliRunner().invoke(app, [command, str(study)])
+        said = CliRunner().invoke(app, [*command.split(), str(study)])
         assert (said.exit_code, said.stderr) == (2, f"{study}: {words}\n")

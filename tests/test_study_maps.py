@@ -202,6 +202,8 @@ def test_the_command_draws(folder: Path, tmp_path: Path, ending: str) -> None:
 
 REFUSED = {
     "grid.nc -o map.gif": "--output map.gif: must end in .png, .svg, .pdf",
+    "half.nc.partial -o map.png": "half.nc.partial: is not finished; `pindrive sweep --resume` "
+    "goes on",
     "none.nc -o map.png": "none.nc: cannot be read: No such file or directory",
     "grid.toml -o map.png": "grid.toml: cannot be read: ",
     "alien.nc -o map.png": "alien.nc: is no study; `pindrive sweep` writes one",
@@ -223,6 +225,7 @@ REFUSED = {
 def test_refusals(folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: str) -> None:
     monkeypatch.chdir(folder)
     xr.Dataset({"a": 1.0}).to_netcdf("alien.nc", engine="h5netcdf")
+    Path("half.nc.partial").write_bytes(Path("one.nc").read_bytes())
     before = {path.name for path in folder.iterdir()}
     said = run(*arguments.split())
     assert (said.exit_code, said.stdout) == (2, "")

@@ -45,7 +45,10 @@ def sweep(
     ] = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Work out all points of a study into one NetCDF file."""
+    """Work out all points of a study into one NetCDF file.
+
+    What keeps its ratio to a varied value changes with it, as for `robustness`.
+    """
     from pindrive.study.report import sweep_report
     from pindrive.study.studyfile import load_study
     from pindrive.study.sweeping import on_threads
@@ -182,7 +185,10 @@ def sensitivity(
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges."""
+    """Say which parameter matters: elasticities at the device, Sobol' indices over the ranges.
+
+    What keeps its ratio to a varied value changes with it, as for `robustness`.
+    """
 
     def answer(plan: Plan, tell: Tell) -> Influence:
         from pindrive.study.influence import askable, influence
@@ -226,7 +232,12 @@ def robustness(
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Say how a design fares within its tolerances: spread, yield, worst case."""
+    """Say how a design fares within its tolerances: spread, yield, worst case.
+
+    Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch
+    to the largest that it can have, unless they have a tolerance of their own. Draws that cannot
+    exist all the same are counted apart, with the reason.
+    """
 
     def answer(plan: Plan, tell: Tell) -> Robustness:
         from pindrive.study.robust import robustness

@@ -65,8 +65,9 @@ def check_outputs(
         if any(_are_one(output.path, other.path) for other in outputs[:i]):
             raise OutputError(f"{output}: is named twice; give each file a name of its own")
         check_unread(output.path, read, str(output))
-        if not output.path.is_file() or not output.path.stat().st_size:
-            continue
+        with naming(output.path):
+            if not output.path.is_file() or not output.path.stat().st_size:
+                continue
         try:
             alike = output.kind.holds(output.path)
         except OSError as error:

@@ -71,7 +71,9 @@ def template(whole: bool = False) -> str:
         unit = "" if quantity.unit == "1" else quantity.unit
         bounds = quantity.bounds.words(unit)
         lines.append(f"# {quantity.symbol}: {quantity.meaning}")
-        lines.append("#   " + "; ".join(filter(None, (bounds, quantity.remark))))
+        follows = f"keeps its ratio to {' over '.join(quantity.follows)} where it is not set itself"
+        said = (bounds, quantity.remark, follows if quantity.follows else "")
+        lines += [f"#   {text}" for text in wrap("; ".join(filter(None, said)), 94)]
         lines += [f"#   {text}" for text in wrap(quantity.source, 94)]
         lines.append(("# " if quantity.default is None else "") + line(quantity))
         if quantity.rows and quantity.may_be_constant:

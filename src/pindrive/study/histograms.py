@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _BINS: Final = 80
 """At most: no more than twice the root of the number of draws."""
-_WIDTH: Final = 120
+_WIDTH: Final = 104
 """Characters of a line of the title."""
 
 

@@ -46,11 +46,13 @@ class Ranges:
 
 
 def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
-    """The ranges of the axes, or the tolerances; the other where one is missing.
+    """The ranges of the axes, or the tolerances; these too where there are no axes.
 
     Raises:
-        ValueError: nothing varies, or a count does.
+        ValueError: nothing varies, or a count does, or there are no tolerances.
     """
+    if tolerances and not plan.tolerances:
+        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
     scatter: dict[str, Distribution] = {}
     fixed: dict[str, float] = {}
     of_axes = [k for k, axis in plan.axes.items() if not isinstance(axis, Linked)]

@@ -140,8 +140,6 @@ def robustness(
     Raises:
         ValueError: there are no tolerances, or no draw can exist.
     """
-    if not plan.tolerances:
-        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
     ranges = ranges_of(plan, tolerances=True)
     if count is None:
         count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT

@@ -71,6 +71,9 @@ class View:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
             raise ValueError(f"{self.path}: cannot be read: {reason}") from None
+        if self.path.endswith(".partial"):
+            self.data.close()
+            raise ValueError(f"{self.path}: is not finished; `pindrive sweep --resume` goes on")
         if "identity" not in self.data.attrs:
             self.data.close()
             raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
