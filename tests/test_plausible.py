@@ -15,6 +15,7 @@ from pindrive import (
     Contact,
     Drive,
     ImplausibleValueWarning,
+    Motion,
     Profile,
     simulate,
     simulate_batch,
@@ -161,3 +162,41 @@ def test_a_figure_shows_itself_in_a_notebook() -> None:
     picture, size = figure._repr_png_()
     assert picture.startswith(b"\x89PNG\r\n\x1a\n")
     assert size == {"width": 680, "height": 472}
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_load_may_step_in_a_device_file_and_on_the_command_line() -> None:
+    rows = '[["0 ms", 5], ["5 ms", 5], ["5 ms", 1]]'
+    Path("device.toml").write_text(f"{GOOD}plate_load = {rows}\n", encoding="utf-8")
+    Path("plain.toml").write_text(GOOD, encoding="utf-8")
+    told = run("simulate", "device.toml")
+    assert told.exit_code == 0, told.output
+    assert "5.000" in told.stdout
+    assert run("simulate", "plain.toml", "--set", f"plate_load={rows}").stdout == told.stdout
+    steps = '[["0 ms", "60 mm/s"], ["5 ms", "60 mm/s"], ["5 ms", "0 mm/s"]]'
+    refused = run("simulate", "plain.toml", "--set", f"mouse_velocity={steps}")
+    assert refused.exit_code == 2
+    assert refused.stderr == (
+        "--set mouse_velocity: motion.mouse_velocity[2] time must be greater than the one before, "
+        "0.005 s (a jump would take an infinite force), got 0.005 s\n"
+    )
+
+
+def test_the_derivative_along_the_time_of_a_step_is_that_of_differences() -> None:
+    def stepped(time: float) -> Motion:
+        load = Profile([0.0, time, time], [0.6, 0.6, 1.5])
+        return simulate(PIN, mouse_velocity=0.06, displacement=0.002, plate_load=load)
+
+    motion, h, t = stepped(0.02), 1e-7, np.linspace(0.025, 0.1, 7)
+    found = motion.sensitivity(["plate_load[1].time"]).position(t)[0]
+    assert np.array_equal(found, motion.sensitivity(["plate_load[2].time"]).position(t)[0])
+    expected = (stepped(0.02 + h).position(t) - stepped(0.02 - h).position(t)) / (2 * h)
+    assert np.abs(expected).max() > 1e-5
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+def test_a_profile_has_its_later_value_at_a_step() -> None:
+    load = Profile([0.0, 1.0, 1.0, 2.0], [5.0, 4.0, 1.0, 2.0])
+    assert load.steps == (1.0,)
+    assert [load(0.5), load(1.0), load(1.5)] == [4.5, 1.0, 1.5]
+    assert load(np.array([0.5, 1.0, 1.5])).tolist() == [4.5, 1.0, 1.5]
