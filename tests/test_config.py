@@ -289,8 +289,21 @@ def test_numbers_keep_every_bit(value: float) -> None:
         ("[drive]", "x = " + "1" * 9999, "FILE: is not valid TOML: "),
         (
             '"10 g"\nstiffness = "100 N/m"',
-            '"1e-300 kg"\nstiffness = "1e300 N/m"',
-            "FILE: natural_frequency must be finite and greater than 0 rad/s, got inf rad/s",
+            '"1e-12 kg"\nstiffness = "1e-12 N/m"',
+            "FILE: damping must be such that the damping ratio is 0 or at least 1e-11 and at most "
+            "1e6, got 0.4 N*s/m, which makes it 2e+11",
+        ),
+        (
+            '"10 g"',
+            '"1e-200 kg"',
+            "FILE: drive.mass must be finite and at least 1e-12 kg and at most 1e12 kg, got "
+            '"1e-200 kg"',
+        ),
+        (
+            '"10 g"',
+            '"10,5 g"',
+            'FILE: drive.mass must be a number whose decimal sign is a point, like "10.5 g", got '
+            '"10,5 g"',
         ),
     ],
 )

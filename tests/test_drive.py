@@ -40,7 +40,9 @@ def test_natural_frequency_and_damping_ratio() -> None:
 
 
 @given(
-    mass=st.floats(1e-9, 1e9), stiffness=st.floats(1e-9, 1e9), damping_ratio=st.floats(0.0, 100.0)
+    mass=st.floats(1e-9, 1e9),
+    stiffness=st.floats(1e-9, 1e9),
+    damping_ratio=st.one_of(st.just(0.0), st.floats(1e-10, 100.0)),
 )
 def test_damping_ratio_there_and_back(mass: float, stiffness: float, damping_ratio: float) -> None:
     made = Drive.with_damping_ratio(
@@ -92,7 +94,30 @@ def test_a_curve_alone_says_the_kinetic_friction() -> None:
             "damping must be finite and at least 0 N*s/m, got -0.1 N*s/m",
         ),
         (lambda: drive(damping=math.nan), "damping must be finite and at least 0 N*s/m, got nan"),
-        (lambda: drive(mass=1e-300, stiffness=1e300), "natural_frequency must be finite"),
+        (
+            lambda: drive(mass=1e-300),
+            "mass must be finite and at least 1e-12 kg and at most 1e12 kg, got 1e-300 kg",
+        ),
+        (
+            lambda: drive(mass=1e-12, stiffness=1e-12),
+            "damping must be such that the damping ratio is 0 or at least 1e-11 and at most 1e6, "
+            "got 0.4 N*s/m, which makes it 2e+11",
+        ),
+        (
+            lambda: drive(damping=1e-15),
+            "damping must be such that the damping ratio is 0 or at least 1e-11",
+        ),
+        (
+            lambda: drive(plate=Contact(curve=[(0, 1), (1e-9, 1e4)])),
+            "curve slope must be finite and at least -1e12 N*s/m and at most 1e12 N*s/m",
+        ),
+        (
+            lambda: drive(plate=Contact(curve=[(0, 1), (1e-9, 100)])),
+            "plate curve slope must be at most 1e6 times critical damping, got 9.9e+10 N*s/m",
+        ),
+        (lambda: Contact(curve=[(0, 1), (1e-320, 2)]), "curve slope must be finite"),
+        (lambda: drive(mass=[0.01, 0.02]), "mass must be one number; simulate_batch takes arrays"),
+        (lambda: drive(mass=np.ones(3)), "mass must be one number; simulate_batch takes arrays"),
         (lambda: drive(plate=0.02), "plate must be a Contact, got 0.02"),
         (lambda: Contact(-0.1), "kinetic must be finite and at least 0 N, got -0.1 N"),
         (lambda: Contact(0.1, math.inf), "static must be finite and at least 0 N, got inf N"),
@@ -123,10 +148,15 @@ def test_a_curve_alone_says_the_kinetic_friction() -> None:
         (lambda: Profile([], []), "times must be at least one, got none"),
         (lambda: Profile([0, 1], [0]), "values must be as many as times, 2, got 1"),
         (
-            lambda: Profile([0, 0], [0, 1]),
-            "times[1] must be greater than the one before, 0.0 s (a jump in velocity would take an "
-            "infinite force)",
+            lambda: Profile([0, 1, 0.5], [0, 1, 1]),
+            "times[2] must be at least the one before, 1.0 s, got 0.5 s",
         ),
+        (
+            lambda: Profile([0, 0, 0], [0, 1, 2]),
+            "times[2] must be greater than the one before, 0.0 s: two rows at one time are a step, "
+            "a third is none",
+        ),
+        (lambda: Profile([0, 1e-300], [0, 1]), "profile slope must be finite and at least -1e12"),
         (lambda: Profile([0, math.nan], [0, 1]), "times[1] must be finite, got nan s"),
         (lambda: Profile([0, 1], [0, math.inf]), "values[1] must be finite, got inf"),
         (lambda: Profile(WRONG, WRONG), "a profile must be sequences of numbers, got 3"),

@@ -7,6 +7,7 @@ SciPy, and through `oracle/sundials_modes.py` with SUNDIALS.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -212,6 +213,35 @@ def cheapest_with_events(family: str) -> Case:
 @pytest.mark.parametrize("family", DATA["families"])
 def test_explicit_modes_give_the_oracle_answers(family: str) -> None:
     check_live(cheapest_with_events(family), explicit_piecewise, explicit_piecewise)
+
+
+def stepped(rows: list[list[float]]) -> list[list[float]]:
+    """The same rows, each value held until the next."""
+    found = [rows[0]]
+    for (_, held), (time, value) in pairwise(rows):
+        found += [[time, held], [time, value]]
+    return found
+
+
+STEPPED = [case for case in CASES if len(case["inputs"]["load"]) > 2][::3]
+
+
+@pytest.mark.parametrize("case", STEPPED, ids=lambda case: name(case))
+def test_a_load_in_steps_is_that_of_explicit_modes(case: Case) -> None:
+    """A magnet that is there or not: the same cases, their loads held from row to row."""
+    inputs = {**case["inputs"], "load": stepped(case["inputs"]["load"])}
+    run = explicit_piecewise.solve(inputs, case["duration"], case["times"])
+    answer = {**case, "inputs": inputs, "events": run.events}
+    answer |= dict(zip(STATES, np.array(run.rows).T, strict=True))
+    motion, times = release(answer), np.array(case["times"])
+    assert not deviations(
+        answer,
+        told_events(motion),
+        {"x": motion.position(times), "v": motion.velocity(times)},
+        explicit_piecewise.PHASE_TOLERANCE / natural_frequency(case),
+        explicit_piecewise.STATE_TOLERANCE,
+    )
+    assert motion.certificate().worst < 1e-9
 
 
 @pytest.mark.parametrize("family", DATA["families"])

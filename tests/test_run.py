@@ -11,6 +11,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 import run
 
@@ -197,3 +198,33 @@ def test_the_extras_hold_the_extras_they_name() -> None:
     build, test, dev = (set(run.requirements({extra})) for extra in ("build", "test", "dev"))
     assert build < test < dev
     assert all("pindrive" not in line for line in dev)
+
+
+def test_explore_draws_each_seed_and_says_how_to_draw_it_again(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    commands: list[tuple[str, ...]] = []
+
+    def fake(*command: str | Path) -> int:
+        commands.append(tuple(map(str, command)))
+        return int("--hypothesis-seed=8" in command)
+
+    monkeypatch.setattr(run, "install", lambda extras: None)
+    monkeypatch.setattr(run, "run", fake)
+    assert run.main(["explore", "3", "7"]) == 1
+    seeds = [next(a for a in command if "seed" in a) for command in commands]
+    assert seeds == ["--hypothesis-seed=7", "--hypothesis-seed=8", "--hypothesis-seed=9"]
+    assert all("--hypothesis-profile=explore" in command for command in commands)
+    assert any(a.endswith("test_laws.py") for a in commands[0])
+    assert not any(a.endswith("test_readme.py") for a in commands[0])
+    assert "again with: python3 run.py explore 1 8" in capsys.readouterr().out
+    with pytest.raises(SystemExit) as stopped:
+        run.main(["explore", "many"])
+    assert stopped.value.code == 2
+
+
+def test_a_test_run_draws_the_same_cases_everywhere() -> None:
+    same = settings.get_profile("same")
+    assert same.derandomize
+    assert same.deadline is None
+    assert not settings.get_profile("explore").derandomize

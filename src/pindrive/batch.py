@@ -11,7 +11,7 @@ from pindrive import _core
 from pindrive.cores import worker_count
 from pindrive.plausible import warn_of
 from pindrive.quantities import OR_INFINITE, QUANTITIES, refusal
-from pindrive.quantity import Bounds
+from pindrive.quantity import POSITIVE_OR_RIGID, Bounds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -234,9 +234,11 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
 
 
 def _warn(name: str, given: Values) -> None:
-    """Warn of the largest and the smallest value that are numbers, if no such device has them."""
-    seen, sizes = _ARGUMENTS[name].seen, np.abs(_floats(name, getattr(given, "values", given)))
-    sizes = sizes[np.isfinite(sizes)]
+    """Warn of the largest or the smallest value that is computed, if no such device has it."""
+    quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
+    seen = quantity.seen
+    good = _within(quantity.bounds, values) & _within(quantity.limits, values) & np.isfinite(values)
+    sizes = np.abs(values[good])
     if seen is None or not sizes.size:
         return
     for size in (sizes.max(), sizes.min()):
@@ -257,8 +259,9 @@ def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDA
             status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
 
     for name, quantity in _ARGUMENTS.items():
-        bounds = OR_INFINITE if name in _INFINITE else quantity.bounds
-        mark(name, ~_within(bounds, a[name]))
+        bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
+        limits = OR_INFINITE if name in _INFINITE else quantity.limits
+        mark(name, ~(_within(bounds, a[name]) & _within(limits, a[name])))
     for contact in ("plate", "finger"):
         mark(f"{contact}_static", a[f"{contact}_static"] < a[f"{contact}_kinetic"])
     with np.errstate(all="ignore"):
@@ -266,8 +269,8 @@ def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDA
         phase = np.sqrt(a["stiffness"] / a["mass"]) * np.where(
             np.isinf(a["duration"]), 0.0, a["duration"]
         )
-    mark("damping_ratio", ~_within(QUANTITIES["damping_ratio"].bounds, ratio))
-    mark("phase", ~_within(QUANTITIES["phase"].bounds, phase))
+    mark("damping_ratio", ~_within(QUANTITIES["damping_ratio"].limits, ratio))
+    mark("phase", ~_within(QUANTITIES["phase"].limits, phase))
     return status
 
 

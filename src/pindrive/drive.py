@@ -222,7 +222,7 @@ def check_slopes(
     rows: Sequence[tuple[float, float]], name: str, *, where: str = "", label: str
 ) -> None:
     """Refuse rows of which two lie so close that the slope between them is out of range."""
-    bounds = QUANTITIES[name].bounds
+    bounds = QUANTITIES[name].limits
     slopes = _slopes(rows)
     if all(bounds.lower <= slope <= bounds.upper for slope in slopes):
         return
@@ -258,7 +258,7 @@ class Drive:
         object.__setattr__(self, "mass", check("mass", self.mass))
         object.__setattr__(self, "stiffness", check("stiffness", self.stiffness))
         object.__setattr__(self, "damping", check("damping", self.damping))
-        ratios = QUANTITIES["damping_ratio"].bounds
+        ratios = QUANTITIES["damping_ratio"].limits
         if self.damping_ratio not in ratios:
             required = f"such that the damping ratio is {ratios.words()}"
             given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
@@ -375,7 +375,7 @@ def _column(values: Iterable[float], name: str, label: str) -> tuple[float, ...]
     """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
     try:
         listed = values.tolist() if hasattr(values, "tolist") else list(values)
-        bounds = QUANTITIES[name].bounds
+        bounds = QUANTITIES[name].limits
         plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
         if plain and min(listed) in bounds and max(listed) in bounds:
             return tuple(listed)

@@ -499,10 +499,10 @@ def _rows(given: float | Profile, name: str) -> Rows:
     """An input as rows (time, value): one row is a constant."""
     if not isinstance(given, Profile):
         return [(0.0, check(name, given))]
-    bounds = QUANTITIES[name].bounds
+    bounds, limits = QUANTITIES[name].bounds, QUANTITIES[name].limits
     if name == "mouse_velocity":
         check_continuous(given, "m/s")
-    if not (min(given.values) in bounds and max(given.values) in bounds):
+    if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
     if not given.changes:
@@ -514,7 +514,7 @@ def check_phase(
     duration: float, natural_frequency: float, *, where: str = "", label: str = "duration"
 ) -> None:
     """Refuse a duration (s) in which the phase grows beyond what doubles tell apart."""
-    bounds = QUANTITIES["phase"].bounds
+    bounds = QUANTITIES["phase"].limits
     if duration * natural_frequency > bounds.upper:
         longest, phase = brief(bounds.upper / natural_frequency), brief(bounds.upper)
         required = f"at most {longest} s, {phase} over the natural frequency"

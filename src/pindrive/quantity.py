@@ -50,20 +50,20 @@ class Bounds:
         def end(value: float) -> str:
             return f"{brief(value)} {unit}".rstrip()
 
-        if -inf < self.lower and self.lower_closed and self.upper_closed and self.upper < inf:
-            beside = ["infinite" if value == inf else end(value) for value in self.also]
-            return " or ".join([*beside, f"from {end(self.lower)} to {end(self.upper)}"])
-        parts = [] if self.upper == inf and self.upper_closed else ["finite"]
+        beside = "".join(f"{'infinite' if y == inf else end(y)} or " for y in self.also)
+        parts = [] if (self.upper == inf and self.upper_closed) or self.also else ["finite"]
         if self.lower > -inf:
             parts.append(f"{'at least' if self.lower_closed else 'greater than'} {end(self.lower)}")
         if self.upper < inf:
             parts.append(f"{'at most' if self.upper_closed else 'less than'} {end(self.upper)}")
-        return " and ".join(parts)
+        return beside + " and ".join(parts)
 
 
 FINITE: Final = Bounds()
 POSITIVE: Final = Bounds(lower=0.0)
 NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
+POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
+FINITE_OR_NOT: Final = Bounds(lower_closed=True, upper_closed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Quantity:
     """SI unit, "1" when dimensionless, "" for a count or a truth value."""
     meaning: str
     bounds: Bounds = FINITE
-    """Outside of them a value is refused."""
+    """What it can be at all."""
     default: float | None = None
     """SI value in the file that `pindrive init` writes."""
     source: str = ""
@@ -96,6 +96,8 @@ class Quantity:
     follows: tuple[str, ...] = ()
     """Keys to which it keeps its ratio where they are varied and it is not: to the first, or to the
     first over the second. Of rows, the values keep it."""
+    limits: Bounds = FINITE_OR_NOT
+    """What of that is computed, far outside of any device: all else is refused too."""
     seen: Bounds | None = None
     """What any such device has, either way; a value outside is taken, but warned of."""
 
@@ -133,13 +135,22 @@ class Quantity:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
         return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
 
+    def required(self, value: float) -> str:
+        """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""
+        unit = "" if self.unit == "1" else self.unit
+        for bounds in (self.bounds, self.limits):
+            if value not in bounds:
+                return bounds.words(unit)
+        return ""
+
     def doubt(self, value: float, label: str = "") -> str:
         """Words for a value (SI) that no such device has; empty for one that may be meant."""
         if self.seen is None or abs(value) in self.seen or not isfinite(value):
             return ""
         unit = "" if self.unit == "1" else self.unit
         words = f"{label or self.name} is {brief(value)} {unit}".rstrip()
-        words += f"; any such device has {self.seen.words(unit)}"
+        ends = f"{brief(self.seen.lower)} to {brief(self.seen.upper)} {unit}".rstrip()
+        words += f"; any such device has {ends}"
         meant = value / self.display_scale
         if self.display_scale == 1.0 or abs(meant) not in self.seen:
             return words

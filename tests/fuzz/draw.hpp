@@ -60,7 +60,7 @@ class Draw {
         profile([&] { return chance(0.3) ? 0 : tidy(speed_ * uniform(-1, 1)); }, last);
     c.plate_load = {{0}, {1}};
     if (c.curve[0].at.size() == 1 && chance(0.4))
-      c.plate_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last);
+      c.plate_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.3);
     c.displacement = chance(0.1) ? 0 : tidy(length * uniform(-1, 1));
     c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]
                  : chance(0.3) ? 0
@@ -101,13 +101,16 @@ class Draw {
     return rows;
   }
 
+  /// Now and then a load steps: two rows at one time.
   template <class Value>
-  Rows profile(Value&& value, double& last) {
+  Rows profile(Value&& value, double& last, double steps = 0) {
     Rows rows{{0}, {value()}};
     if (chance(0.4)) return rows;
     const int more = static_cast<int>(uniform(1, 6));
     for (int i = 0; i < more; ++i) {
-      rows.at.push_back(rows.at.back() + tidy(period_ * decade(-1.5, long_ ? 0.7 : 0.2)));
+      const bool steps_here = steps > 0 && i > 0 && rows.at[i - 1] < rows.at[i] && chance(steps);
+      const double later = tidy(period_ * decade(-1.5, long_ ? 0.7 : 0.2));
+      rows.at.push_back(rows.at.back() + (steps_here ? 0 : later));
       rows.value.push_back(chance(0.25) ? rows.value.back() : value());
     }
     last = std::max(last, rows.at.back());

@@ -30,6 +30,13 @@ class Run:
     mode: str
 
 
+def before(t: float, times: Any, values: Any) -> float:
+    """What rows come to at time t, before the step that they may make there."""
+    i = int(np.searchsorted(times, t))
+    at_row = i < len(times) and times[i] == t
+    return float(values[i] if at_row else np.interp(t, times, values))
+
+
 class Law:
     """Kinetic friction as lines between speeds; the last goes on, but not below zero."""
 
@@ -95,7 +102,7 @@ class ExplicitModes:
         width = self.t1 - self.t0
         moving = width < inf
         self.w = (np.interp(self.t1, *self.mouse) - self.vp) / width if moving else 0.0
-        self.rise = (np.interp(self.t1, *self.load) - self.lam) / width if moving else 0.0
+        self.rise = (before(self.t1, *self.load) - self.lam) / width if moving else 0.0
 
     def mouse_at(self, t: float) -> float:
         return float(self.vp + self.w * (t - self.t0))
@@ -352,9 +359,13 @@ class ExplicitModes:
         self.note("both", "stick" if sticks else "cross")
 
     def pass_knot(self) -> None:
-        was_rest = self.stopped()
+        was_rest, load = self.stopped(), self.load_at(self.t)
         self.enter_knot()
+        less = self.lam < load * (1 - 1e-12)  # a step down
         if self.soft or self.plate.absent or self.finger.absent or self.vp != 0:
+            needed = abs(self.plate_needed(self.t, self.y)) if self.on_plate and less else 0.0
+            if needed > self.plate_static(self.t):
+                self.break_loose("plate")
             if self.on_finger and abs(self.finger_needed(self.t, self.y)) > self.finger.static:
                 self.break_loose("finger")
             if self.soft and self.f and not self.grips and self.on_plate and self.vp == 0:
@@ -363,7 +374,7 @@ class ExplicitModes:
                 self.move_full_skin(self.w)
         elif self.on_plate or self.on_finger:
             self.v = 0.0
-            if not (was_rest and self.stopped()):
+            if less or not (was_rest and self.stopped()):
                 self.share()
 
     # -- both rigid contacts at v = 0 while the mouse is there too -------------------------------

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.quantities import FROM_ZERO, QUANTITIES, refusal
+from pindrive.quantities import QUANTITIES, refusal
+from pindrive.quantity import NON_NEGATIVE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -116,7 +117,7 @@ class Release:
 
 def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:
     quantity = QUANTITIES[_QUANTITY.get(name, name)]
-    bounds = FROM_ZERO if name == "mouse_velocity" else quantity.bounds
+    bounds = NON_NEGATIVE if name == "mouse_velocity" else quantity.bounds
     try:
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
