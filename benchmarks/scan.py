@@ -33,7 +33,7 @@ def main() -> None:
         plate=Contact(0.022, 0.0265),
         finger=Contact(0.005, 0.0075),
     )
-    magnet = Electromagnet.from_times(hold_force=3.0)
+    magnet = Electromagnet(hold_force=3.0)
     device = Device(drive=drive, magnet=magnet, array=PinArray.grid(4, 4, 0.0025))
     reading = Reading()
     begin = perf_counter()

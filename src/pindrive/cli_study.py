@@ -265,7 +265,7 @@ def _say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
 
     words = coefficient_words(plan, tolerances=tolerances)
     if words:
-        typer.echo(words)
+        typer.echo(words, err=words.startswith("warning: "))
 
 
 def _answered(

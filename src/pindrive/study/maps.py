@@ -10,7 +10,6 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
-from matplotlib.transforms import nonsingular
 
 from pindrive._core import settling_band
 from pindrive.study.outputs import MEASURED, is_stepped
@@ -123,7 +122,8 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
     ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
     stepped = is_stepped(panels[0].number)
     levels = ticks[(ticks > low) & (ticks < high) & (not stepped)]
-    low, high = nonsingular(low, high, expander=0.1)  # one colour where all are the same
+    if low == high:  # one colour, the middle one
+        low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
     drawn: ScalarMappable | None = None
     for panel, values_shown, axes in zip(panels, shown, row, strict=True):
         drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
