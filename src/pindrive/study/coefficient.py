@@ -28,8 +28,8 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
     links = plan.tolerance_links if tolerances else plan.links
     followed = list(_PARTS)
     for key in followed:  # and what they follow, and so on
-        if key in links and links[key].of not in followed:
-            followed.append(links[key].of)
+        if key in links:
+            followed += [of for of in (links[key].of, links[key].over) if of and of not in followed]
     groups = [plan.tolerances] if tolerances else [d.axes for d in plan.dimensions]
     columns: list[Columns] = []
     for i, axes in enumerate(groups):
