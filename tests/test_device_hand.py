@@ -173,9 +173,9 @@ def test_bad_paths_are_refused() -> None:
         HandPath([0.0, 1.0, 1.0], [0.0] * 3, [0.0] * 3, (0.0, 0.0))
     with pytest.raises(ValueError, match="stops must be at least two places, got 1"):
         strokes([(0.0, 0.0)], 0.1)
-    with pytest.raises(ValueError, match=r"stroke.length must be finite and greater than 0 m"):
+    with pytest.raises(ValueError, match=r"stroke.length must be finite and at least 1e-09 m"):
         strokes([(0.0, 0.0), (0.0, 0.0)], 0.1)
-    with pytest.raises(ValueError, match=r"speeds must be finite and greater than 0 m/s, got -0.1"):
+    with pytest.raises(ValueError, match=r"speeds must be finite and at least 0.0001 m/s and at most 100 m/s, got -0.1"):
         strokes([(0.0, 0.0), (0.1, 0.0)], -0.1)
     with pytest.raises(ValueError, match="rows must be at least one line"):
         lines([], 0.0, 0.1, speed=0.1, return_speed=0.1)

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.course import Way, halved
+from pindrive.device.scanning import AT_ONCE, FINER
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Scan
 
-FINER: Final = 4.0
-"""The scene is looked at so many times in each pixel of the way."""
 GRAZED: Final = 0.5
 """What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
 
@@ -39,6 +39,9 @@ def printed(scan: Scan) -> list[list[Printed]]:
     The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
     bisection. A line on which the hand turns back is not whole, nor is one under the spot at the
     path's begin or end.
+
+    Raises:
+        ValueError: too many lines.
     """
     path, scene, device = scan.path, scan.scene, scan.device
     way = Way(path)
@@ -54,7 +57,8 @@ def printed(scan: Scan) -> list[list[Printed]]:
     turned = turnings(scan)
     threshold = device.control.threshold
     offsets = device.array.on_page(device.array.spots)
-    found = []
+    found: list[list[Printed]] = []
+    passed = 0
     for dx, dy in offsets.tolist():
 
         def lightness(
@@ -64,8 +68,12 @@ def printed(scan: Scan) -> list[list[Printed]]:
             left, right, top, bottom = scene.extent
             return scene.at(np.clip(x + dx, left, right), np.clip(y + dy, top, bottom)) - threshold
 
-        dark = lightness(looks) < 0.0
+        dark = np.concatenate(
+            [lightness(looks[i : i + AT_ONCE]) < 0.0 for i in range(0, len(looks), AT_ONCE)]
+        )
         changes = np.flatnonzero(dark[1:] != dark[:-1])
+        passed += len(changes) // 2
+        budgets.LINES.check(passed, f"up to pin {len(found)} of {len(offsets)}")
         edges = halved(lightness, looks[changes], looks[changes + 1])
         times = np.concatenate([[path.begin], edges, [path.end]])
         times = times[0 if dark[0] else 1 : None if dark[-1] else -1]
