@@ -48,9 +48,7 @@ LOOKS: Final = Budget(
     20_000_000,
     "a time and a luminance of 8 bytes each are kept for every pin",
 )
-STROKES: Final = Budget(
-    "the strokes of the hand", 20_000, "each is some hundred rows of its speed"
-)
+STROKES: Final = Budget("the strokes of the hand", 20_000, "each is some hundred rows of its speed")
 SWITCHINGS: Final = Budget(
     "the switchings of the coils of all pins",
     100_000,
@@ -96,28 +94,32 @@ SAMPLES: Final = Budget(
     "ten numbers of 8 bytes each, three times while the file is made",
 )
 MOTION_SAMPLES: Final = Budget(
-    "the samples of the motion",
-    2_000_000,
-    "seven numbers each, 100 bytes of text",
+    "the samples of the motion", 10_000_000, "100 bytes each, and 4 µs to write them as text"
 )
 FRAMES: Final = Budget(
     "the frames of the film", 5000, "each is drawn in 0.05 s; a film may be less slowed"
 )
-PITCHES: Final = Budget(
-    "the pitches", 50, "half a second each: a hundred scans of four pins"
-)
+PITCHES: Final = Budget("the pitches", 50, "half a second each: a hundred scans of four pins")
 AXIS_VALUES: Final = Budget(
     "the values of a key that counts pins", 10_000, "each is checked to be whole"
 )
+CHUNK: Final = Budget(
+    "the points of a chunk", 1 << 19, "of each 45 numbers of 8 bytes, for every thread at once"
+)
+CHUNK_OF_SCANS: Final = Budget(
+    "the points of a chunk of scans", 1 << 12, "of each 4 kB, and some tenths of a second"
+)
 CHUNKS: Final = Budget(
     "the chunks of the study",
-    2_000_000,
-    "200 bytes of memory and a line of the journal each; larger chunks make fewer",
+    1_000_000,
+    "each is 250 bytes of memory and a line of the journal; how many points they hold is for the "
+    "disk to say, which is asked before the file is made",
 )
-POINTS: Final = Budget(
-    "the points of the study",
-    10_000_000_000_000,
-    "a year of work on 300 cores; the disk is asked too, before the file is made",
+AXIS: Final = Budget(
+    "the values of an axis", CHUNK.most * CHUNKS.most, "no study could have more points"
+)
+DEMANDS: Final = Budget(
+    "the limits of the specification", 50, "for each the worst case is searched for"
 )
 DESIGN_VALUES: Final = Budget(
     "the numbers of the design",

@@ -110,12 +110,10 @@ def simulate(
     json: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Numbers, events and phases.")
     ] = None,
-    samples: Annotated[
-        int, typer.Option(min=2, max=10_000_000, help="Even times in CSV and NetCDF.")
-    ] = 1001,
+    samples: Annotated[int, typer.Option(min=2, help="Even times in CSV and NetCDF.")] = 1001,
 ) -> None:
     """Release the pin of a device file and say how it moves."""
-    from pindrive import export
+    from pindrive import budgets, export
     from pindrive.config import load, motion_of
     from pindrive.output import atomic_write, naming
 
@@ -132,6 +130,7 @@ def simulate(
         if json:
             outputs[json] = lambda motion, part: export.write_json(motion, device, part)
         check_distinct([file, *(path for path in (plot, csv, netcdf, json) if path)])
+        budgets.MOTION_SAMPLES.check(samples, where="--samples")
         with ExitStack() as stack:
             parts = {path: stack.enter_context(atomic_write(path)) for path in outputs}
             motion = motion_of(device)

@@ -11,7 +11,7 @@ from typing import Final
 
 from pindrive.quantities_judge import CRITERIA
 from pindrive.quantities_magnet import COIL, FINE, MAGNET, SHARE
-from pindrive.quantity import NON_NEGATIVE, Bounds, Quantity, between
+from pindrive.quantity import NON_NEGATIVE, Quantity, between
 
 LUMINANCE: Final = between(0.0, 1.0)
 ACUTE: Final = between(0.0, radians(90.0))
@@ -273,18 +273,30 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("stroke.duration", "T", "s", "duration of a stroke", between(1e-12, 1e8)),
     Quantity("hand.time", "t", "s", "time in a recorded path", between(-1e6, 1e6)),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
-    Quantity("coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)),
-    Quantity("coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)),
+    Quantity(
+        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
+    ),
+    Quantity(
+        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
+    ),
     Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
     Quantity(
-        "coil.field", "B", "T", "field in the gap at full current, without saturation", between(1e-12, 1e12)
+        "coil.field",
+        "B",
+        "T",
+        "field in the gap at full current, without saturation",
+        between(1e-12, 1e12),
     ),
     Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
     Quantity(
         "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
     ),
-    Quantity("rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)),
-    Quantity("fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)),
+    Quantity(
+        "rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)
+    ),
+    Quantity(
+        "fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)
+    ),
     Quantity(
         "friction_coefficient",
         "μ",

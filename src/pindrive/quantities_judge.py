@@ -112,7 +112,13 @@ JUDGED: Final[tuple[Quantity, ...]] = tuple(
 SPEED: Final[tuple[Quantity, ...]] = (
     Quantity("speed.pitch", "p", "m", "distance between two lines", between(1e-6, 10.0)),
     Quantity("speed.width", "w", "m", "width of the lines", between(1e-7, 10.0)),
-    Quantity("speed.part", "r", "1", "part of its way that the pin must be back between", between(1e-6, 1.0)),
+    Quantity(
+        "speed.part",
+        "r",
+        "1",
+        "part of its way that the pin must be back between",
+        between(1e-6, 1.0),
+    ),
     Quantity("speed.slowest", "v_min", "m/s", "slowest hand tried", between(1e-4, 100.0)),
     Quantity("speed.fastest", "v_max", "m/s", "fastest hand tried", between(1e-4, 100.0)),
 )

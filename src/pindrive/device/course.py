@@ -196,7 +196,8 @@ def check_vibration(drive: Drive, duration: float, pins: int = 1) -> int:
     frequency = sqrt((drive.stiffness + skin) / drive.mass) / (2.0 * pi)
     count = EACH_PERIOD * duration * frequency + 1.0
     of = f"{pins} pins over {duration:g} s, which vibrate at {frequency:g} Hz"
-    budgets.MOTION_LOOKS.check(pins * count, f"{of} on spring and skin" if skin else of)
+    words = f"{of} on spring and skin; a finger without finger.stiffness is rigid"
+    budgets.MOTION_LOOKS.check(pins * count, words if skin else of)
     return int(count)
 
 

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from io import BytesIO
 from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -20,8 +20,13 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
+    from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
     from pindrive.motion import Motion
+
+EACH: Final = 1e-3
+"""Between two samples unless their times are given, s."""
+
 
 def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
     """Variables over (pin, time), and tables of events and switchings with the pin of each row.
@@ -87,6 +92,11 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
         **inputs(scan),
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def sample_count(path: HandPath) -> float:
+    """At how many times a scan is sampled unless they are given: each millisecond and the end."""
+    return (path.end - path.begin) / EACH + 1.0
 
 
 def check_samples(pins: int, times: float) -> None:

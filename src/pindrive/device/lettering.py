@@ -30,7 +30,7 @@ MEASURED: Final = 1000
 SMALLEST: Final = 1.0
 """Height of capitals in pixels below which nothing can be set."""
 PLAIN: Final = 0x0590
-"""Latin, Greek, Cyrillic and Armenian stand before this code point, Hebrew and what follows after."""
+"""The first code point of Hebrew: Latin, Greek, Cyrillic and Armenian stand before it."""
 PLAIN_SCRIPTS: Final = (
     *("LATIN", "GREEK", "CYRILLIC", "GEORGIAN", "CJK", "HIRAGANA", "KATAKANA", "HANGUL SYLLABLE"),
     *("FULLWIDTH", "HALFWIDTH KATAKANA", "SUPERSCRIPT", "SUBSCRIPT", "DOUBLE-STRUCK", "SCRIPT"),

@@ -171,10 +171,11 @@ class Scan:
         Args:
             times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
         """
-        from pindrive.device.dataset import dataset
+        from pindrive.device.dataset import EACH, check_samples, dataset, sample_count
 
         if times is None:
-            times = np.append(np.arange(self.path.begin, self.path.end, 1e-3), self.path.end)
+            check_samples(len(self.pins), sample_count(self.path))
+            times = np.append(np.arange(self.path.begin, self.path.end, EACH), self.path.end)
         return dataset(self, np.atleast_1d(np.asarray(times, np.float64)))
 
 

@@ -231,7 +231,7 @@ def _between(
 
 
 def _covered(
-    borders: NDArray[np.float64], begins: Sequence[float], ends: Sequence[float]
+    borders: NDArray[Any], begins: Sequence[float], ends: Sequence[float]
 ) -> NDArray[np.float64]:
     """How much (m) of the stretch between each border and the next lies on lines.
 

@@ -188,7 +188,9 @@ def _check_work(
         looks += PHASES * device.control.sample_rate * TRIED * alone
         check_vibration(drive, TRIED * alone + all_trials * lasts, PHASES)
         pixel = min(width, pitch - width) / FINE
-        most = (pitch + width + fastest * (alone + MOMENT + 2.0 / device.control.sample_rate)) / pixel
+        most = (
+            pitch + width + fastest * (alone + MOMENT + 2.0 / device.control.sample_rate)
+        ) / pixel
         budgets.PIXELS.check(most, of)
     of = f"{len(pitches)} pitches, hands from {slowest:g} m/s, at {device.control.sample_rate:g} Hz"
     budgets.LOOKS.check(looks, of)

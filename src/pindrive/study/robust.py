@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.config import motion_of
 from pindrive.study.evaluate import evaluate, follow
 from pindrive.study.influence import Ranges, ranges_of
@@ -107,7 +108,7 @@ def robustness(
         tell: called with the points done and the points in all.
 
     Raises:
-        ValueError: there are no tolerances.
+        ValueError: there are no tolerances, or too many draws to keep.
     """
     if not plan.tolerances:
         raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
@@ -116,6 +117,9 @@ def robustness(
         count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
     usual = WATCHED_OF_SCANS if plan.page else WATCHED
     watched = tuple(dict.fromkeys((*usual, *(demand.name for demand in plan.demands))))
+    each = len(ranges.scatter) + len(watched) + 1
+    of = f"{count} draws of {len(ranges.scatter)} keys and {len(watched) + 1} results"
+    budgets.DESIGN_VALUES.check(count * each, of)
     sample = Sample(tuple(ranges.scatter), count, seed)
 
     def numbers(points: Values) -> dict[str, Values]:
