@@ -242,7 +242,7 @@ REFUSED = {
     '"10 g", got "2 mm"',
     '[axes]\nmass = ["1 g", "-2 g"]': "axes.drive.mass[1] must be finite and greater than 0 kg, "
     'got "-2 g"',
-    '[axes]\nmass = { lin = ["1 g", "2 g"] }': "axes.drive.mass.count must be a whole number of "
+    '[axes]\nmass = { lin = ["1 g", "2 g"] }': "axes.drive.mass.count must be a whole number "
     "from 2 to 524288000000, got none",
     '[axes]\nmass = { lin = ["1 g", "2 g"], count = 1 }': "axes.drive.mass.count must be a whole "
     "number from 2 to 524288000000, got 1",
