@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pindrive.refusing import (
+    INTERRUPTED,
     DeviceArgument,
     OverridesOption,
     check_distinct,
@@ -39,6 +40,12 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
     try:
         app()
+    except SystemExit as end:
+        if end.code == INTERRUPTED:  # threads and processes at work would be waited for
+            from pindrive.study.workers import stop_at_once
+
+            stop_at_once(INTERRUPTED)
+        raise
     except OSError as error:  # other files have been named already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
         print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)

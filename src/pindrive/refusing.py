@@ -17,6 +17,8 @@ OverridesOption = Annotated[
 ]
 
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
 FIGURE_FORMATS = (".png", ".svg", ".pdf")
 
 
@@ -28,6 +30,9 @@ def refusing() -> Iterator[None]:
     except ValueError as error:
         typer.echo(str(error), err=True)
         raise typer.Exit(2) from None
+    except KeyboardInterrupt:
+        typer.echo("stopped", err=True)
+        raise typer.Exit(INTERRUPTED) from None
 
 
 def check_distinct(paths: Iterable[Path]) -> None:
