@@ -40,11 +40,11 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
     try:
         app()
-    except SystemExit as end:
-        if end.code == INTERRUPTED:  # threads and processes at work would be waited for
+    except (SystemExit, KeyboardInterrupt) as end:
+        if isinstance(end, KeyboardInterrupt) or end.code == INTERRUPTED:
             from pindrive.study.workers import stop_at_once
 
-            stop_at_once(INTERRUPTED)
+            stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
         raise
     except OSError as error:  # other files have been named already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
