@@ -140,7 +140,9 @@ BAD = {
     "t [s], x [mm], y [mm]\n0,0,0": "a recorded path must be at least 2 rows, got 1",
     "t [s], x [mm], y [mm]\n0,0,0\n1,here,0": 'row 3: x must be a number, got "here"',
     "t [s], x [mm], y [mm]\n0,0,0\n1,1": 'row 3: y must be a number, got ""',
-    "t [s], x [mm], y [mm]\n0,0,0\nnan,1,1": 'row 3: t must be finite and at least -1e+06 s and at most 1e+06 s, got "nan"',
+    "t [s], x [mm], y [mm]\n0,0,0\nnan,1,1": (
+        'row 3: t must be finite and at least -1e+06 s and at most 1e+06 s, got "nan"'
+    ),
     "t [s], x [mm], y [mm]\n0,0,0\n#\n0.1,1,0\n0.1,2,0": (
         "row 5: t must be greater than the one before, 0.1 s, got 0.1 s"
     ),

@@ -24,10 +24,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-import case_files
-from case_files import Case
+import fuzz_cases
+from fuzz_cases import Case
 
 SECONDS = 60.0
 BYTES = 4 << 30
@@ -167,7 +167,7 @@ def main() -> int:
     parser.add_argument("seed", type=int)
     parser.add_argument("--from", dest="first", type=int, default=0)
     options = parser.parse_args()
-    case_files.warm_up()
+    fuzz_cases.warm_up()
     totals: Counter[str] = Counter()
     keys: Counter[str] = Counter()
     slowest = largest = longest_stop = None
@@ -200,10 +200,10 @@ def main() -> int:
     assert slowest and largest
     print(
         f"{options.count} cases of seed {options.seed} from {options.first} on, {len(keys)} of "
-        f"{len(case_files.KEYS)} keys: {totals['ran']} ran, {totals['refused']} refused, "
+        f"{len(fuzz_cases.KEYS)} keys: {totals['ran']} ran, {totals['refused']} refused, "
         f"{totals['interrupted']} interrupted, {wrong} wrong"
     )
-    print(", ".join(f"{name} {totals[name]}" for name in case_files.COMMANDS))
+    print(", ".join(f"{name} {totals[name]}" for name in fuzz_cases.COMMANDS))
     print(
         f"slowest {slowest.seconds:.1f} s ({slowest.processor:.1f} s of a processor; case "
         f"{slowest.number}), largest {largest.memory / 1e6:.0f} MB (case {largest.number})"

@@ -126,8 +126,7 @@ class Scene:
 
         file = fspath(path)
         try:
-            with warnings.catch_warnings(), Image.open(file) as image:
-                warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with _opened(file) as image:
                 _check_size(image.width, image.height, file)
                 resolution = image.info.get("dpi")
                 shown = ImageOps.exif_transpose(image)
@@ -244,6 +243,15 @@ def _covered(
     after = np.cumsum(edges[:, 1] - edges[:, 0])
     before = np.stack([np.append(0.0, after[:-1]), after], axis=1)
     return np.diff(np.interp(borders, edges.ravel(), before.ravel()))
+
+
+def _opened(file: str) -> Image.Image:
+    """An image file of which only the head is read; Pillow's warning of its size is ours to give."""
+    from PIL import Image
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        return Image.open(file)
 
 
 def _check_size(across: float, down: float, where: str = "") -> None:

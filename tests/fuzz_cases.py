@@ -77,19 +77,19 @@ class Case:
 
 def warm_up() -> None:
     """Do once what every command does first, so that a fork has it."""
-    import h5netcdf
+    from importlib import import_module
+
     from typer.testing import CliRunner
 
-    import pindrive.device.picture
-    import pindrive.study.histograms
-    import pindrive.study.maps
     from pindrive.cli import app
 
-    assert h5netcdf and pindrive
+    for name in ("h5netcdf", "pindrive.study.histograms", "pindrive.study.maps"):
+        import_module(name)
+
     files = {
         "device.toml": device({}, {}),
-        "study.toml": 'base = "device.toml"\n[axes]\nplate.kinetic = { uniform = ["1 mN", "9 mN"] }\n'
-        '[sample]\ncount = 2\n[tolerances]\nmass = "5 %"\n[specification]\nswing = ">= 1 mm"\n',
+        "study.toml": 'base = "device.toml"\n[axes]\nplate.kinetic = { uniform = ["1 mN", "9 mN"] }'
+        '\n[sample]\ncount = 2\n[tolerances]\nmass = "5 %"\n[specification]\nswing = ">= 1 mm"\n',
     }
     before = Path.cwd()
     with TemporaryDirectory() as place:
@@ -290,13 +290,9 @@ def options(command: str, scans: bool, rng: np.random.Generator) -> list[str]:
             page = ["--grating", str(rng.choice(LENGTHS)) if rng.random() < 0.2 else "3 mm, 1 mm"]
         else:
             page = ["--text", str(rng.choice(TEXTS)) if rng.random() < 0.4 else "A"]
-        kinds = (["--lines", "a.csv"], ["-o", "a.nc"], ["--plot", "a.png"])
-        chances = (0.2, 0.1, 0.06)
+        outputs = (("--lines", "a.csv", 0.2), ("-o", "a.nc", 0.1), ("--plot", "a.png", 0.06))
         chosen = [
-            part
-            for kind, p in zip(kinds, chances, strict=True)
-            if rng.random() < p
-            for part in kind
+            part for option, file, p in outputs if rng.random() < p for part in (option, file)
         ]
         return ["device.toml", *page, *chosen]
     if command == "speed":
