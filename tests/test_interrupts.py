@@ -21,7 +21,7 @@ LONG = {
     "--set array.rows=16 -o a.nc --plot a.png",
     "speed": f"speed {EXAMPLES / 'tactile-reader.toml'} --plot a.png --slowest 1mm/s",
     "robustness": f"robustness {EXAMPLES / 'tactile-reader-study.toml'} --plot a.png",
-    "sensitivity": f"sensitivity {EXAMPLES / 'tactile-reader-study.toml'} --tolerances --plot a.png",
+    "sensitivity": f"sensitivity {EXAMPLES / 'tactile-reader-study.toml'} --plot a.pdf",
 }
 
 

@@ -40,8 +40,8 @@ def test_an_axis_of_too_many_values(count: int) -> None:
 
 def test_a_product_of_axes() -> None:
     assert refused((AXES + SECOND).replace("COUNT", "1000000")) == (
-        "the chunks of the study must be at most 1000000, got 15258790 (1000000000000 points, 65536 "
-        "in each; a larger chunk makes fewer)"
+        "the chunks of the study must be at most 1000000, got 15258790 (1000000000000 points, "
+        "65536 in each; a larger chunk makes fewer)"
     )
     write("chunk = 524288\n" + (AXES + SECOND).replace("COUNT", "700000"))
     assert load_study("study.toml").size == 490_000_000_000  # for the disk to say

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable
@@ -38,18 +39,23 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
+    status: int | str | None = None
     try:
         app()
-    except (SystemExit, KeyboardInterrupt) as end:
-        if isinstance(end, KeyboardInterrupt) or end.code == INTERRUPTED:
-            from pindrive.study.workers import stop_at_once
-
-            stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
-        raise
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    except SystemExit as end:
+        status = end.code
     except OSError as error:  # other files have been named already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
         print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)
         sys.exit(2)
+    if status == INTERRUPTED:
+        from pindrive.study.workers import stop_at_once
+
+        gc.collect()  # what an exception held is closed: no file is left half written
+        stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
+    sys.exit(status)
 
 
 def _print_version(wanted: bool) -> None:

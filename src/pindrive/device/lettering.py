@@ -124,7 +124,7 @@ def _engine(text: str) -> ImageFont.Layout:
         return ImageFont.Layout.BASIC
     if features.check("raqm") and features.check("fribidi"):
         return ImageFont.Layout.RAQM
-    called = f"{quoted(taking)} (U+{ord(taking):04X}, {name(taking, 'without a name')})"
+    called = f"{quoted(taking)} (U+{ord(taking):04X} {name(taking, 'without a name')})"
     raise ValueError(
         f"text: {called} is of a script that must be shaped, for which the library FriBiDi is not "
         "installed; install it (libfribidi0, fribidi), or give a picture with --image"

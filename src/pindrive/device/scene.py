@@ -246,7 +246,7 @@ def _covered(
 
 
 def _opened(file: str) -> Image.Image:
-    """An image file of which only the head is read; Pillow's warning of its size is ours to give."""
+    """An image file of which only the head is read; of its size we say ourselves what is wrong."""
     from PIL import Image
 
     with warnings.catch_warnings():
