@@ -7,6 +7,7 @@ import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from pindrive.template import template
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
 MEGABYTE = 1 << 20
+Found = TypeVar("Found")
 TABLE = {name: part for name, part in vars(budgets).items() if isinstance(part, Budget)}
 
 LOOKS = "the looks of the control block must be at most 20000000, got "
@@ -132,7 +134,7 @@ def device(count: int = 1, stiffness: float = float("inf")) -> Device:
     return Device(drive=drive, array=PinArray.grid(1, count, 1e-3))
 
 
-def traced(work: Callable[[], object]) -> tuple[object, int]:
+def traced(work: Callable[[], Found]) -> tuple[Found, int]:
     """What some work returns, and the most memory that Python and NumPy held for it."""
     gc.collect()
     tracemalloc.start()
