@@ -36,7 +36,8 @@ def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
         with naming(target):
             os.replace(part, path)
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(FileNotFoundError, NotADirectoryError):
+            part.unlink()
 
 
 @contextmanager
