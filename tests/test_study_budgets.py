@@ -97,3 +97,11 @@ def test_designs_that_are_kept_whole(command: str, words: str) -> None:
     (line,) = said.stderr.splitlines()
     assert line.startswith("the numbers of the design must be at most 100000000, got ")
     assert words in line
+
+
+def test_limits_have_a_size() -> None:
+    study = f"{AXES.replace('COUNT', '3')}[specification]\nsettling_time = '<= 1e300 s'\n"
+    assert refused(study) == (
+        "specification.settling_time must be a finite limit, of at most 1e+100 in size, got "
+        '"<= 1e300 s"'
+    )
