@@ -184,20 +184,26 @@ def test_a_strong_coil_saturates() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"hold_force": 0.0}, "hold_force must be finite and greater than 0 N, got 0.0 N"),
+        (
+            {"hold_force": 0.0},
+            "hold_force must be finite and at least 1e-06 N and at most 10000 N, got 0.0 N",
+        ),
         (
             {"saturation": 1.5},
-            "saturation must be finite and greater than 0 and at most 1, got 1.5",
+            "saturation must be finite and at least 0.001 and at most 1, got 1.5",
         ),
         (
             {"deviation": 0.5},
-            "deviation must be finite and greater than 0 and at most 0.1, got 0.5",
+            "deviation must be finite and at least 1e-08 and at most 0.1, got 0.5",
         ),
         (
             {"hold_force": 1.0, "residual": 1.0},
             "residual must be less than the hold force, 1.0 N, got 1.0 N",
         ),
-        ({"pressing": -1.0}, "pressing must be finite and greater than 0 N, got -1.0 N"),
+        (
+            {"pressing": -1.0},
+            "pressing must be finite and at least 1e-06 N and at most 10000 N, got -1.0 N",
+        ),
     ],
 )
 def test_bad_magnets_are_refused(given: dict[str, float], message: str) -> None:

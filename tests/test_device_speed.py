@@ -198,9 +198,12 @@ def test_a_pin_that_the_finger_holds_is_distinct_only_for_a_faster_hand() -> Non
 def test_bad_values_are_refused() -> None:
     for given, message in (
         ({"pitches": []}, "pitches must be at least one, got none"),
-        ({"pitches": [0.0]}, "pitch must be finite and greater than 0 m, got 0.0 m"),
+        (
+            {"pitches": [0.0]},
+            "pitch must be finite and at least 1e-06 m and at most 10 m, got 0.0 m",
+        ),
         ({"pitches": [0.002], "width": 0.002}, "width must be less than the pitch, 0.002 m, got"),
-        ({"pitches": [0.002], "part": 0.0}, "part must be finite and greater than 0 and at most 1"),
+        ({"pitches": [0.002], "part": 0.0}, "part must be finite and at least 1e-06 and at most 1"),
         ({"pitches": [0.002], "slowest": 2.0}, "fastest must be greater than the slowest, 2.0 m/s"),
     ):
         with pytest.raises(ValueError) as refused:
@@ -227,10 +230,16 @@ def test_the_command(tmp_path: Path) -> None:
     assert "Two lines are distinct where the pin comes back at least 50%" in done.output
     assert "hand speed (mm/s)" in target.read_text(encoding="utf-8")
     for bad, words in (
-        (["--pitch", "3"], '--pitch 3: must be a number with its unit (give a unit, like "2 mm")'),
+        (
+            ["--pitch", "3"],
+            '--pitch: pitch must be a number with its unit (give a unit, like "2 mm"), got "3"',
+        ),
         (["--width", "9 mm", "--pitch", "3 mm"], "width must be less than the pitch"),
         (["--plot", str(tmp_path / "speed.bmp")], "must end in .png, .svg, .pdf"),
-        (["--slowest", "fast"], "--slowest fast: must be a number with its unit"),
+        (
+            ["--slowest", "fast"],
+            '--slowest: slowest must be a number with its unit, like "5 mm/s", got "fast"',
+        ),
     ):
         refused = run(app, ["speed", str(MINIMAL), *bad])
         assert refused.exit_code == 2

@@ -344,7 +344,8 @@ NB_MODULE(_core, m) {
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })
       .def_prop_ro("cycle_begin", [](const Motion& c) { return c.outcome().cycle_begin; })
-      .def_prop_ro("until", [](const Motion& c) { return c.outcome().until; });
+      .def_prop_ro("until", [](const Motion& c) { return c.outcome().until; })
+      .def_prop_ro("segment_count", [](const Motion& c) { return c.segments().size(); });
   bind<Dual>(m, "Derivative", "The derivatives of a motion along a direction of its inputs.");
 
   m.def(

@@ -57,6 +57,9 @@ class Motion:
     @property
     def until(self) -> float: ...
 
+    @property
+    def segment_count(self) -> int: ...
+
 class Derivative:
     """The derivatives of a motion along a direction of its inputs."""
 

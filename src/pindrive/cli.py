@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pindrive.refusing import (
+    INTERRUPTED,
     DeviceArgument,
     OneLine,
     OverridesOption,
@@ -40,12 +42,23 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
+    status: int | str | None = None
     try:
         app()
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    except SystemExit as end:
+        status = end.code
     except OSError as error:  # other files have been named already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
         print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)
         sys.exit(2)
+    if status == INTERRUPTED:
+        from pindrive.study.workers import stop_at_once
+
+        gc.collect()  # what an exception held is closed: no file is left half written
+        stop_at_once(INTERRUPTED)  # threads and processes at work would be waited for
+    sys.exit(status)
 
 
 def _print_version(wanted: bool) -> None:
@@ -140,11 +153,11 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Numbers, events and phases.")
     ] = None,
     samples: Annotated[
-        int, count_option("--samples", "Even times in CSV and NetCDF.", least=2, most=10_000_000)
+        int, count_option("--samples", "Even times in CSV and NetCDF.", least=2)
     ] = 1001,
 ) -> None:
     """Release the pin of a device file and say how it moves."""
-    from pindrive import export
+    from pindrive import budgets, export
     from pindrive.config import load, motion_of
     from pindrive.kinds import MOTION_CSV, MOTION_JSON, MOTION_NETCDF
     from pindrive.output import Output, naming, writing
@@ -164,6 +177,7 @@ def simulate(
         if json:
             to_json = Output(json, MOTION_JSON, "--json")
             wanted.append((to_json, lambda m, part: export.write_json(m, device, part)))
+        budgets.MOTION_SAMPLES.check(samples, where="--samples")
         with writing([output for output, _ in wanted], [file]) as parts:
             motion = motion_of(device)
             for output, write in wanted:

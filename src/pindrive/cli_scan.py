@@ -88,7 +88,9 @@ def scan(
         page = Page(
             text=None if text is None else text.replace("\\n", "\n"),
             image=image,
-            grating=None if grating is None else tuple(measures(grating, "m", "4 mm", "--grating")),
+            grating=None
+            if grating is None
+            else tuple(measures(grating, "pitch", "4 mm", "--grating")),
             font=font,
             path=None if path == STROKES else Path(path),
         )
@@ -96,6 +98,10 @@ def scan(
         parts = stack.enter_context(writing(outputs, [file, *page.files.values()]))
         scene = page.scene(reading, device.array)
         hand = page.hand(reading, scene, device.array)
+        if output:
+            from pindrive.device.dataset import check_samples, sample_count
+
+            check_samples(len(device.array), sample_count(hand))
         if film:
             frame_times(hand, slow)
         with bar("Pins") as progress:

@@ -48,12 +48,14 @@ def speed(
         device_file = load(file, overrides or (), whole=True)
         assert device_file.whole
         pitches = [
-            step for text in pitch or [USUAL] for step in measures(text, "m", "2 mm", "--pitch")
+            step
+            for text in pitch or [USUAL]
+            for step in measures(text, "speed.pitch", "2 mm", "--pitch")
         ]
-        line = None if width is None else measure(width, "m", "1 mm", "--width")
+        line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
         tried = (
-            measure(slowest, "m/s", "5 mm/s", "--slowest"),
-            measure(fastest, "m/s", "1000 mm/s", "--fastest"),
+            measure(slowest, "speed.slowest", "5 mm/s", "--slowest"),
+            measure(fastest, "speed.fastest", "1000 mm/s", "--fastest"),
         )
 
         from pindrive.device.speed import largest_speeds

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from pindrive.refusing import OverridesOption, count_option, picture, picture_format, refusing
+from pindrive.refusing import (
+    INTERRUPTED,
+    OverridesOption,
+    count_option,
+    picture,
+    picture_format,
+    refusing,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +60,6 @@ def sweep(
     from pindrive.study.studyfile import load_study
     from pindrive.study.sweeping import on_threads
     from pindrive.study.sweeping import sweep as work_off
-    from pindrive.study.workers import stop_at_once
 
     target = output or study.with_suffix(".nc")
     with refusing():
@@ -85,7 +91,7 @@ def sweep(
             kept = target.with_name(f"{target.name}.journal").exists()
             words = "finished chunks are kept, --resume goes on with them"
             typer.echo(f"stopped; {words if kept else 'no chunk was finished yet'}", err=True)
-            stop_at_once(130)
+            raise typer.Exit(INTERRUPTED) from None
     for line in sweep_report(plan, done):
         typer.echo(line)
     _say_coefficient(plan)

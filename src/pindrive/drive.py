@@ -296,6 +296,14 @@ class Drive:
         return sqrt(self.stiffness / self.mass)
 
     @property
+    def slowest_rate(self) -> float:
+        """Rate at which the slowest part of a free motion decays, 1/s; 0 without damping."""
+        ratio = self.damping_ratio
+        if ratio <= 1.0:
+            return ratio * self.natural_frequency
+        return self.natural_frequency / (ratio + sqrt(ratio - 1.0) * sqrt(ratio + 1.0))
+
+    @property
     def damping_ratio(self) -> float:
         """Damping over critical damping, b / (2 sqrt(m k)): below 1 the drive oscillates."""
         return self.damping / self._critical_damping

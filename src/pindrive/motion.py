@@ -220,6 +220,11 @@ class Motion:
         """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
         return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
 
+    @property
+    def segment_count(self) -> int:
+        """How many segments there are, without making them."""
+        return self._core.segment_count
+
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""

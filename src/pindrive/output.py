@@ -118,18 +118,19 @@ def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(os.path.realpath(target))  # a link stays, what it points to is replaced
     part = path.with_name(f".{path.name[:200]}.{token_hex(4)}.part")
-    with naming(target):
-        if path.exists() and not path.is_file():
-            raise OSError("not a regular file")
-        if path.exists() and not os.access(path, os.W_OK):
-            raise PermissionError("it is read-only")
-        part.touch(exist_ok=False)
     try:
+        with naming(target):
+            if path.exists() and not path.is_file():
+                raise OSError("not a regular file")
+            if path.exists() and not os.access(path, os.W_OK):
+                raise PermissionError("it is read-only")
+            part.touch(exist_ok=False)
         yield part
         with naming(target):
             os.replace(part, path)
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(FileNotFoundError, NotADirectoryError):
+            part.unlink()
 
 
 def _like(name: str, content: bytes) -> Kind:

@@ -1,4 +1,8 @@
-"""The table of quantities, second part: the whole device and how a hand moves it over a page."""
+"""The table of quantities, second part: the whole device and how a hand moves it over a page.
+
+Bounds are far outside of what any such device has, and such that nothing computed from values
+within them overflows or vanishes. How much work they ask for together is another matter: budgets.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +10,16 @@ from math import radians
 from typing import Final
 
 from pindrive.quantities_judge import CRITERIA
-from pindrive.quantities_magnet import COIL, COUNT, FINE, MAGNET, SHARE
-from pindrive.quantity import FINITE, NON_NEGATIVE, POSITIVE, Bounds, Quantity
+from pindrive.quantities_magnet import COIL, FINE, MAGNET, SHARE
+from pindrive.quantity import NON_NEGATIVE, Quantity, between
 
-LUMINANCE: Final = Bounds(lower=0.0, upper=1.0, lower_closed=True, upper_closed=True)
-ACUTE: Final = Bounds(lower=0.0, upper=radians(90.0), lower_closed=True, upper_closed=True)
+LUMINANCE: Final = between(0.0, 1.0)
+ACUTE: Final = between(0.0, radians(90.0))
+SPEED: Final = between(1e-4, 100.0)
+"""Of a hand."""
+PLACE: Final = between(-1e3, 1e3)
+"""On the page."""
+TURN: Final = radians(720.0)
 
 CONTROL: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -18,7 +27,7 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         "f_s",
         "Hz",
         "how often the control block looks at the scene",
-        POSITIVE,
+        between(0.1, 1e6),
         1000.0,
         "mice report 125 to 1000 times a second (USB HID)",
         "control",
@@ -30,7 +39,7 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         "t_l",
         "s",
         "from looking to switching the coil",
-        NON_NEGATIVE,
+        between(0.0, 100.0),
         0.005,
         "assumed: a few reports of a mouse",
         "control",
@@ -69,7 +78,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "n_x",
         "1",
         "pins side by side along the drive axis",
-        COUNT,
+        between(1.0, 1000.0),
         4.0,
         "assumed",
         "array",
@@ -81,7 +90,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "n_y",
         "1",
         "rows of them",
-        COUNT,
+        between(1.0, 1000.0),
         4.0,
         "assumed",
         "array",
@@ -93,7 +102,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "p",
         "m",
         "distance between neighbouring pins",
-        POSITIVE,
+        between(1e-6, 1.0),
         0.005,
         "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
         "array",
@@ -105,7 +114,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "d_p",
         "m",
         "diameter of a pin: two pins meet where their axes come as close as that",
-        POSITIVE,
+        between(1e-6, 1.0),
         0.0015,
         "as a Braille dot at its base, 1.4-1.6 mm",
         "array",
@@ -117,7 +126,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "(x_i, y_i)",
         "m",
         "places of the pins in the mouse instead: along the drive axis and across it",
-        FINITE,
+        between(-10.0, 10.0),
         source="assumed: three pins in a triangle",
         section="array",
         optional=True,
@@ -130,7 +139,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "s",
         "1",
         "the pins' spots stand on the scene as the pins do in the mouse, times this",
-        NON_NEGATIVE,
+        between(0.0, 1000.0),
         1.0,
         "assumed: the scene is felt in its own size",
         "array",
@@ -142,7 +151,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "φ",
         "rad",
         "direction of the drive axis on the page, from its x towards its y",
-        FINITE,
+        between(-TURN, TURN),
         0.0,
         "the paper keeps drive and motion parallel, along the lines of the page",
         "array",
@@ -157,7 +166,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "v_h",
         "m/s",
         "peak speed of the hand while it reads; a minimum-jerk stroke takes 1.875 length / speed",
-        POSITIVE,
+        SPEED,
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
         "scan",
@@ -169,7 +178,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "v_r",
         "m/s",
         "the same on the way back to the next line",
-        POSITIVE,
+        SPEED,
         0.1,
         "the upper end of hand speed in finger studies (arXiv 2505.11162)",
         "scan",
@@ -181,7 +190,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "t_p",
         "s",
         "rest of the hand after each stroke",
-        NON_NEGATIVE,
+        between(0.0, 3600.0),
         0.2,
         "assumed",
         "scan",
@@ -193,7 +202,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "h_l",
         "m",
         "distance between the lines of text, and between the hand's strokes",
-        POSITIVE,
+        between(1e-5, 10.0),
         None,
         "assumed: twice the height of the text",
         "scan",
@@ -206,7 +215,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "h_t",
         "m",
         "height of capital letters in text",
-        POSITIVE,
+        between(1e-5, 10.0),
         0.010,
         "assumed: letters that a pin can follow",
         "scan",
@@ -218,7 +227,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "p_s",
         "m",
         "size of a pixel of the scene",
-        POSITIVE,
+        between(1e-7, 1.0),
         None,
         "assumed: 254 pixels an inch",
         "scan",
@@ -243,7 +252,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "a_max",
         "m/s^2",
         "acceleration of the hand beyond which its recorded speed is taken to jump",
-        POSITIVE,
+        between(1e-3, 1e6),
         30.0,
         "assumed: five times that of a minimum-jerk stroke of 100 mm in 0.3 s",
         "scan",
@@ -268,26 +277,38 @@ DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + S
 """What a device file may give beyond the drive, in its order."""
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
-    Quantity("place.x", "x", "m", "place of a pin along the drive axis", FINITE),
-    Quantity("place.y", "y", "m", "place of a pin across the drive axis", FINITE),
-    Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", FINITE),
+    Quantity("place.x", "x", "m", "place of a pin along the drive axis", between(-10.0, 10.0)),
+    Quantity("place.y", "y", "m", "place of a pin across the drive axis", between(-10.0, 10.0)),
+    Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", PLACE),
     Quantity("scene.luminance", "L", "1", "luminance of a pixel, black 0, white 1", LUMINANCE),
-    Quantity("stroke.length", "D", "m", "length of a stroke", POSITIVE),
-    Quantity("stroke.duration", "T", "s", "duration of a stroke", POSITIVE),
-    Quantity("hand.time", "t", "s", "time in a recorded path", FINITE),
-    Quantity("hand.place", "x", "m", "place in a recorded path", FINITE),
-    Quantity("coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", POSITIVE),
-    Quantity("coil.inductance", "L", "H", "inductance of the coil on the plate", POSITIVE),
-    Quantity("coil.current", "I", "A", "full current", POSITIVE),
+    Quantity("stroke.length", "D", "m", "length of a stroke", between(1e-9, 2e3)),
+    Quantity("stroke.duration", "T", "s", "duration of a stroke", between(1e-12, 1e8)),
+    Quantity("hand.time", "t", "s", "time in a recorded path", between(-1e6, 1e6)),
+    Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
-        "coil.field", "B", "T", "field in the gap at full current, without saturation", POSITIVE
+        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
     ),
-    Quantity("coil.power", "P_el", "W", "power while it is on", POSITIVE),
+    Quantity(
+        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
+    ),
+    Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
+    Quantity(
+        "coil.field",
+        "B",
+        "T",
+        "field in the gap at full current, without saturation",
+        between(1e-12, 1e12),
+    ),
+    Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
     Quantity(
         "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
     ),
-    Quantity("rise_constant", "τ_r", "s", "time constant of the rising current", POSITIVE),
-    Quantity("fall_constant", "τ_f", "s", "time constant of the falling current", POSITIVE),
+    Quantity(
+        "rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)
+    ),
+    Quantity(
+        "fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)
+    ),
     Quantity(
         "friction_coefficient",
         "μ",

@@ -1,13 +1,13 @@
-"""The table of quantities, third part: what a scan is judged by, and what is found."""
+"""The table of quantities, fourth part: what a scan is judged by, and what is found."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantity import POSITIVE, Bounds, Quantity
+from pindrive.quantity import Quantity, between
 
 GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
-SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
+FELT: Final = between(1e-9, 1.0)
 
 CRITERIA: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -15,7 +15,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "d_1",
         "m",
         "motion that is felt as a pulse",
-        POSITIVE,
+        FELT,
         45e-6,
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
         "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
@@ -28,7 +28,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "d_2",
         "m",
         "motion of skin whose direction is perceived",
-        POSITIVE,
+        FELT,
         5e-5,
         f"{GLEESON}, from 0.05 mm",
         "judge",
@@ -40,7 +40,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "d_3",
         "m",
         "motion of skin whose direction is told right in more than 95 % of cases",
-        POSITIVE,
+        FELT,
         2e-4,
         f"{GLEESON}, 0.2 mm",
         "judge",
@@ -52,7 +52,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "v_3",
         "m/s",
         "speed at which it must be gone for that",
-        POSITIVE,
+        between(1e-9, 1e3),
         2e-3,
         f"{GLEESON}, 2 mm/s",
         "judge",
@@ -64,7 +64,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "h_e",
         "1",
         "a swing this part as high as the line before it is a line that is not there",
-        SHARE,
+        between(1e-6, 1.0),
         0.5,
         "assumed",
         "judge",
@@ -110,11 +110,17 @@ JUDGED: Final[tuple[Quantity, ...]] = tuple(
 """What is found of a scan."""
 
 SPEED: Final[tuple[Quantity, ...]] = (
-    Quantity("speed.pitch", "p", "m", "distance between two lines", POSITIVE),
-    Quantity("speed.width", "w", "m", "width of the lines", POSITIVE),
-    Quantity("speed.part", "r", "1", "part of its way that the pin must be back between", SHARE),
-    Quantity("speed.slowest", "v_min", "m/s", "slowest hand tried", POSITIVE),
-    Quantity("speed.fastest", "v_max", "m/s", "fastest hand tried", POSITIVE),
+    Quantity("speed.pitch", "p", "m", "distance between two lines", between(1e-6, 10.0)),
+    Quantity("speed.width", "w", "m", "width of the lines", between(1e-7, 10.0)),
+    Quantity(
+        "speed.part",
+        "r",
+        "1",
+        "part of its way that the pin must be back between",
+        between(1e-6, 1.0),
+    ),
+    Quantity("speed.slowest", "v_min", "m/s", "slowest hand tried", between(1e-4, 100.0)),
+    Quantity("speed.fastest", "v_max", "m/s", "fastest hand tried", between(1e-4, 100.0)),
 )
 """What the largest hand speed is found for."""
 

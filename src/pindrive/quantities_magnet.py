@@ -1,14 +1,18 @@
-"""The table of quantities, third part: the electromagnet."""
+"""The table of quantities, third part: the electromagnet.
+
+Bounds are far outside of what any such magnet has, and such that nothing computed from values
+within them overflows or vanishes.
+"""
 
 from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantity import NON_NEGATIVE, POSITIVE, Bounds, Quantity
+from pindrive.quantity import Bounds, Quantity, between
 
-COUNT: Final = Bounds(lower=1.0, lower_closed=True)
 SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
-FINE: Final = Bounds(lower=0.0, upper=0.1, upper_closed=True)
+FINE: Final = between(1e-8, 0.1)
+"""Rows that are so close to a curve: their number grows with one over the root of it."""
 
 MAGNET: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -16,7 +20,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "P_h",
         "N",
         "pull of the energised electromagnet on the plate",
-        POSITIVE,
+        between(1e-6, 1e4),
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
         "magnet",
@@ -28,7 +32,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "t_r",
         "s",
         "from switching on until 90 % of that pull",
-        POSITIVE,
+        between(1e-7, 100.0),
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
         "magnet",
@@ -40,7 +44,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "t_f",
         "s",
         "from switching off until 10 % of that pull",
-        POSITIVE,
+        between(1e-7, 100.0),
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
         "magnet",
@@ -52,7 +56,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "σ",
         "1",
         "part of the full current beyond which the iron is saturated and the pull grows no more",
-        SHARE,
+        between(1e-3, 1.0),
         1.0,
         "assumed: a coil just strong enough",
         "magnet",
@@ -64,7 +68,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "P_r",
         "N",
         "pull that remains without current",
-        NON_NEGATIVE,
+        between(0.0, 1e4),
         0.0,
         "assumed: soft iron and a paint thick enough",
         "magnet",
@@ -76,7 +80,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "W",
         "N",
         "force that presses the electromagnet on the plate while it is off",
-        POSITIVE,
+        between(1e-6, 1e4),
         None,
         "9.80665 m/s2 (standard gravity) times 1 g",
         "magnet",
@@ -105,7 +109,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "N",
         "1",
         "turns of the winding",
-        COUNT,
+        between(1.0, 1e6),
         None,
         "assumed",
         "magnet",
@@ -118,7 +122,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "A",
         "m^2",
         "area of one of its two poles",
-        POSITIVE,
+        between(1e-10, 1.0),
         None,
         "assumed: a core 2 mm wide",
         "magnet",
@@ -130,7 +134,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "g",
         "m",
         "gap between each pole and the steel: paint, roughness",
-        POSITIVE,
+        between(1e-9, 0.1),
         None,
         "assumed",
         "magnet",
@@ -142,7 +146,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "d",
         "m",
         "diameter of the copper in its wire",
-        POSITIVE,
+        between(1e-7, 0.1),
         None,
         "assumed",
         "magnet",
@@ -154,7 +158,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "l",
         "m",
         "mean length of a turn",
-        POSITIVE,
+        between(1e-5, 10.0),
         None,
         "assumed: round a core 2 mm wide",
         "magnet",
@@ -166,7 +170,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "U",
         "V",
         "voltage across the coil while it is on",
-        POSITIVE,
+        between(1e-3, 1e5),
         None,
         "assumed",
         "magnet",
@@ -178,7 +182,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "R_d",
         "ohm",
         "resistance through which the current dies away, beside the coil's own",
-        NON_NEGATIVE,
+        between(0.0, 1e9),
         None,
         "assumed: a diode alone, its voltage neglected",
         "magnet",
@@ -191,7 +195,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "B_s",
         "T",
         "field at which the iron saturates",
-        POSITIVE,
+        between(1e-3, 100.0),
         None,
         "iron, 1.5-2.1 T (handbook tables); the lower middle",
         "magnet",
@@ -204,7 +208,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "R_th",
         "K/W",
         "warming of the electromagnet for each watt",
-        POSITIVE,
+        between(1e-4, 1e7),
         None,
         "1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of 2-25 "
         "(Incropera, table 1.1)",
@@ -218,7 +222,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "ΔT",
         "K",
         "warming that is allowed",
-        POSITIVE,
+        between(1e-2, 1000.0),
         None,
         "assumed: from 25 °C to 45 °C, for a finger stays on it",
         "magnet",

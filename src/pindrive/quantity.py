@@ -66,6 +66,11 @@ POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
 FINITE_OR_NOT: Final = Bounds(lower_closed=True, upper_closed=True)
 
 
+def between(lower: float, upper: float) -> Bounds:
+    """The values from `lower` to `upper`, both included."""
+    return Bounds(lower, upper, lower_closed=True, upper_closed=True)
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """One quantity: its name, its unit, the values it may take, its meaning and its source."""

@@ -27,6 +27,10 @@ OverridesOption = Annotated[
 ]
 
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
+
+
 def count_option(
     option: str,
     help: str,
@@ -85,6 +89,9 @@ def refusing() -> Iterator[None]:
     except ValueError as error:
         typer.echo(str(error), err=True)
         raise typer.Exit(2) from None
+    except KeyboardInterrupt:
+        typer.echo("stopped", err=True)
+        raise typer.Exit(INTERRUPTED) from None
 
 
 def picture(path: Path, option: str = "--plot") -> Output:
@@ -107,24 +114,19 @@ def picture_format(path: Path) -> str:
     return path.suffix.lower().removeprefix(".")
 
 
-def measures(text: str, unit: str, example: str, option: str) -> list[float]:
-    """Numbers with units, apart by commas, as an option of the command line gives them, in SI."""
-    from pindrive.units import UnitError, to_si
-
-    values = []
-    for part in text.split(","):
-        try:
-            values.append(to_si(part.strip(), unit, example))
-        except UnitError as error:
-            raise ValueError(f"{option} {text}: must be {error}, got {part.strip()!r}") from None
-    return values
+def measures(text: str, name: str, example: str, option: str) -> list[float]:
+    """Values of a quantity, apart by commas, as an option of the command line gives them, in SI."""
+    return [measure(part.strip(), name, example, option) for part in text.split(",")]
 
 
-def measure(text: str, unit: str, example: str, option: str) -> float:
-    """One number with a unit, as an option of the command line gives it, in SI."""
-    from pindrive.units import UnitError, to_si
+def measure(text: str, name: str, example: str, option: str) -> float:
+    """One value of the quantity called `name`, as an option gives it, in SI and within bounds."""
+    from pindrive.quantities import QUANTITIES, check, refusal
+    from pindrive.units import UnitError, quoted, to_si
 
+    label = name.rpartition(".")[2]
     try:
-        return to_si(text, unit, example)
+        value = to_si(text, QUANTITIES[name].unit, example)
     except UnitError as error:
-        raise ValueError(f"{option} {text}: must be {error}") from None
+        raise ValueError(refusal(label, str(error), quoted(text), option)) from None
+    return check(name, value, where=option, label=label, given=quoted(text))

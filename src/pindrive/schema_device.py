@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel
 
-from pindrive.device.array import PinArray, check_apart, check_count
+from pindrive.device.array import PinArray, check_apart, check_count, check_pins
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS, Coil, check_one_way
 from pindrive.device.control import ControlBlock, check_band
 from pindrive.device.device import Device, check_plate
@@ -163,6 +163,8 @@ class Whole(BaseModel):
         for name in ("columns", "rows"):
             count = getattr(self.array, name)
             say(check_count, name, count, keys=(f"array.{name}",))
+        size = self.array.columns, self.array.rows
+        say(check_pins, *size, keys=("array.columns", "array.rows"))
         return problems
 
     def check_magnet(self, given: set[str], *, where: str, label: str) -> None:

@@ -20,6 +20,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, FancyBboxPatch
 
+from pindrive import budgets
 from pindrive.device.history import moment
 from pindrive.device.painting import view
 from pindrive.quantities import refusal
@@ -39,8 +40,6 @@ Progress = Callable[[int, int], None]
 
 FRAMES: Final = 25
 """In each second."""
-MOST: Final = 5000
-"""Frames of an animation; more are refused: a longer one is looked at in parts or less slowed."""
 SIZE: Final = (960, 540)
 """Pixels."""
 DPI: Final = 110
@@ -89,10 +88,12 @@ def frame_times(path: HandPath, slow: float) -> NDArray[np.float64]:
     if not slow > 0.0:
         raise ValueError(refusal("--slow", "greater than 0", repr(slow)))
     lasts = path.end - path.begin
-    count = ceil(lasts * slow * FRAMES) + 1
-    if count > MOST:
-        fit = (MOST - 1) / FRAMES / lasts
-        raise ValueError(refusal("--slow", f"at most {fit:.3g} for {lasts:.3g} s", f"{slow:g}"))
+    count = ceil(min(lasts * slow * FRAMES, 1e15)) + 1
+    most = budgets.FRAMES.most
+    if count > most:
+        fit = (most - 1) / FRAMES / lasts
+        given = f"{slow:g}, which makes {count} frames of at most {most}"
+        raise ValueError(refusal("--slow", f"at most {fit:.3g} for {lasts:.3g} s", given))
     return np.minimum(path.begin + np.arange(count) / (slow * FRAMES), path.end)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.quantities import QUANTITIES, check, refusal
 
 if TYPE_CHECKING:
@@ -103,6 +104,7 @@ class PinArray:
             ValueError: as for the class, or a count is no whole number.
         """
         across, down = check_count("columns", columns), check_count("rows", rows)
+        check_pins(across, down)
         step = check("pitch", pitch)
         places = [
             ((i - 0.5 * (across - 1)) * step, (j - 0.5 * (down - 1)) * step)
@@ -187,6 +189,11 @@ def check_count(name: str, value: float, *, where: str = "", label: str = "") ->
     if number != int(number):
         raise ValueError(refusal(label or name, "a whole number", repr(value), where))
     return int(number)
+
+
+def check_pins(columns: float, rows: float, *, where: str = "", label: str = "") -> None:
+    """Refuse a grid of too many pins."""
+    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows", where=where)
 
 
 def check_apart(places: Places, *, where: str = "", label: str = "places") -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.quantities import check, refusal
 
 if TYPE_CHECKING:
@@ -78,9 +79,16 @@ class ControlBlock:
 
     def looks(self, begin: float, end: float) -> NDArray[np.float64]:
         """When it looks at the scene in [begin, end), s, shape (n,)."""
+        self.check_looks(begin, end)
         first, last = ceil(begin * self.sample_rate), ceil(end * self.sample_rate)
         times = np.arange(first - 1, last + 1, dtype=np.float64) / self.sample_rate
         return times[(times >= begin) & (times < end)]
+
+    def check_looks(self, begin: float, end: float, pins: int = 1) -> None:
+        """Refuse to look too often at the spots of so many pins from `begin` to `end` (s)."""
+        each, lasts = ceil((end - begin) * self.sample_rate), end - begin
+        of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
+        budgets.LOOKS.check(float(pins * each), of)
 
     def decide(
         self,

@@ -14,14 +14,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import budgets
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.hand import HandPath
+    from pindrive.drive import Drive
     from pindrive.motion import Motion, Side
 
+EACH_PERIOD: Final = 30.0
+"""Looks for turning points in a period of the fastest vibration."""
+AT_ONCE: Final = 1 << 16
+"""Looks that are taken together: more take memory and save no time."""
 HALVINGS: Final = 60
 PIECES: Final = 64
 """A bracket is cut into so many at once, which is as good as six halvings."""
@@ -62,20 +69,23 @@ class Course:
         Turning points closer together than a thirtieth of the fastest period may count as none:
         between them nothing changes.
         """
-        motion = self.motion
-        ends = np.array([s.end for s in motion.segments])
-        ends = ends[(ends > 0.0) & (ends < motion.duration)]
-        drive = motion.drive
-        skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
-        period = 2.0 * pi / sqrt((drive.stiffness + skin) / drive.mass)
-        even = np.linspace(0.0, motion.duration, int(30.0 * motion.duration / period) + 2)
-        t = np.union1d(even, ends)
-        right, left = motion.velocity(t[:-1]), motion.velocity(t[1:], "left")
-        turns = right * left < 0.0
-        turning = halved(motion.velocity, t[:-1][turns], t[1:][turns])
-        both, one = right[1:] * left[:-1] <= 0.0, (right[1:] != 0.0) | (left[:-1] != 0.0)
-        stops = t[1:-1][both & one]  # turns at an event, or comes to rest or leaves it
-        return np.unique(np.concatenate([[0.0], turning, stops, ends, [motion.duration]]))
+        motion, lasts = self.motion, self.motion.duration
+        ends = np.unique([segment.end for segment in motion.segments])
+        ends = ends[(ends > 0.0) & (ends < lasts)]
+        count = check_vibration(motion.drive, lasts)
+        found = [np.array([0.0]), ends, np.array([lasts])]
+        for first in range(0, count, AT_ONCE):
+            last = min(first + AT_ONCE, count)
+            even = lasts * (np.arange(first, last + 1) / count)
+            low, high = np.searchsorted(ends, even[[0, -1]])
+            t = np.union1d(even, ends[low:high])
+            right, left = motion.velocity(t), motion.velocity(t, "left")
+            turns = right[:-1] * left[1:] < 0.0
+            found.append(halved(motion.velocity, t[:-1][turns], t[1:][turns]))
+            stops = (right * left <= 0.0) & ((right != 0.0) | (left != 0.0))
+            stops &= (t > 0.0) & (t < lasts)
+            found.append(t[stops])  # turns at an event, or comes to rest or leaves it
+        return np.unique(np.concatenate(found))
 
     def within(self, begin: float, end: float) -> NDArray[np.float64]:
         """The knots from `begin` to `end`, both of these included."""
@@ -174,6 +184,21 @@ class Course:
     @cached_property
     def _ends(self) -> NDArray[np.float64]:
         return np.array([segment.end for segment in self.motion.segments])
+
+
+def check_vibration(drive: Drive, duration: float, pins: int = 1) -> int:
+    """How many looks find the turning points of one pin over a duration (s).
+
+    Raises:
+        ValueError: too many, for so many pins: the skin makes it vibrate too fast.
+    """
+    skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
+    frequency = sqrt((drive.stiffness + skin) / drive.mass) / (2.0 * pi)
+    count = EACH_PERIOD * duration * frequency + 1.0
+    of = f"{pins} pins over {duration:g} s, which vibrate at {frequency:g} Hz"
+    words = f"{of} on spring and skin; a finger without finger.stiffness is rigid"
+    budgets.MOTION_LOOKS.check(pins * count, words if skin else of)
+    return int(count)
 
 
 def halved(

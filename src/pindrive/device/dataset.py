@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from io import BytesIO
-from math import nan, pi, sqrt
+from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import budgets
+from pindrive.device.course import Course
 from pindrive.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -18,10 +20,12 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
+    from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
     from pindrive.motion import Motion
 
-HALVINGS: Final = 60
+EACH: Final = 1e-3
+"""Between two samples unless their times are given, s."""
 
 
 def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
@@ -30,7 +34,11 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
     Args:
         scan: the scan.
         t: s, shape (n,), on the path's clock.
+
+    Raises:
+        ValueError: too many samples.
     """
+    check_samples(len(scan.pins), len(t))
     import xarray as xr
 
     from pindrive import __version__
@@ -85,6 +93,16 @@ def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
         **({} if scan.smallest_gap is None else {"smallest_pin_gap": scan.smallest_gap.size}),
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def sample_count(path: HandPath) -> float:
+    """At how many times a scan is sampled unless they are given: each millisecond and the end."""
+    return (path.end - path.begin) / EACH + 1.0
+
+
+def check_samples(pins: int, times: float) -> None:
+    """Refuse too many samples of so many pins at so many times."""
+    budgets.SAMPLES.check(pins * times, f"{pins} pins at {times:.0f} times")
 
 
 def write_netcdf(scan: Scan, path: Path) -> None:
@@ -145,21 +163,9 @@ def numbers(pin: PinScan) -> dict[str, float]:
 def peak_displacement(motion: Motion) -> float:
     """The largest |x| over the motion's duration, m, at its ends or where its velocity is zero.
 
-    Turning points closer together than a thirtieth of the fastest period may count as none: x does
-    not change between them.
+    Turning points as `Course` finds them.
     """
-    drive = motion.drive
-    skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
-    period = 2.0 * pi / sqrt((drive.stiffness + skin) / drive.mass)
-    t = motion.sample_times(int(30.0 * motion.duration / period) + 2)  # and where modes change
-    right, left = motion.velocity(t[:-1]), motion.velocity(t[1:], "left")
-    turns = right * left < 0.0
-    low, high, sign = t[:-1][turns], t[1:][turns], np.sign(right[turns])
-    for _ in range(HALVINGS):
-        middle: NDArray[np.float64] = 0.5 * (low + high)
-        before = sign * motion.velocity(middle) > 0.0
-        low[before], high[~before] = middle[before], middle[~before]
-    return float(np.abs(motion.position(np.concatenate([t, low]))).max())
+    return float(np.abs(motion.position(Course(motion).knots)).max())
 
 
 def _over(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.drive import Profile
 from pindrive.quantities import check, refusal
 
@@ -173,7 +174,7 @@ def strokes(
         deviation: of the piecewise-linear speed from minimum jerk, a part of its peak, in (0, 0.1].
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: a value is no number or out of its range, or there are too many rows.
 
     A stroke of length D in time T has the speed (D/T) 30 s² (1 − s)² at t = s T (Flash & Hogan
     1985). Its curvature is at most 60 D/T³, so that n even rows are within 60/(8 n²) D/T of it,
@@ -186,6 +187,8 @@ def strokes(
         raise ValueError(refusal("speeds", f"one or {len(stops) - 1}", str(len(peaks))))
     rest = check("pause", pause)
     count = ceil(2.0 / sqrt(check("path_deviation", deviation, label="deviation")))
+    of = f"{len(peaks)} strokes of {count} rows"
+    budgets.INPUT_ROWS.check(len(peaks) * (count + 1), of)
     s = np.arange(count + 1) / count
     shape = (s * s[::-1]) ** 2  # alike both ways, to the bit
     shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1

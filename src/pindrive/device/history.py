@@ -160,7 +160,7 @@ def _draw_seen(
 ) -> None:
     scan = judgement.scan
     pin, control = scan.pins[chosen.pin], scan.device.control
-    spots = scan.spots(t)[chosen.pin]
+    spots = scan.spot(chosen.pin, t)
     axes.axhline(control.threshold, color=GREY, lw=0.6, ls=":", gid="threshold")
     axes.plot(ms, scan.scene.at(*spots.T), color="0.3", lw=0.9, gid="luminance")
     for on, off in pin.energised:

@@ -28,7 +28,7 @@ plate passes under the mouse while the line is read.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, pi, sqrt
+from math import nan, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -232,7 +232,7 @@ class JudgedPin:
 
     def _spot(self, t: float) -> tuple[float, float]:
         """Where the pin's spot is on the page."""
-        x, y = self.scan.spots([min(self.begin + t, self.pin.end)])[self.pin.number, 0].tolist()
+        x, y = self.scan.spot(self.pin.number, [min(self.begin + t, self.pin.end)])[0].tolist()
         return x, y
 
     def _still_held(self, k: int) -> bool:
@@ -283,9 +283,8 @@ class JudgedPin:
     def _patience(self) -> float:
         """How long a pin must stay within its band to be believed that it has settled, s."""
         drive = self.pin.motion.drive
-        ratio, frequency = drive.damping_ratio, drive.natural_frequency
-        slowest = frequency * (ratio - sqrt(ratio**2 - 1.0)) if ratio > 1.0 else frequency
-        return max(pi / frequency, 1.0 / slowest)
+        half = pi / drive.natural_frequency
+        return max(half, 1.0 / drive.slowest_rate) if drive.damping_ratio > 1.0 else half
 
     # ---- false lines -------------------------------------------------------------------------
 

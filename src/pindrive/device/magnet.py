@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.friction import GRAVITY
 from pindrive.quantities import check, refusal
 
@@ -171,7 +172,11 @@ class Electromagnet:
             current: the current.
             end: s, after its begin.
             first: the pull at its begin, N; None: the exact one.
+
+        Raises:
+            ValueError: there would be too many rows.
         """
+        rows = 0
         times: list[NDArray[np.float64]] = []
         pulls: list[NDArray[np.float64]] = []
         stops = [*current.begins[1:].tolist(), end]
@@ -189,6 +194,8 @@ class Electromagnet:
             count = int(np.searchsorted(t, stop))
             pull = float(np.interp(stop, t, p))
             last = count + 1 if stop == end else count
+            rows += last
+            budgets.INPUT_ROWS.check(rows, f"{len(stops)} switchings of one coil")
             times.append(t[:last])
             pulls.append(p[:last])
         return np.concatenate(times), np.concatenate(pulls)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.course import Way
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ ROOM: Final = 0.002
 """Above and below what is drawn of the page, m."""
 AROUND: Final = 0.003
 """Before the print, m; four times as much after it."""
+AT_ONCE: Final = 1 << 20
+"""Places that are painted together: more take memory and save no time."""
 FINER: Final = 2.0
 """Places painted in each cell of the way."""
 
@@ -42,7 +45,11 @@ class Painting:
 
 
 def paint(scan: Scan) -> Painting:
-    """Paint what each pin of a scan did."""
+    """Paint what each pin of a scan did.
+
+    Raises:
+        ValueError: too many places to paint.
+    """
     left, right, top, bottom = scan.scene.extent
     cell = max(scan.scene.pixel, max(right - left, bottom - top) / CELLS)
     columns, rows = (max(1, round(side / cell)) for side in (right - left, bottom - top))
@@ -51,15 +58,23 @@ def paint(scan: Scan) -> Painting:
     offsets = np.linspace(-half, half, 2 * max(1, round(half / cell)) + 1)
     ax, ay = scan.device.array.direction
     total, count = np.zeros(rows * columns), np.zeros(rows * columns)
-    for pin, spots in zip(scan.pins, scan.spots(t), strict=True):
-        x = spots[:, :1] - ay * offsets
-        y = spots[:, 1:] + ax * offsets
-        i, j = np.floor((x - left) / cell).astype(int), np.floor((y - top) / cell).astype(int)
-        inside = (i >= 0) & (i < columns) & (j >= 0) & (j < rows)
-        where = (j * columns + i)[inside]
-        values = np.broadcast_to(sign * pin.position(t)[:, np.newaxis], x.shape)[inside]
-        total += np.bincount(where, values, rows * columns)
-        count += np.bincount(where, minlength=rows * columns)
+    of = f"{len(scan.pins)} pins at {len(t)} times, {len(offsets)} side by side"
+    budgets.PAINTED.check(len(scan.pins) * len(t) * len(offsets), of)
+    step = max(1, AT_ONCE // len(offsets))
+    hand = np.stack(scan.path.position(t), axis=-1)
+    spots = scan.device.array.on_page(scan.device.array.spots)
+    for pin, spot in zip(scan.pins, spots, strict=True):
+        position = sign * pin.position(t)
+        for first in range(0, len(t), step):
+            places = hand[first : first + step] + spot
+            x = places[:, :1] - ay * offsets
+            y = places[:, 1:] + ax * offsets
+            i, j = np.floor((x - left) / cell).astype(int), np.floor((y - top) / cell).astype(int)
+            inside = (i >= 0) & (i < columns) & (j >= 0) & (j < rows)
+            where = (j * columns + i)[inside]
+            shown = np.broadcast_to(position[first : first + step, np.newaxis], x.shape)[inside]
+            np.add.at(total, where, shown)
+            np.add.at(count, where, 1.0)
     mean = np.divide(total, count, out=np.full_like(total, np.nan), where=count > 0.0)
     return Painting(mean.reshape(rows, columns), scan.scene.extent)
 

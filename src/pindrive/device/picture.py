@@ -36,6 +36,8 @@ MOST: Final = 99.0
 LABELS: Final = {"lag_on": "lag on", "lag_off": "lag off"}
 BAR: Final = 0.022
 """Width of the scale of colours, a part of the page's."""
+TALLEST: Final = 1000.0
+"""Height of a page as drawn at most, mm: a longer one is drawn smaller."""
 RELIEF: Final = LinearSegmentedColormap.from_list(
     "relief",
     [
@@ -68,6 +70,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
     chosen = moment(judgement, pin)
     with matplotlib.style.context(STYLE, after_reset=True):
         scale = (WIDTH - 32.0) / (1 if wide else 2) / (right - left)
+        scale = min(scale, TALLEST / (bottom - top))
         page = scale * (bottom - top) + 9.0
         pages = (2.0 * page if wide else page) + 6.0
         figure = Figure(figsize=(WIDTH / 25.4, (pages + 112.0) / 25.4), dpi=250)
@@ -113,7 +116,7 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
     left, right, top, bottom = view(first, around=True)
     with matplotlib.style.context(STYLE, after_reset=True):
         side = (WIDTH - 26.0) / (len(judgements) + 1)
-        height = side * (bottom - top) / (right - left) + 28.0
+        height = min(side * (bottom - top) / (right - left), TALLEST) + 28.0
         figure = Figure(figsize=(WIDTH / 25.4, height / 25.4), dpi=250)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)

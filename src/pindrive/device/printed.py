@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.course import Way, halved
+from pindrive.device.scanning import AT_ONCE, FINER
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from numpy.typing import NDArray
 
+    from pindrive.device.hand import HandPath
     from pindrive.device.scanning import Scan
 
-FINER: Final = 4.0
-"""The scene is looked at so many times in each pixel of the way."""
 GRAZED: Final = 0.5
 """What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
 
@@ -39,22 +42,19 @@ def printed(scan: Scan) -> list[list[Printed]]:
     The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
     bisection. A line on which the hand turns back is not whole, nor is one under the spot at the
     path's begin or end.
+
+    Raises:
+        ValueError: too many lines.
     """
     path, scene, device = scan.path, scan.scene, scan.device
     way = Way(path)
     lengths = np.diff(way(path.times))
     counts = 1 + np.ceil(lengths * FINER / scene.pixel).astype(int)
-    looks = np.concatenate(
-        [
-            t0 + (t1 - t0) * np.arange(n) / n
-            for t0, t1, n in zip(path.times[:-1], path.times[1:], counts, strict=True)
-        ]
-        + [path.times[-1:]]
-    )
     turned = turnings(scan)
     threshold = device.control.threshold
     offsets = device.array.on_page(device.array.spots)
-    found = []
+    found: list[list[Printed]] = []
+    passed = 0.0
     for dx, dy in offsets.tolist():
 
         def lightness(
@@ -64,11 +64,11 @@ def printed(scan: Scan) -> list[list[Printed]]:
             left, right, top, bottom = scene.extent
             return scene.at(np.clip(x + dx, left, right), np.clip(y + dy, top, bottom)) - threshold
 
-        dark = lightness(looks) < 0.0
-        changes = np.flatnonzero(dark[1:] != dark[:-1])
-        edges = halved(lightness, looks[changes], looks[changes + 1])
+        edges, first, last = _edges(lightness, _looks(path, counts))
+        passed += 0.5 * len(edges)
+        budgets.LINES.check(passed, f"up to pin {len(found)} of {len(offsets)}")
         times = np.concatenate([[path.begin], edges, [path.end]])
-        times = times[0 if dark[0] else 1 : None if dark[-1] else -1]
+        times = times[0 if first else 1 : None if last else -1]
         begins, ends = times[::2], times[1::2]
         shortest = GRAZED * scene.pixel
         gaps = way(begins[1:]) - way(ends[:-1]) > shortest if len(begins) else np.zeros(0, bool)
@@ -86,6 +86,41 @@ def printed(scan: Scan) -> list[list[Printed]]:
             ]
         )
     return found
+
+
+def _edges(
+    lightness: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    looks: Iterator[NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], bool, bool]:
+    """When it changes between dark and light, s, and whether it is dark at first and at last.
+
+    Args:
+        lightness: luminance above the threshold at times, s.
+        looks: times that find each change, in order, some at a time.
+    """
+    low, high = [np.zeros(0)], [np.zeros(0)]
+    first, before, was = False, np.zeros(0), np.zeros(0, bool)
+    for some in looks:
+        t = np.concatenate([before, some])
+        dark = np.concatenate([was, lightness(some) < 0.0])
+        changes = np.flatnonzero(dark[1:] != dark[:-1])
+        budgets.LINES.check(0.5 * sum(map(len, low)) + 0.5 * len(changes))
+        low.append(t[changes])
+        high.append(t[changes + 1])
+        first = first if before.size else bool(dark[0])
+        before, was = t[-1:], dark[-1:]
+    return halved(lightness, np.concatenate(low), np.concatenate(high)), first, bool(was[0])
+
+
+def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
+    """When the page is looked at, s, in order: so often in each row of a path, and at its end."""
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    lasts = np.diff(path.times)
+    for first in range(0, int(starts[-1]), AT_ONCE):
+        k = np.arange(first, min(first + AT_ONCE, int(starts[-1])))
+        row = np.searchsorted(starts, k, "right") - 1
+        yield path.times[row] + lasts[row] * (k - starts[row]) / counts[row]
+    yield path.times[-1:]
 
 
 def turnings(scan: Scan) -> NDArray[np.float64]:

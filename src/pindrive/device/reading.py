@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.hand import HandPath, lines
 from pindrive.device.record import read_csv
 from pindrive.device.scene import Scene
@@ -96,7 +97,8 @@ class Reading:
         top to bottom or, where none is given, once along its middle.
 
         Raises:
-            ValueError: the spots of the array find no room on the scene.
+            ValueError: the spots of the array find no room on the scene, or there are too many
+                strokes or rows of the hand's speed.
         """
         left, right, top, bottom = scene.extent
         offsets = array.on_page(array.spots)
@@ -121,7 +123,10 @@ class Reading:
         middle = 0.5 * (top + bottom)
         if self.line_pitch is None:
             return [middle]
-        count = int((bottom - top) / self.line_pitch)
+        between = (bottom - top) / self.line_pitch
+        of = f"{1e3 * (bottom - top):g} mm of page, lines {1e3 * self.line_pitch:g} mm apart"
+        budgets.STROKES.check(2.0 * between + 1.0, of)
+        count = int(between)
         return [middle + (i - 0.5 * count) * self.line_pitch for i in range(count + 1)]
 
     def _margin(self, array: PinArray) -> float:

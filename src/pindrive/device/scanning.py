@@ -16,8 +16,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.cores import worker_count
 from pindrive.device.control import Commands, Decision
+from pindrive.device.course import Way, check_vibration
 from pindrive.device.device import Device
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
@@ -34,6 +36,10 @@ if TYPE_CHECKING:
 ROUNDING: Final = 1e-9
 """So much too low is no sample rate too low."""
 MAX_ANGLE: Final = QUANTITIES["max_angle"].default or 0.0
+AT_ONCE: Final = 1 << 18
+"""Looks at the page that are taken together: more take memory and save no time."""
+FINER: Final = 4.0
+"""A scene is looked at for lines so many times in each pixel of the way."""
 
 Progress = Callable[[int, int], None]
 """Told after each pin: how many are done, of how many."""
@@ -171,16 +177,23 @@ class Scan:
         """Where each pin's spot is on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
         return _spots(self.device, self.path, np.asarray(t, np.float64))
 
+    def spot(self, pin: int, t: ArrayLike) -> NDArray[np.float64]:
+        """Where the spot of one pin, by its number, is on the page at times t (s, (n,)), (n, 2)."""
+        array = self.device.array
+        hand = np.stack(self.path.position(np.asarray(t, np.float64)), axis=-1)
+        return np.asarray(hand + array.on_page(array.spots[pin : pin + 1]))
+
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All pins over time, their events and commands, the hand and the scene, with units.
 
         Args:
             times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
         """
-        from pindrive.device.dataset import dataset
+        from pindrive.device.dataset import EACH, check_samples, dataset, sample_count
 
         if times is None:
-            times = np.append(np.arange(self.path.begin, self.path.end, 1e-3), self.path.end)
+            check_samples(len(self.pins), sample_count(self.path))
+            times = np.append(np.arange(self.path.begin, self.path.end, EACH), self.path.end)
         return dataset(self, np.atleast_1d(np.asarray(times, np.float64)))
 
 
@@ -211,7 +224,8 @@ def scan(
 
     Raises:
         ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, or a simulation had to be given up.
+            count, there is more to do than `pindrive.budgets` allow, or a simulation had to be
+            given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"
@@ -219,11 +233,17 @@ def scan(
     workers = worker_count(threads)
     prepared = prepare(device, scene, path, start)
     pins: list[PinScan] = []
-    with ThreadPoolExecutor(max_workers=min(workers, len(prepared))) as pool:
+    segments = 0
+    pool = ThreadPoolExecutor(max_workers=min(workers, len(prepared)))
+    try:
         for pin in pool.map(PreparedPin.follow, prepared):
             pins.append(pin)
+            segments += pin.motion.segment_count
+            budgets.SEGMENTS.check(segments, f"after {len(pins)} of {len(prepared)} pins")
             if progress:
                 progress(len(pins), len(prepared))
+    finally:  # what has not begun never does, after an error or Ctrl-C
+        pool.shutdown(wait=False, cancel_futures=True)
     return Scan(device=device, scene=scene, path=path, pins=tuple(pins), max_angle=max_angle)
 
 
@@ -277,18 +297,22 @@ def prepare(
     device: Device, scene: Scene, path: HandPath, start: Sequence[PinState] | None = None
 ) -> list[PreparedPin]:
     """Read the scene under each spot and switch the coils; arguments and errors as for `scan`."""
+    check_work(device, scene, path)
     looks = device.control.looks(path.begin, path.end)
-    spots = _spots(device, path, looks)
-    _check_on_page(scene, spots, looks)
     plate_velocity = path.plate_velocity(device.array.axis)
     states = [PinState()] * len(device.array) if start is None else start
-    prepared = []
-    for number, (spot, state) in enumerate(zip(spots, states, strict=True)):
-        luminance = scene.at(spot[:, 0], spot[:, 1])
+    prepared: list[PreparedPin] = []
+    rows = switchings = 0
+    for number, state in enumerate(states):
+        luminance = _seen(device, scene, path, looks, number)
         commands, decision = device.control.decide(luminance, looks, path.end, state.decision)
+        switchings += len(commands.times)
+        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
         before = CoilState(path.begin) if state.coil is None else state.coil
         current = device.magnet.current(commands, before)
         load, coil = _load(device, current, before, path)
+        rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
+        budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
             PreparedPin(
                 number=number,
@@ -307,6 +331,18 @@ def prepare(
             )
         )
     return prepared
+
+
+def check_work(device: Device, scene: Scene, path: HandPath) -> None:
+    """Refuse a scan whose counts are beyond the budgets: known before anything is allocated."""
+    pins, lasts = len(device.array), path.end - path.begin
+    device.control.check_looks(path.begin, path.end, pins)
+    of = f"{pins} pins, {len(path.times)} rows of hand speed for each"
+    budgets.INPUT_ROWS.check(float(pins * len(path.times)), of)
+    check_vibration(device.drive, lasts, pins)
+    length = float(Way(path)(path.end)[0])
+    of = f"{pins} pins, {length:g} m of way, pixels of {1e3 * scene.pixel:g} mm"
+    budgets.PAGE_LOOKS.check(pins * (len(path.times) + FINER * length / scene.pixel), of)
 
 
 def _load(
@@ -336,18 +372,41 @@ def _spots(device: Device, path: HandPath, t: NDArray[np.float64]) -> NDArray[np
     return hand[np.newaxis] + device.array.on_page(device.array.spots)[:, np.newaxis]
 
 
-def _check_on_page(scene: Scene, spots: NDArray[np.float64], t: NDArray[np.float64]) -> None:
-    inside = scene.contains(spots[..., 0], spots[..., 1])
+def _seen(
+    device: Device, scene: Scene, path: HandPath, looks: NDArray[np.float64], pin: int
+) -> NDArray[np.float64]:
+    """What the control block sees at one pin's spot, shape (looks,)."""
+    offset = device.array.on_page(device.array.spots[pin : pin + 1])[0]
+    luminance = np.empty_like(looks)
+    for begin in range(0, len(looks), AT_ONCE):
+        part = slice(begin, begin + AT_ONCE)
+        x, y = (place + off for place, off in zip(path.position(looks[part]), offset, strict=True))
+        _check_on_page(scene, x, y, looks[part], pin)
+        luminance[part] = scene.at(x, y)
+    return luminance
+
+
+def _check_on_page(
+    scene: Scene,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    t: NDArray[np.float64],
+    pin: int,
+) -> None:
+    inside = scene.contains(x, y)
     if inside.all():
         return
-    pin, look = (int(i) for i in np.argwhere(~inside)[0])
+    look = int(np.argmin(inside))
     left, right, top, bottom = (1e3 * edge for edge in scene.extent)
-    x, y = (1e3 * spots[pin, look]).tolist()
     required = (
         f"within {scene.title}, {left:g} to {right:g} mm across and {top:g} to {bottom:g} mm down"
     )
     raise ValueError(
-        refusal(f"the path of pin {pin}", required, f"({x:g} mm, {y:g} mm) at {t[look]:g} s")
+        refusal(
+            f"the path of pin {pin}",
+            required,
+            f"({1e3 * x[look]:g} mm, {1e3 * y[look]:g} mm) at {t[look]:g} s",
+        )
     )
 
 

@@ -6,25 +6,27 @@ Page coordinates: x to the right, y down, in metres. The luminance is that of th
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.quantities import check, check_whole, refusal
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
     from PIL import Image
 
 LUMA: Final = (0.299, 0.587, 0.114)
 """Weights of red, green and blue (ITU-R BT.601-7)."""
-MOST_PIXELS: Final = 100_000_000
-"""More are refused: 800 MB of luminance."""
+STRIP: Final = 1 << 20
+"""Pixels of a picture that are turned into luminance together."""
 INCH: Final = 0.0254
 NEAR: Final = 1e-9
 """Off the page by no more than that (m) is on its border."""
@@ -53,10 +55,12 @@ class Scene:
 
     def __post_init__(self) -> None:
         """Validate, and keep an array that nobody writes to."""
-        values = np.array(self.luminance, np.float64)
+        values = np.asarray(self.luminance, np.float64)
+        if values.flags.writeable or values.base is not None:
+            values = values.copy()  # somebody else may write to it
         if values.ndim != 2 or values.size == 0:
             raise ValueError(refusal("luminance", "rows and columns of pixels", values.shape))
-        if not ((values >= 0.0) & (values <= 1.0)).all():
+        if not (values.min() >= 0.0 and values.max() <= 1.0):
             wrong = values[~((values >= 0.0) & (values <= 1.0))][0]
             check("scene.luminance", wrong, label="luminance")
         values.flags.writeable = False
@@ -122,10 +126,12 @@ class Scene:
 
         file = fspath(path)
         try:
-            with Image.open(file) as image:
+            with _opened(file) as image:
+                _check_size(image.width, image.height, file)
                 resolution = image.info.get("dpi")
                 shown = ImageOps.exif_transpose(image)
                 values = _luminance(shown, file)
+                values.flags.writeable = False
         except Image.DecompressionBombError as error:
             raise ValueError(f"{file}: is too large: {error}") from None
         except OSError as error:
@@ -201,16 +207,15 @@ class Scene:
             begins += [x + i * pitch for i in range(count)]
             ends += [x + (i + 0.5) * pitch for i in range(count)]
             x = ends[-1] + margin
-        columns = _in_bounds(x / size)
-        borders = size * np.arange(columns + 1)
-        covered = sum(
-            np.clip(borders, begin, end) - begin for begin, end in zip(begins, ends, strict=True)
-        )
-        row = 1.0 - np.clip(np.diff(covered) / size, 0.0, 1.0)
-        rows = _in_bounds((check("text_height", height) + 2.0 * margin) / size)
+        across, down = x / size, (check("text_height", height) + 2.0 * margin) / size
+        _check_size(across, down)
+        columns, rows = max(1, round(across)), max(1, round(down))
+        covered = _covered(size * np.arange(columns + 1), begins, ends)
+        row = 1.0 - np.clip(covered / size, 0.0, 1.0)
         page = np.ones((rows, columns))
         top = round(margin / size)
         page[top : rows - top] = row
+        page.flags.writeable = False
         words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)
         return cls(page, size, lines=(0.5 * rows * size,), title=f"lines every {words} mm")
 
@@ -229,20 +234,41 @@ def _between(
     return i, middle - i
 
 
-def _in_bounds(pixels: float) -> int:
-    """A number of pixels along one side, whole and not too many."""
-    if not pixels <= MOST_PIXELS:
-        raise ValueError(refusal("a scene", f"at most {MOST_PIXELS} pixels long", f"{pixels:g}"))
-    return max(1, round(pixels))
+def _covered(
+    borders: NDArray[Any], begins: Sequence[float], ends: Sequence[float]
+) -> NDArray[np.float64]:
+    """How much (m) of the stretch between each border and the next lies on lines.
+
+    Args:
+        borders: m, shape (n + 1,), increasing.
+        begins: of the lines, m, increasing, none before the end of the one before.
+        ends: of the lines.
+    """
+    edges = np.stack([begins, ends], axis=1)
+    after = np.cumsum(edges[:, 1] - edges[:, 0])
+    before = np.stack([np.append(0.0, after[:-1]), after], axis=1)
+    return np.diff(np.interp(borders, edges.ravel(), before.ravel()))
+
+
+def _opened(file: str) -> Image.Image:
+    """An image file of which only the head is read; of its size we say ourselves what is wrong."""
+    from PIL import Image
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        return Image.open(file)
+
+
+def _check_size(across: float, down: float, where: str = "") -> None:
+    """Refuse a page of too many pixels."""
+    of = f"{across:.6g} by {down:.6g}; take larger pixels or a smaller page"
+    budgets.PIXELS.check(across * down, of, where=where)
 
 
 def _luminance(image: Image.Image, file: str) -> NDArray[np.float64]:
     """The luminance of an image of any mode, on white."""
     from PIL import Image
 
-    if image.width * image.height > MOST_PIXELS:
-        given = f"{image.width} by {image.height}"
-        raise ValueError(refusal("an image", f"at most {MOST_PIXELS} pixels", given, file))
     if image.mode == "F" or image.mode.startswith("I"):
         values = np.asarray(image, np.float64)
         whole = 1.0 if image.mode == "F" else 65535.0
@@ -258,9 +284,14 @@ def _luminance(image: Image.Image, file: str) -> NDArray[np.float64]:
         image = Image.alpha_composite(paper, image.convert("RGBA"))
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L"), np.float64) / 255.0
-    red, green, blue = np.moveaxis(np.asarray(image.convert("RGB"), np.float64), 2, 0)
-    grey: NDArray[np.float64] = (LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue) / 255.0
-    return np.minimum(grey, 1.0)
+    colours = np.asarray(image.convert("RGB"))
+    grey = np.empty(colours.shape[:2])
+    rows = max(1, STRIP // image.width)
+    for top in range(0, image.height, rows):
+        red, green, blue = np.moveaxis(colours[top : top + rows].astype(np.float64), 2, 0)
+        strip = (LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue) / 255.0
+        grey[top : top + rows] = np.minimum(strip, 1.0)
+    return grey
 
 
 def _pixel_of(resolution: Any, file: str) -> float:

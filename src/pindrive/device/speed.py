@@ -22,13 +22,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, isnan, nan, pi, sqrt
+from math import inf, isnan, nan, pi
 from typing import Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.array import PinArray
-from pindrive.device.course import Way
+from pindrive.device.course import Way, check_vibration
 from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
 from pindrive.device.judging import JudgedPin
@@ -36,6 +37,7 @@ from pindrive.device.printed import Printed
 from pindrive.device.scanning import PinState, scan
 from pindrive.device.scene import Scene
 from pindrive.device.verdict import Criteria, Line
+from pindrive.drive import Drive
 from pindrive.quantities import check, refusal
 
 PART: Final = 0.5
@@ -133,8 +135,10 @@ def largest_speeds(
         progress: told after each pitch.
 
     Raises:
-        ValueError: no pitch, or a value is no number or out of its range.
+        ValueError: no pitch, a value is no number or out of its range, or there is more to do than
+            `pindrive.budgets` allow.
     """
+    budgets.PITCHES.check(len(pitches))
     steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
     if not steps:
         raise ValueError(refusal("pitches", "at least one", "none"))
@@ -148,15 +152,53 @@ def largest_speeds(
         )
     needed = check("speed.part", part, label="part")
     limits = criteria or Criteria()
-    found = []
-    for pitch in steps:
-        line = 0.5 * pitch if width is None else check("speed.width", width, label="width")
+    lines = [
+        check("speed.width", 0.5 * pitch if width is None else width, label="width")
+        for pitch in steps
+    ]
+    for pitch, line in zip(steps, lines, strict=True):
         if not line < pitch:
             raise ValueError(refusal("width", f"less than the pitch, {pitch!r} m", f"{line!r} m"))
+    _check_work(device, steps, lines, (least, most))
+    found = []
+    for pitch, line in zip(steps, lines, strict=True):
         found.append(_limit(device, pitch, line, needed, (least, most), limits))
         if progress:
             progress(len(found), len(steps))
     return tuple(found)
+
+
+def _check_work(
+    device: Device, pitches: Sequence[float], widths: Sequence[float], tried: Band
+) -> None:
+    """Refuse trials whose counts are beyond the budgets, before the first of them.
+
+    The slowest trial takes the most looks, the fastest the most pixels; that the looks of all are
+    so many times those of the slowest follows from the grid.
+    """
+    drive = device.drive
+    alone = _clear(device) + max(_followed(drive), 4.0 * pi / drive.natural_frequency)
+    slowest, fastest = tried
+    all_trials = sum(slowest / speed for speed in np.geomspace(*tried, TRIED).tolist())
+    looks = 0.0
+    for pitch, width in zip(pitches, widths, strict=True):
+        of = f"for lines {1e3 * pitch:g} mm apart and {1e3 * width:g} mm wide"
+        lasts = (pitch + width) / slowest + alone
+        looks += PHASES * device.control.sample_rate * all_trials * (pitch + width) / slowest
+        looks += PHASES * device.control.sample_rate * TRIED * alone
+        check_vibration(drive, TRIED * alone + all_trials * lasts, PHASES)
+        pixel = min(width, pitch - width) / FINE
+        most = (
+            pitch + width + fastest * (alone + MOMENT + 2.0 / device.control.sample_rate)
+        ) / pixel
+        budgets.PIXELS.check(most, of)
+    of = f"{len(pitches)} pitches, hands from {slowest:g} m/s, at {device.control.sample_rate:g} Hz"
+    budgets.LOOKS.check(looks, of)
+
+
+def _followed(drive: Drive) -> float:
+    """How long a transient is followed for it to settle, s."""
+    return 8.0 / max(drive.slowest_rate, 8.0 / LONGEST * drive.natural_frequency)
 
 
 def _limit(
@@ -247,10 +289,7 @@ def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: 
         trial: as `two_lines` found it.
         criteria: as in the trial.
     """
-    drive = device.drive
-    ratio = max(drive.damping_ratio, 1e-3)
-    slowest = drive.natural_frequency * (ratio if ratio <= 1.0 else ratio - sqrt(ratio**2 - 1.0))
-    after = _clear(device) + min(8.0 / slowest, LONGEST / drive.natural_frequency)
+    after = _clear(device) + _followed(device.drive)
     alone = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
     times = [line.settled for pin in alone for line in pin.lines()]
     return all(time <= until for time, until in zip(times, trial.until, strict=True))

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
+from pindrive import budgets
 from pindrive.config import TABLES, keys_meant, not_known
 from pindrive.quantities import refusal
 from pindrive.schema import number
@@ -132,9 +133,9 @@ class AxisReader:
         if way == "log" and not min(low, high) > 0.0:
             raise ValueError(self._refusal("two values greater than 0", pair, ".log"))
         count = spec.get("count")
-        if type(count) is not int or count < 2:
+        if type(count) is not int or not 2 <= count <= budgets.AXIS.most:
             given = "none" if count is None else quoted(count)
-            required = "a whole number of at least 2"
+            required = f"a whole number from 2 to {budgets.AXIS.most}"
             raise ValueError(refusal(f"{self._label}.count", required, given, self._file))
         return Even(low, high, count, way == "log")
 

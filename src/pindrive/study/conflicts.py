@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.device.array import check_count
 from pindrive.device.coil import check_one_way
 from pindrive.study.axis import Axis, Distribution, Linked, Listed
@@ -95,8 +96,9 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
         if isinstance(axis, Distribution):
             yield f"{key} counts pins; give a list of whole numbers"
         elif axis is not None and not isinstance(axis, Linked):
-            few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
             try:
+                budgets.AXIS_VALUES.check(axis.count, key)
+                few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
                 for value in few:
                     check_count(key.partition(".")[2], float(value), label=key)
             except ValueError as error:

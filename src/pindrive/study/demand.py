@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _CONDITION: Final = re.compile(r"\s*(<=|>=|≤|≥)\s*(.+)")
+LARGEST: Final = 1e100
+"""Of a limit: so that squares of what is beyond it are numbers."""
 _AT_MOST: Final = ("<=", "≤")
 
 
@@ -82,6 +84,7 @@ def _demand(name: str, condition: object, where: str, file: str) -> Demand:
         limit = to_si(match[2], quantity.unit or "1", f"60 {quantity.display_unit}".rstrip())
     except UnitError as error:
         raise ValueError(refusal(where, f"a limit: {error}", quoted(condition), file)) from None
-    if not np.isfinite(limit):
-        raise ValueError(refusal(where, "a finite limit", quoted(condition), file))
+    if not abs(limit) <= LARGEST:
+        required = f"a finite limit, of at most {LARGEST:g} in size"
+        raise ValueError(refusal(where, required, quoted(condition), file))
     return Demand(name, match[1] in _AT_MOST, limit)

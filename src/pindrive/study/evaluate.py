@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf, nan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from pindrive.config import DeviceFile
     from pindrive.study.plan import Columns, Plan
 
+_WHOLE: Final = {
+    **dict.fromkeys(("status", "ending", "events"), np.int64),
+    "transient_settled": np.bool_,
+}
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
 
@@ -116,9 +120,14 @@ def _bad_arguments(status: NDArray[np.int8]) -> NDArray[Any]:
 
 
 def _one_by_one(inputs: Mapping[str, Any], count: int) -> Table:
-    rows = [_numbers(_point(inputs, i)) for i in range(count)]
-    reasons = np.array([row.pop("reason") for row in rows], object)
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]} | {"reason": reasons}
+    table: Table = {}
+    for i in range(count):
+        for name, value in _numbers(_point(inputs, i)).items():
+            if i == 0:  # a count is a float too: NaN where there is none
+                kind = object if name == "reason" else _WHOLE.get(name, np.float64)
+                table[name] = np.empty(count, kind)
+            table[name][i] = value
+    return table
 
 
 def _point(inputs: Mapping[str, Any], i: int) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.study.axis import Distribution, Linked, as_distribution
 from pindrive.study.evaluate import evaluate
 from pindrive.study.indices import Indices, sobol_indices
@@ -119,7 +120,7 @@ def influence(
         tell: called with the points done and the points in all.
 
     Raises:
-        ValueError: nothing varies, or `rows` is no power of 2.
+        ValueError: nothing varies, or `rows` is no power of 2 or too large.
     """
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
@@ -128,6 +129,10 @@ def influence(
     outputs = (*asked, "status", "reason")
     if rows is None:
         rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
+    varied = len(keys)
+    each = (varied + 2) * (varied + len(outputs)) + 3 * (varied + 1) * len(outputs)
+    of = f"{rows} rows of {each}, for {varied} keys and {len(outputs)} results"
+    budgets.DESIGN_VALUES.check(rows * each, of)
     refused: tuple[Refusal, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from pindrive.device.scene import Scene
 
 KEYS: Final = ("text", "image", "grating", "font", "path")
-_KEPT: Final = 4
-"""Scenes and recorded paths that are kept: a sweep comes back to the one before."""
+_KEPT: Final = 2
+"""Scenes and recorded paths that are kept, of up to 320 MB each: a sweep comes back to the one
+before."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive import budgets
 from pindrive.config import motion_of
 from pindrive.quantity import counted
 from pindrive.study.evaluate import evaluate, follow
@@ -138,13 +139,16 @@ def robustness(
         tell: called with the points done and the points in all.
 
     Raises:
-        ValueError: there are no tolerances, or no draw can exist.
+        ValueError: there are no tolerances, no draw can exist, or there are too many to keep.
     """
     ranges = ranges_of(plan, tolerances=True)
     if count is None:
         count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
     usual = WATCHED_OF_SCANS if plan.page else WATCHED
     watched = tuple(dict.fromkeys((*usual, *(demand.name for demand in plan.demands))))
+    each = len(ranges.scatter) + len(watched) + 1
+    of = f"{count} draws of {len(ranges.scatter)} keys and {len(watched) + 1} results"
+    budgets.DESIGN_VALUES.check(count * each, of)
     sample = Sample(tuple(ranges.scatter), count, seed)
 
     def numbers(points: Values) -> dict[str, Values]:

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from pindrive import budgets
 from pindrive.config import (
     STUDY_KEYS,
     TABLES,
@@ -31,7 +32,7 @@ from pindrive.study.sample import MOST_SOBOL, Sample
 from pindrive.units import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from os import PathLike
 
     from pindrive.config import DeviceFile
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
 _OWN: Final = ("name", *STUDY_KEYS)
 _SAMPLE: Final = ("method", "count", "seed")
 _TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to vary in [axes]'
-MOST_POINTS: Final = 1 << 48
-"""Points of a study: a file of petabytes."""
 
 
 def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
@@ -75,19 +74,30 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
         dimensions=reader.dimensions,
         links=reader.links,
         outputs=reader.outputs(),
-        chunk=reader.whole("chunk", SCANS if "page" in tables else CHUNK, CHUNK * 64),
+        chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
         demands=demands(reader.table("specification"), str(file), problems, reader.among),
         page=page,
     )
+    problems += _too_much(plan)
     problems += conflicts(plan, str(file))
-    if plan.size > MOST_POINTS:
-        required = f"at most {MOST_POINTS} points"
-        problems.append(refusal("the product of the axes", required, plan.size, str(file)))
     if problems:
         raise ConfigError(list(dict.fromkeys(problems)))
     return plan
+
+
+def _too_much(plan: Plan) -> Iterator[str]:
+    """What of the study is beyond the budgets."""
+    of = f"{plan.size} points, {plan.chunk} in each; a larger chunk makes fewer"
+    for budget, count, words in (
+        (budgets.CHUNKS, plan.chunks, of),
+        (budgets.DEMANDS, len(plan.demands), ""),
+    ):
+        try:
+            budget.check(count, words, where=str(plan.path))
+        except ValueError as error:
+            yield str(error)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
@@ -195,6 +205,11 @@ class _Reader:
         required = f"a whole number from {least} to {most}"
         self._problems.append(refusal(name, required, quoted(given), self._file))
         return max(least, min(default, most))
+
+    def chunk(self) -> int:
+        """Points that are worked out together."""
+        most = budgets.CHUNK_OF_SCANS if self._scans else budgets.CHUNK
+        return self.whole("chunk", SCANS if self._scans else CHUNK, most.most)
 
     def outputs(self) -> tuple[str, ...]:
         """The variables to keep, each once, with the status of every point."""
@@ -307,7 +322,7 @@ class _Reader:
             self._problems.append(
                 f"{self._file}: sample.count is missing for {drawn}; write count = 1024 in [sample]"
             )
-        most = MOST_SOBOL if method == "sobol" else MOST_POINTS
+        most = MOST_SOBOL if method == "sobol" else budgets.AXIS.most
         count = self.whole("sample.count", 1024, most)
         return Sample(keys, count, self.whole("sample.seed", 1, 2**63 - 1, 0), method)
 

@@ -1,0 +1,39 @@
+"""Ctrl-C: one word, status 130, and no file half written."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from command import EXAMPLES
+
+pytestmark = [
+    pytest.mark.usefixtures("in_empty_folder"),
+    pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT"),
+]
+LONG = {
+    "scan": f"scan {EXAMPLES / 'tactile-reader.toml'} --text reads\\nreads --set array.columns=16 "
+    "--set array.rows=16 -o a.nc --plot a.png",
+    "speed": f"speed {EXAMPLES / 'tactile-reader.toml'} --plot a.png --slowest 1mm/s",
+    "robustness": f"robustness {EXAMPLES / 'tactile-reader-study.toml'} --plot a.png",
+    "sensitivity": f"sensitivity {EXAMPLES / 'tactile-reader-study.toml'} --plot a.pdf",
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_ends_a_command(name: str) -> None:
+    """Sent when the file that it is to write has been begun."""
+    command = [sys.executable, "-m", "pindrive", *LONG[name].split()]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
+        while running.poll() is None and not any(Path().iterdir()):
+            time.sleep(0.02)
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate()
+    assert running.returncode == 130
+    assert said == "stopped\n"
+    assert list(Path().iterdir()) == []
