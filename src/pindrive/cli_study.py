@@ -284,7 +284,6 @@ def _answered(
     """A study and what was asked of it, with a progress bar and, where wanted, a picture."""
     from pindrive.output import naming, writing
     from pindrive.study.studyfile import load_study
-    from pindrive.study.workers import stop_at_once
 
     with refusing():
         plan = load_study(study, overrides or ())
@@ -299,5 +298,5 @@ def _answered(
                         save(draw(found, plan.name), parts[plot], picture_format(plot))
         except KeyboardInterrupt:
             typer.echo("stopped; nothing was written", err=True)
-            stop_at_once(130)
+            raise typer.Exit(INTERRUPTED) from None
     return plan, found
