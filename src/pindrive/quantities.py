@@ -89,7 +89,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         optional=True,
         example=0.32,
         remark="give this or damping_ratio",
-        seen=_seen(0.0, 1e4),
+        seen=_seen(0.0, 1e5),
         limits=FROM_ZERO,
     ),
     Quantity(
@@ -197,7 +197,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         optional=True,
         example=1000.0,
         remark="rigid unless given",
-        seen=_seen(1e-2, 1e10),
+        seen=_seen(1e-2, 1e12),
         limits=ABOVE_ZERO,
     ),
     Quantity(
