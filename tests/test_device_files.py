@@ -153,7 +153,7 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
 
 MISTAKES = {
     '[magnet]\nhold_force = "-1 N"': (
-        'magnet.hold_force must be finite and at least 1e-06 N and at most 10000 N, got "-1 N"'
+        'magnet.hold_force must be finite and at least 1e-6 N and at most 10000 N, got "-1 N"'
     ),
     '[magnet]\nresidual = "4 N"': "residual must be less than the hold force, 1.0 N, got 4.0 N",
     f'[magnet]\nhold_force = "1 N"\n{COIL}': (
@@ -167,7 +167,7 @@ MISTAKES = {
         "control.hysteresis must be at most 0.02 about a threshold of 0.01, got 0.1"
     ),
     '[control]\nsample_rate = "0 Hz"': (
-        'control.sample_rate must be finite and at least 0.1 Hz and at most 1e+06 Hz, got "0 Hz"'
+        'control.sample_rate must be finite and at least 0.1 Hz and at most 1e6 Hz, got "0 Hz"'
     ),
     '[control]\nlatency = "3 mm"': 'control.latency must be in s or a unit alike, like "5 ms"',
     "[array]\ncolumns = 2.5": "array.columns must be a whole number, got 2.5",

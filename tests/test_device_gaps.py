@@ -218,7 +218,9 @@ def test_pins_abreast_overlap_for_good() -> None:
 
 
 def test_a_diameter_is_checked() -> None:
-    with pytest.raises(ValueError, match="pin_diameter must be finite and greater than 0 m, got 0"):
+    with pytest.raises(
+        ValueError, match="pin_diameter must be finite and at least 1e-6 m and at most 1 m, got 0"
+    ):
         PinArray.grid(pin_diameter=0.0)
 
 

@@ -426,8 +426,8 @@ def test_random_devices_are_judged_by_what_can_be(first: int) -> None:
 
 def test_criteria_are_checked() -> None:
     with pytest.raises(
-        ValueError, match="felt must be finite and at least 1e-09 m and at most 1 m, got"
+        ValueError, match="felt must be finite and at least 1e-9 m and at most 1 m, got"
     ):
         Criteria(felt=0.0)
-    with pytest.raises(ValueError, match="echo must be finite and at least 1e-06 and at most 1"):
+    with pytest.raises(ValueError, match="echo must be finite and at least 1e-6 and at most 1"):
         Criteria(echo=1.5)

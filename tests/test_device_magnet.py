@@ -186,7 +186,7 @@ def test_a_strong_coil_saturates() -> None:
     [
         (
             {"hold_force": 0.0},
-            "hold_force must be finite and at least 1e-06 N and at most 10000 N, got 0.0 N",
+            "hold_force must be finite and at least 1e-6 N and at most 10000 N, got 0.0 N",
         ),
         (
             {"saturation": 1.5},
@@ -194,7 +194,7 @@ def test_a_strong_coil_saturates() -> None:
         ),
         (
             {"deviation": 0.5},
-            "deviation must be finite and at least 1e-08 and at most 0.1, got 0.5",
+            "deviation must be finite and at least 1e-8 and at most 0.1, got 0.5",
         ),
         (
             {"hold_force": 1.0, "residual": 1.0},
@@ -202,7 +202,7 @@ def test_a_strong_coil_saturates() -> None:
         ),
         (
             {"pressing": -1.0},
-            "pressing must be finite and at least 1e-06 N and at most 10000 N, got -1.0 N",
+            "pressing must be finite and at least 1e-6 N and at most 10000 N, got -1.0 N",
         ),
     ],
 )

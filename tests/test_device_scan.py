@@ -338,7 +338,7 @@ def test_arrays() -> None:
     for bad, message in (
         ({"columns": 1.5}, "columns must be a whole number, got 1.5"),
         ({"rows": 0}, "rows must be finite and at least 1 and at most 1000, got 0.0"),
-        ({"pitch": 0.0}, "pitch must be finite and at least 1e-06 m and at most 1 m, got 0.0 m"),
+        ({"pitch": 0.0}, "pitch must be finite and at least 1e-6 m and at most 1 m, got 0.0 m"),
     ):
         with pytest.raises(ValueError) as refused:
             PinArray.grid(**bad)

@@ -200,10 +200,10 @@ def test_bad_values_are_refused() -> None:
         ({"pitches": []}, "pitches must be at least one, got none"),
         (
             {"pitches": [0.0]},
-            "pitch must be finite and at least 1e-06 m and at most 10 m, got 0.0 m",
+            "pitch must be finite and at least 1e-6 m and at most 10 m, got 0.0 m",
         ),
         ({"pitches": [0.002], "width": 0.002}, "width must be less than the pitch, 0.002 m, got"),
-        ({"pitches": [0.002], "part": 0.0}, "part must be finite and at least 1e-06 and at most 1"),
+        ({"pitches": [0.002], "part": 0.0}, "part must be finite and at least 1e-6 and at most 1"),
         ({"pitches": [0.002], "slowest": 2.0}, "fastest must be greater than the slowest, 2.0 m/s"),
     ):
         with pytest.raises(ValueError) as refused:

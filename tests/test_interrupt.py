@@ -29,7 +29,7 @@ deque(starmap(call, repeat(arguments)), maxlen=0)
 """
 BATCH = (
     "_core.simulate_batch, ([np.broadcast_to(np.array(x), 10**6) for x in (0.01, 100.0, 0.0, 0.0, "
-    "0.0, 1e-9, 1e-9, np.inf, 0.06, 0.002, 0.06, np.inf)], np.zeros(10**6, np.int8), 3, True)"
+    "0.0, 1e-9, 1e-9, np.inf, 0.06, 0.002, 0.06, np.inf, 0.05)], np.zeros(10**6, np.int8), 3, True)"
 )
 CALLS = {
     "simulate": "_core.simulate, numbers",

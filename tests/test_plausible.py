@@ -76,7 +76,7 @@ def test_a_mass_that_no_double_can_move_is_refused_and_not_followed_for_ever() -
         ),
         ({"mouse_velocity": [0.1] * 3}, "simulate_batch takes arrays, got 3 values"),
         ({"displacement": [1e-3]}, "displacement must be one number; simulate_batch takes arrays"),
-        ({"plate_load": "1"}, "plate_load must be a number, got '1'"),
+        ({"plate_load": "1"}, "plate_load must be a plain number, got '1'"),
         (
             {"mouse_velocity": Profile([0, 0.1, 0.1], [0.1, 0.1, 0.0])},
             "mouse_velocity must be without a step (a jump would take an infinite force), got one "

@@ -48,10 +48,14 @@ COUNTS = {
     [(command, option, n) for command, of in COUNTS.items() for option, n in of.items()],
 )
 def test_counts_are_whole_and_large_enough(command: str, option: str, least: int) -> None:
-    for given in (str(least - 1), "-7", "2.5", "1e3", "many", "nan", "", "٣", "1_000", "9" * 30):
+    for given in (str(least - 1), "-7", "2.5", "1e3", "many", "nan", "", "٣", "1_000"):
         assert refused(command, "study.toml", option, given) == (
             f"{option} must be a whole number of at least {least}, got {given}"
         )
+    many = "9" * 30
+    assert refused(command, "study.toml", option, many) == (
+        f"{option} must be a whole number of at least {least} and at most {10**18}, got {many}"
+    )
 
 
 @pytest.mark.parametrize("given", ["0", "-128", "64", "127", "1000", "2.5", "256.0"])
@@ -71,7 +75,7 @@ def test_rows_are_a_power_of_two(given: str) -> None:
         ("sweap study.toml", "No such command 'sweap'. Did you mean 'sweep'?"),
         (
             "simulate device.toml --samples 1",
-            "--samples must be a whole number of at least 2 and at most 10000000, got 1",
+            "--samples must be a whole number of at least 2, got 1",
         ),
     ],
 )
@@ -201,7 +205,7 @@ def test_a_part_is_all_or_none_only_if_it_is() -> None:
 LONG = {
     "sweep": "sweep long.toml",
     "sensitivity": "sensitivity long.toml --tolerances --rows 131072 --plot a.png",
-    "robustness": "robustness long.toml --draws 50000000 --plot a.png",
+    "robustness": "robustness long.toml --draws 10000000 --plot a.png",
     "sensitivity of scans": "sensitivity scans.toml --tolerances --rows 4096 --threads 2",
     "robustness of scans": "robustness scans.toml --draws 100000 --threads 2 --plot a.png",
 }

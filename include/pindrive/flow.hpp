@@ -27,6 +27,8 @@ template <class T>
 struct Zeros {
   T first;
   T spacing;
+
+  T at(T index) const { return index == 0 ? first : first + index * spacing; }
 };
 
 /// The free oscillator  y'' = 2α y' − ω₀² y  of a mode, in every damping regime.

@@ -217,7 +217,7 @@ class Roots<T, 0> {
         horizon_(std::min(horizon, oscillator.lasts_for())) {}
 
   T next() {
-    const T zero = count_ == 0 ? zeros_.first : zeros_.first + count_ * zeros_.spacing;
+    const T zero = zeros_.at(count_);
     count_ += 1;
     return zero <= horizon_ ? zero : std::numeric_limits<T>::infinity();
   }

@@ -56,7 +56,7 @@ void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, V
   if (side == 0 || !(zeros.first < to)) return;
   const T reach = side * oscillator.reach(slope.value, slope.slope);
   T count = zeros.first > from ? T(0) : floor((from - zeros.first) / zeros.spacing);
-  for (T tau; (tau = zeros.first + count * zeros.spacing) < to; count += T(1)) {
+  for (T tau; (tau = zeros.at(count)) < to; count += T(1)) {
     if (!(tau > from)) continue;
     const bool even = count / 2 == floor(count / 2);
     visit(tau, path.centre() + (even ? reach : -reach) * exp(oscillator.alpha() * tau));

@@ -259,7 +259,9 @@ class Drive:
         object.__setattr__(self, "stiffness", check("stiffness", self.stiffness))
         object.__setattr__(self, "damping", check("damping", self.damping))
         ratios = QUANTITIES["damping_ratio"].limits
-        if self.damping_ratio not in ratios:
+        if (
+            float(f"{self.damping_ratio:.12g}") not in ratios
+        ):  # what a ratio was made from is rounded
             required = f"such that the damping ratio is {ratios.words()}"
             given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
             raise ValueError(refusal("damping", required, given))

@@ -42,15 +42,14 @@ def count_option(
 ) -> Any:
     """An option that is a whole number from `least` to `most`, or such a power of 2."""
     required = f"{'a power of 2' if power_of_2 else 'a whole number'} of at least {least}"
-    if most < 10**18:
-        required += f" and at most {most}"
+    bounded = f"{required} and at most {most}"
 
     def count(text: str) -> int:
-        if re.fullmatch(r"[0-9]{1,18}", str(text)):
-            number = int(text)
-            if least <= number <= most and not (power_of_2 and number & (number - 1)):
-                return number
-        typer.echo(f"{option} must be {required}, got {text}", err=True)
+        number = int(text) if re.fullmatch(r"[0-9]{1,1000}", str(text)) else -1
+        if least <= number <= most and not (power_of_2 and number & (number - 1)):
+            return number
+        stated = bounded if number > most or most < 10**18 else required
+        typer.echo(f"{option} must be {stated}, got {text}", err=True)
         raise typer.Exit(2)
 
     return typer.Option(option, metavar=metavar, help=help, parser=count)

@@ -87,8 +87,9 @@ Difference compare(const Case& c, const Summary& below, const Summary& above) {
   // With the angle (2 off)^1/2 w T of an oscillation, cosine and sine differ from their limits by
   // terms of off (w T)^2: so well is a number known that depends on the time T.
   const double time = 1 / c.omega, speed = c.omega * c.length;
-  const double latest = std::max({0.0, p.settling_time > 0 ? p.settling_time : 0,
-                                  below.outcome.since > 0 ? below.outcome.since : 0});
+  double latest = 0;
+  for (const double t : {p.settling_time, p.last_event_time})
+    if (std::isfinite(t)) latest = std::max(latest, t);
   const double angle = c.omega * latest;
   const double tolerance = 1e-11 + (c.off + 1e-16) * (1e3 + 10 * angle * angle);
   const auto same = [&](const char* name, double a, double b, double scale) {
@@ -115,7 +116,9 @@ Difference compare(const Case& c, const Summary& below, const Summary& above) {
   same("finger.peak_force", p.finger.peak_force, q.finger.peak_force, c.force);
   // A cycle is found when it repeats to rounding: how many rounds that takes says nothing.
   if (cycles(below)) return found;
-  same("since", below.outcome.since, above.outcome.since, time);
+  same("rest_time", p.rest_time, q.rest_time, time);
+  same("last_event_time", p.last_event_time, q.last_event_time, time);
+  same("steady_since", p.steady_since, q.steady_since, time);
   same("events", static_cast<double>(below.events), static_cast<double>(above.events), 1);
   same("duration", below.duration, above.duration, time);
   same("settling_time", p.settling_time, q.settling_time, time);

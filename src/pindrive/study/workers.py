@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
@@ -57,6 +58,7 @@ def stop_at_once(status: int) -> NoReturn:
     """End this process without waiting for what is under way."""
     if not active_children():
         os._exit(status)
+    threading.excepthook = lambda _: None  # of pools that miss their processes
     for process in active_children():
         process.kill()
     sys.exit(status)  # so that what they shared is given back
