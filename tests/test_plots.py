@@ -332,6 +332,16 @@ def test_words_stay_on_the_page(drawn: dict[str, tuple[Motion, Figure]], name: s
         assert page.y0 <= box.y0 and box.y1 <= page.y1, text
 
 
+def test_a_motion_cut_short_leaves_out_what_lies_far_beyond() -> None:
+    """It is carried for days: where it will rest takes no room, where the drawing stops is said."""
+    motion = simulate(drive(plate=(1e3, 1e3)), mouse_velocity=1e-5)
+    figure = plot_motion(motion)
+    figure.draw_without_rendering()  # a layout that fails warns, which is an error here
+    portrait = {text.get_text() for text in panel(figure, "portrait").texts}
+    assert "start" in portrait and "end" not in portrait
+    assert panel(figure, "x").get_window_extent().width > 0.25 * figure.bbox.width
+
+
 @pytest.mark.parametrize(("format", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_save(drawn: dict[str, tuple[Motion, Figure]], format: str, start: bytes) -> None:
     file = io.BytesIO()

@@ -243,16 +243,17 @@ def _note_level(axes: Axes, level: float, text: str) -> None:
         textcoords="offset points",
         va="center",
         fontsize=SMALL,
+        annotation_clip=True,  # a level that is not on the axis takes no room beside it
     )
 
 
 def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
     """Start and end of the portrait; a steady oscillation has no end."""
     ends = {0: "start"}
-    if motion.ending.kind in ("resting", "decaying"):
-        ends[-1] = "end"
-    elif motion.ending.kind == "moving":
+    if motion.ending.kind == "moving" or trace.end < motion.duration:
         ends[-1] = duration(trace.end)
+    elif motion.ending.kind in ("resting", "decaying"):
+        ends[-1] = "end"
     moving = trace.v[trace.v != 0.0]
     comes_from_below = len(moving) > 0 and moving[-1] < 0.0
     for i, text in ends.items():
