@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf, isfinite
+from sys import float_info
 
 import numpy as np
 import pytest
@@ -42,8 +43,12 @@ def test_energy_ledger_closes(release: Release) -> None:
 
 @given(releases())
 def test_certificate_is_clean(release: Release) -> None:
-    certificate = release.run().certificate()
-    assert certificate.worst <= 1e-12, certificate
+    motion = release.run()
+    certificate = motion.certificate()
+    # A velocity is rounded to eps of the largest, v. Over the duration T that makes eps v T of a way,
+    # which is held against at least v/omega_0; four roundings of it, as it is a sum of terms.
+    rounding = 4.0 * float_info.epsilon * release.drive.natural_frequency * motion.duration
+    assert certificate.worst <= 1e-12 + rounding, certificate
 
 
 @given(releases())
