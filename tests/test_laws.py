@@ -45,7 +45,7 @@ def test_energy_ledger_closes(release: Release) -> None:
 def test_certificate_is_clean(release: Release) -> None:
     motion = release.run()
     certificate = motion.certificate()
-    # A velocity is rounded to eps of the largest, v. Over the duration T that makes a way of eps v T,
+    # A velocity is rounded to eps of the largest, v. Over the duration T that is a way of eps v T,
     # held against v/omega_0 or more; four times that, as a velocity is a sum of terms.
     rounding = 4.0 * float_info.epsilon * release.drive.natural_frequency * motion.duration
     assert certificate.worst <= 1e-12 + rounding, certificate

@@ -120,14 +120,14 @@ MUTANTS = (
     Mutant(
         "a cycle is closed a thousandth too soon",
         "model.hpp",
-        "recurrence = 1e-14;",
-        "recurrence = 1e-3;",
+        "recurrence = 1e-14,",
+        "recurrence = 1e-3,",
     ),
     Mutant(
         "every second zero of an oscillation is missed",
-        "roots.hpp",
-        "zeros_.first + count_ * zeros_.spacing;",
-        "zeros_.first + 2 * count_ * zeros_.spacing;",
+        "flow.hpp",
+        "first + index * spacing;",
+        "first + 2 * index * spacing;",
     ),
     Mutant(
         "the first root is passed over for the second",
