@@ -48,3 +48,25 @@ def test_cancelled_damping_has_one_ending(mass: float, stiffness: float) -> None
     assert motion.ending.amplitude == pytest.approx(0.02 / sqrt(stiffness / mass), rel=1e-12)
     assert motion.ending.period == pytest.approx(2 * np.pi * sqrt(mass / stiffness), rel=1e-12)
     assert motion.certificate().worst < 1e-12
+
+
+def test_every_derivative_goes_over_smoothly() -> None:
+    """Along the damping, at critical damping and 1e-8 to either side of it."""
+
+    def slopes(damping: float) -> dict[str, float]:
+        drive = Drive(
+            mass=0.01,
+            stiffness=100.0,
+            damping=damping,
+            plate=Contact(kinetic=0.022, static=0.0265),
+            finger=Contact(kinetic=0.005, static=0.0075),
+        )
+        motion = simulate(drive, mouse_velocity=0.06, displacement=2e-3, duration=0.5)
+        numbers = motion.sensitivity(["damping"]).numbers
+        return {name: values["damping"] for name, values in numbers.items()}
+
+    critical, below, above = slopes(2.0), slopes(2.0 * (1 - 1e-8)), slopes(2.0 * (1 + 1e-8))
+    assert np.isfinite(list(critical.values())).sum() > 20
+    for name, slope in critical.items():
+        near = pytest.approx(slope, rel=1e-6, abs=1e-15, nan_ok=True)
+        assert (below[name], above[name]) == (near, near), name

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pindrive/flow.hpp"
+#include "pindrive/model.hpp"
 
 namespace pindrive {
 
@@ -56,7 +57,9 @@ inline constexpr int exact_over = 8;
 /// is none, grow with time.
 template <class T, class Function>
 T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
-  const T quick = exact_over / oscillator.fastest_rate();
+  // Where panels end says nothing of the integral: plain numbers, as rates have a cusp at critical
+  // damping, and no derivative there.
+  const T quick = exact_over / plain(oscillator.fastest_rate());
   T sum{0};
   T low{0};
   while (low < to) {
