@@ -69,4 +69,4 @@ def test_every_derivative_goes_over_smoothly() -> None:
     assert np.isfinite(list(critical.values())).sum() > 20
     for name, slope in critical.items():
         near = pytest.approx(slope, rel=1e-6, abs=1e-15, nan_ok=True)
-        assert (below[name], above[name]) == (near, near), name
+        assert below[name] == near and above[name] == near, name

@@ -106,6 +106,7 @@ CASES = {
         0.010 / WEIGHT,
         0.040 / WEIGHT,
     ),
+    '[axes]\nmass = ["0 g", "5 g", "10 g"]': (0.020 / WEIGHT, 0.040 / WEIGHT),  # 0 g cannot exist
     'zip = [["drive.mass", "plate.kinetic"]]\n[axes]\nmass = ["5 g", "10 g"]\n'
     'plate.kinetic = ["10 mN", "20 mN"]': None,
     '[axes]\nmass = ["5 g", "10 g"]\nplate.kinetic = { times = 4.0, of = "finger.kinetic" }': (

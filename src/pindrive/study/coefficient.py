@@ -50,7 +50,11 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
     found = plan.values | with_links(plan.device, spread, links)
     pressing = found.get(_PRESSING)
     force = found[_MASS] * GRAVITY if pressing is None else pressing
-    coefficient = np.asarray(found[_KINETIC] / force)
+    kinetic, force = np.broadcast_arrays(found[_KINETIC], force)
+    exist = (force > 0.0) & (kinetic >= 0.0)
+    if not exist.any():
+        return None
+    coefficient = kinetic[exist] / force[exist]
     low, high = float(coefficient.min()), float(coefficient.max())
     return (low, high) if high > low * (1.0 + 1e-9) else None
 
