@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -106,7 +107,6 @@ CASES = {
         0.010 / WEIGHT,
         0.040 / WEIGHT,
     ),
-    '[axes]\nmass = ["0 g", "5 g", "10 g"]': (0.020 / WEIGHT, 0.040 / WEIGHT),  # 0 g cannot exist
     'zip = [["drive.mass", "plate.kinetic"]]\n[axes]\nmass = ["5 g", "10 g"]\n'
     'plate.kinetic = ["10 mN", "20 mN"]': None,
     '[axes]\nmass = ["5 g", "10 g"]\nplate.kinetic = { times = 4.0, of = "finger.kinetic" }': (
@@ -133,6 +133,9 @@ def test_a_sampled_study_and_tolerances_go_to_their_ends() -> None:
     limits = '[tolerances]\nmass = { uniform = ["8 g", "10 g"] }'
     assert over(limits, tolerances=True) == pytest.approx((0.020 / WEIGHT, 0.025 / WEIGHT))
     assert over(limits) is None
+    wide = '[sample]\ncount = 8\n[axes]\nmass = { normal = ["5 g", "100 g"] }'
+    low, high = over(wide) or (0.0, 0.0)
+    assert 0.0 < low < 0.1 and high == inf  # some of the masses are as small as you like
 
 
 def test_the_commands_of_studies_say_it_in_one_line() -> None:
