@@ -357,7 +357,9 @@ class Measurement {
         const T part = (side * width - after) / (2 * (x.centre() - position));
         const T angle = 2 * sqrt(part) * (1 + part / 6 + part * part * T(0.075));
         const T damping_ratio = -oscillator.alpha() / oscillator.omega();
-        const T guess = high - angle * (1 - damping_ratio * angle / 3) / oscillator.omega();
+        const T turn = angle * (1 - damping_ratio * angle / 3) / oscillator.omega();
+        // A pin that is carried has no oscillator of its own, whose period could be asked.
+        const T guess = x.oscillates() ? high - turn : low;
         const T root = root_between(oscillator, distance, low, high, side, guess);
         since = segment.begin + Rooted<T>::at(oscillator, distance, root);
       }
