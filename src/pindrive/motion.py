@@ -548,5 +548,7 @@ def _plausible(numbers: CoreNumbers) -> bool:
 
 
 def _value_at_start(rows: Rows) -> float:
+    if len(rows) == 1:
+        return rows[0][1]
     times, values = zip(*rows, strict=True)
     return float(np.interp(0.0, times, values))

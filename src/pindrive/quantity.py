@@ -142,10 +142,9 @@ class Quantity:
 
     def required(self, value: float) -> str:
         """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""
-        unit = "" if self.unit == "1" else self.unit
         for bounds in (self.bounds, self.limits):
             if value not in bounds:
-                return bounds.words(unit)
+                return bounds.words("" if self.unit == "1" else self.unit)
         return ""
 
     def doubt(self, value: float, label: str = "") -> str:
