@@ -95,6 +95,20 @@ def test_a_few_lines_cannot_take_the_machine(line: str, setting: str) -> None:
     assert peak < 25 * MEGABYTE
 
 
+def test_a_motion_of_very_many_phases_is_no_json() -> None:
+    """Weak friction takes 400 000 half periods to stop an undamped pin."""
+    Path("device.toml").write_text(
+        '[drive]\nmass = "10 g"\nstiffness = "100 N/m"\ndamping_ratio = 0\n[plate]\n'
+        'kinetic = "0 N"\n[finger]\nkinetic = "10 nN"\n[motion]\nmouse_velocity = "0 m/s"\n'
+        'velocity = "8 mm/s"\n',
+        encoding="utf-8",
+    )
+    said = run("simulate", "device.toml", "--json", "a.json")
+    assert said.exit_code == 2, said.output
+    assert said.stderr.startswith("the phases of a motion that is written as JSON must be at most")
+    assert not Path("a.json").exists()
+
+
 def test_a_damping_ratio_of_any_size_is_judged() -> None:
     Path("device.toml").write_text(template(whole=True), encoding="utf-8")
     one = ("--set", "damping_ratio=1e6", "--set", "array.columns=1", "--set", "array.rows=1")

@@ -96,6 +96,9 @@ SAMPLES: Final = Budget(
 MOTION_SAMPLES: Final = Budget(
     "the samples of the motion", 10_000_000, "100 bytes each, and 4 µs to write them as text"
 )
+MOTION_PHASES: Final = Budget(
+    "the phases of a motion that is written as JSON", 300_000, "4 kB each while it is made"
+)
 FRAMES: Final = Budget(
     "the frames of the film", 5000, "each is drawn in 0.05 s; a film may be less slowed"
 )

@@ -60,9 +60,13 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
     """Write what was simulated and every number that came out; null where one does not exist.
 
     An infinite one is the text "Infinity".
-    """
-    from pindrive import __version__
 
+    Raises:
+        ValueError: the motion has more phases than `pindrive.budgets` allow.
+    """
+    from pindrive import __version__, budgets
+
+    budgets.MOTION_PHASES.check(motion.segment_count)
     inputs, numbers = motion.inputs(), motion.numbers()
     certificate = motion.certificate()
     document = {
