@@ -51,8 +51,8 @@ template <class V>
 struct PlainNumbers {
   V peak_displacement, peak_time, trough_displacement, trough_time, swing;
   V return_velocity, return_velocity_time, first_reversal_time, settling_time;
-  V plate_reversals, plate_time_stuck, plate_distance_slid, plate_peak_force;
-  V finger_reversals, finger_time_stuck, finger_distance_slid, finger_peak_force;
+  V plate_reversals, plate_time_stuck, plate_distance_slid, plate_dissipated, plate_peak_force;
+  V finger_reversals, finger_time_stuck, finger_distance_slid, finger_dissipated, finger_peak_force;
   V duration, events;
 };
 
@@ -99,7 +99,6 @@ class Kernel {
 
   explicit Kernel(const PlainRelease<V>& r)
       : mirror_(with_sign(V(1.0), r.mouse_velocity)),
-        mass_(r.mass),
         stiffness_(r.stiffness),
         fp_(r.plate_kinetic),
         sp_(r.plate_static),
@@ -111,9 +110,12 @@ class Kernel {
         v_(r.velocity * mirror_) {
     const V zero(0.0);
     drag_ = r.damping * vp_;
-    omega0_squared_ = stiffness_ / mass_;
+    per_mass_ = V(1.0) / r.mass;
+    flexibility_ = V(1.0) / stiffness_;
+    omega0_squared_ = stiffness_ * per_mass_;
+    per_omega0_squared_ = r.mass * flexibility_;
     omega0_ = root(omega0_squared_);
-    alpha_ = V(-0.5) * r.damping / mass_;
+    alpha_ = V(-0.5) * r.damping * per_mass_;
     const V squared = (omega0_ + alpha_) * (omega0_ - alpha_);
     omega_ = root(larger(squared, zero));
     per_omega_ = V(1.0) / omega_;
@@ -123,10 +125,9 @@ class Kernel {
     const V angle = angle_of(omega_, V(0.0) - alpha_);
     to_extreme_ = angle * per_omega_;
     extreme_ = omega0_ * exponential(alpha_ * to_extreme_);
-    const V flexibility = V(1.0) / stiffness_;
-    between_ = (fp_ - ff_) * flexibility;
-    outside_ = (fp_ + ff_) * flexibility;
-    const V reach = absolute(x_) + (absolute(v_) + vp_) / omega0_;
+    between_ = (fp_ - ff_) * flexibility_;
+    outside_ = (fp_ + ff_) * flexibility_;
+    const V reach = absolute(x_) + (absolute(v_) + vp_) * per_omega_;
     size_ = stiffness_ * reach + fp_ + sp_ + ff_ + sf_ + drag_ + r.damping * absolute(v_);
     given_up_ = !((zero < vp_) & (zero < sp_) & (zero < sf_) &
                   (V(least_oscillation) * omega0_squared_ < squared));
@@ -170,10 +171,12 @@ class Kernel {
     n.plate_reversals = plate_reversals_;
     n.plate_time_stuck = plate_stuck_;
     n.plate_distance_slid = plate_slid_;
+    n.plate_dissipated = fp_ * plate_slid_;
     n.plate_peak_force = plate_peak_;
     n.finger_reversals = finger_reversals_;
     n.finger_time_stuck = finger_stuck_;
     n.finger_distance_slid = finger_slid_;
+    n.finger_dissipated = ff_ * finger_slid_;
     n.finger_peak_force = finger_peak_;
     n.duration = duration_;
     n.events = events_;
@@ -204,7 +207,7 @@ class Kernel {
     above_ = ((at_plate & (carrying < V(0.0) - sp_)) | faster) & !given_up_;
     falling_ = ((at_plate & (sp_ < carrying)) | between | backward) & !given_up_;
     centre_ = select(above_, V(0.0) - outside_, select(backward, outside_, between_));
-    acceleration_ = select(at_plate, (select(above_, V(0.0) - fp_, fp_) - carrying) / mass_,
+    acceleration_ = select(at_plate, (select(above_, V(0.0) - fp_, fp_) - carrying) * per_mass_,
                            V(2.0) * alpha_ * v_ - omega0_squared_ * (x_ - centre_));
     // Between the surfaces it may come up to the plate first.
     const Mask speeding = between & falling_ & (zero < acceleration_);
@@ -242,7 +245,7 @@ class Kernel {
     const Mask passes = on & !held & !given_up_;
     above_ = above_ | passes;
     centre_ = select(passes, V(0.0) - outside_, centre_);
-    acceleration_ = select(passes, (V(0.0) - fp_ - carrying) / mass_, acceleration_);
+    acceleration_ = select(passes, (V(0.0) - fp_ - carrying) * per_mass_, acceleration_);
     rising_ = Mask(false);
   }
 
@@ -263,14 +266,14 @@ class Kernel {
     reach_plate(on);
     const Mask held = carrying <= sp_;
     carried_ = carried_ | (on & held & !given_up_);
-    falls(on & !held & !given_up_, (fp_ - carrying) / mass_);
+    falls(on & !held & !given_up_, (fp_ - carrying) * per_mass_);
     above_ = Mask(false);
   }
 
   /// The plate carries it until the force is at its limit.
   void carry() {
     const Mask now = carried_;
-    const V release = (sp_ - drag_ - ff_) / stiffness_;
+    const V release = (sp_ - drag_ - ff_) * flexibility_;
     const V time = (release - x_) / vp_;
     const Mask stays = too_late(now, time);
     carried_late_ = carried_late_ | stays;
@@ -285,7 +288,7 @@ class Kernel {
     released_ = released_ | on;
     x_ = select(on, release, x_);
     t_ = select(on, t_ + time, t_);
-    falls(on & !given_up_, (fp_ - sp_) / mass_);
+    falls(on & !given_up_, (fp_ - sp_) * per_mass_);
     carried_ = Mask(false);
   }
 
@@ -399,7 +402,7 @@ class Kernel {
     const V cosine = side * omega_ * acceleration_;
     const V sine = side * (alpha_ * acceleration_ - omega0_squared_ * v_);
     const V angle = angle_of(cosine, V(0.0) - sine);
-    const V speed = root(cosine * cosine + sine * sine) / omega0_squared_;
+    const V speed = root(cosine * cosine + sine * sine) * per_omega0_squared_;
     return {angle, side * speed * exponential(V(0.0) - rho_ * angle)};
   }
 
@@ -411,7 +414,7 @@ class Kernel {
     const V side = with_sign(V(1.0), v_);
     const V sine = acceleration_ - alpha_ * v_, cosine = omega_ * v_;
     const V angle = angle_of(absolute(cosine), V(0.0) - side * sine);
-    const V distance = root(cosine * cosine + sine * sine) / omega0_squared_;
+    const V distance = root(cosine * cosine + sine * sine) * per_omega0_squared_;
     return {angle, side * distance * exponential(V(0.0) - rho_ * angle)};
   }
 
@@ -550,8 +553,8 @@ class Kernel {
   // ---- what is known of a drive --------------------------------------------------------------------
 
   V mirror_;  ///< ±1: the plate moves forward
-  V mass_, stiffness_, fp_, sp_, ff_, sf_, vp_, until_, drag_;
-  V omega0_squared_, omega0_, alpha_, omega_, per_omega_, rho_;
+  V per_mass_, stiffness_, flexibility_, fp_, sp_, ff_, sf_, vp_, until_, drag_;
+  V omega0_squared_, per_omega0_squared_, omega0_, alpha_, omega_, per_omega_, rho_;
   V half_, shrink_;         ///< time of a half turn, and by what it shrinks
   V to_extreme_, extreme_;  ///< time from rest to the largest velocity, and that of 1 m, 1/s
   V between_, outside_;     ///< centres c_B and c_C = −c_A, m

@@ -219,7 +219,7 @@ struct MaskedLanes : VectorLanes<8> {
   using Truth = __mmask8;
 
   static __m512d raw(Number a) { return (__m512d)a; }
-  static Number root(Number a) { return (Number)_mm512_sqrt_pd(raw(a)); }
+  static Number root(Number a) { return (Number)_mm512_maskz_sqrt_pd(0xff, raw(a)); }
   static Truth less(Number a, Number b) { return _mm512_cmp_pd_mask(raw(a), raw(b), _CMP_LT_OQ); }
   static Truth less_equal(Number a, Number b) {
     return _mm512_cmp_pd_mask(raw(a), raw(b), _CMP_LE_OQ);

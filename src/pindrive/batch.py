@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
@@ -9,11 +10,11 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.cores import worker_count
-from pindrive.quantities import QUANTITIES, refusal
+from pindrive.quantities import ENDING, ENERGY, FINAL, QUANTITIES, TRANSIENT, refusal
 from pindrive.quantity import POSITIVE_OR_RIGID, Bounds
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
@@ -57,6 +58,18 @@ _FLAGS: Final = {
     "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
 }
 
+# Variables that hold numbers, by the names of the table of quantities; the one that says yes or no.
+_SETTLED: Final = "transient_settled"
+_SETTLING_TIME: Final = "transient_settling_time"
+_USUAL: Final = {
+    name.replace(".", "_"): name
+    for name in (*(q.name for q in (*TRANSIENT, *ENDING)), "duration")
+    if name.replace(".", "_") != _SETTLED
+}
+_LEDGER: Final = {q.name.replace(".", "_"): q.name for q in ENERGY}
+_NUMBERS: Final = _USUAL | _LEDGER | {q.name.replace(".", "_"): q.name for q in FINAL}
+_OTHERS: Final = ("ending", "events", _SETTLED)
+
 
 def simulate_batch(
     *,
@@ -73,6 +86,7 @@ def simulate_batch(
     velocity: Values | None = None,
     duration: Values | None = None,
     energy: bool = False,
+    outputs: Sequence[str] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
@@ -96,7 +110,11 @@ def simulate_batch(
         displacement: x(0), m.
         velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
         duration: s, greater than 0; infinite or None: long enough to see each ending.
-        energy: the terms of the energy ledger too; a point then takes some ten times as long.
+        energy: the terms of the energy ledger too; a point then takes some fifty times as long.
+        outputs: the variables to compute and return, among them `final_position` and
+            `final_velocity`, the state at the end; None: all others, and with `energy` those of the
+            ledger. `status` is always there. The fewer, the faster: the state alone takes a third
+            of the time of all numbers.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
 
     Returns:
@@ -108,8 +126,8 @@ def simulate_batch(
         does not stop the others: its status says which argument is bad, and its numbers are NaN.
 
     Raises:
-        ValueError: an argument holds something else than numbers, shapes do not fit together, or
-            `threads` is no count.
+        ValueError: an argument holds something else than numbers, shapes do not fit together,
+            `threads` is no count, or `outputs` names what there is not.
     """
     import xarray as xr
 
@@ -117,6 +135,7 @@ def simulate_batch(
 
     given = {k: v for k, v in locals().items() if k in _ARGUMENTS and v is not None}
     workers = worker_count(threads)
+    wanted = _wanted(outputs, energy)
     sizes, arguments, coordinates = _shared_shape(given)
     shape = tuple(sizes.values())
 
@@ -125,19 +144,41 @@ def simulate_batch(
         aligned[name] = np.array(inf) if name in _INFINITE else aligned[_SAME_AS[name]]
     status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
-    table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
-    table["transient.settled"] = ~np.isnan(table["transient.settling_time"])
-
-    if np.isinf(aligned["duration"]).any():
+    unbounded = bool(np.isinf(aligned["duration"]).any())
+    if unbounded:
         arguments.pop("duration", None)  # what the column says instead: until the ending was seen
     else:
-        del table["duration"]
+        wanted = [name for name in wanted if name != "duration"]
+    computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
+    numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
+    table = _core.simulate_batch(spread, status.ravel(), workers, numbers, "events" in wanted)
+    if _SETTLED in wanted:
+        table[_SETTLED] = ~np.isnan(table[_NUMBERS[_SETTLING_TIME]])
+    columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
-        name.replace(".", "_"): (tuple(sizes), column.reshape(shape), _attributes(name))
-        for name, column in table.items()
+        name: (tuple(sizes), column.reshape(shape), _attributes(_NUMBERS.get(name, name)))
+        for name, column in columns.items()
     }
     return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+
+
+# ---- what is computed ----------------------------------------------------------------------------
+
+
+def _wanted(outputs: Sequence[str] | None, energy: bool) -> list[str]:
+    """The variables to return; `status` is always one."""
+    if outputs is None:
+        return [*_USUAL, *(_LEDGER if energy else ()), "status", *_OTHERS]
+    known = (*_NUMBERS, *_OTHERS, "status")
+    if isinstance(outputs, str):
+        raise ValueError(refusal("outputs", "a list of names", repr(outputs)))
+    for name in outputs:
+        if name not in known:
+            near = get_close_matches(str(name), known, 1)
+            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            raise ValueError(f"outputs: unknown variable {name!r}; {hint}")
+    return [*dict.fromkeys([*outputs, *(_LEDGER if energy else ()), "status"])]
 
 
 # ---- shapes --------------------------------------------------------------------------------------
@@ -256,6 +297,7 @@ def _attributes(name: str) -> dict[str, Any]:
             "flag_values": np.array([*meanings.values()], np.int8),
             "flag_meanings": " ".join(meanings),
         }
-    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[name]
+    named = "transient.settled" if name == _SETTLED else name
+    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]
     attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
     return attributes | ({"units": quantity.unit} if quantity.unit else {})
