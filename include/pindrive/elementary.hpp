@@ -63,22 +63,10 @@ struct Circular {
   V sine, cosine;
 };
 
-/// The sine and the cosine of |angle| <= largest_angle, rad; NaN beyond.
+/// Those of a number of quarters of a turn and the angle r + low, |r| <= π/4, that is left.
 template <class V>
-Circular<V> sine_and_cosine(const V& angle) {
+Circular<V> quarters_and_rest(const BitsOf<V>& quarters, const V& r, const V& low) {
   using Bits = BitsOf<V>;
-  constexpr double outside = __builtin_nan("");
-  const V x = select(absolute(angle) <= V(largest_angle), angle, V(outside));
-  const Nearest<V> turns(x * V(0x1.45f306dc9c883p-1));  // quarters of a turn, below 2^28
-  // π/2 in parts of 25 bits, whose products are exact; the differences with the first two are, too.
-  const V n = turns.value;
-  const V near = (x - n * V(0x1.921fb5p+0)) - n * V(0x1.110b46p-26);
-  const Sum<V> third = exact_sum(near, V(0.0) - n * V(0x1.1a6263p-54));
-  const Sum<V> fourth = exact_sum(third.value, V(0.0) - n * V(0x1.8a2e03p-81));
-  const V rest =
-      (third.rest + fourth.rest) - (n * V(0x1.c1cd12p-107) + n * V(0x1.2049c1114cf99p-132));
-  const V r = fourth.value + rest, low = (fourth.value - r) + rest;
-
   const V z = r * r;
   static constexpr double of_sine[] = {-0x1.555555555554cp-3,  0x1.111111110fc3bp-7,
                                        -0x1.a01a019c74e08p-13, 0x1.71de35c1d84fep-19,
@@ -92,12 +80,39 @@ Circular<V> sine_and_cosine(const V& angle) {
       whole + (((V(1.0) - whole) - half) + (z * z * polynomial(z, of_cosine) - r * low));
 
   // By the number of quarters they change places and signs.
-  const Bits odd = Bits(0) - (turns.low & Bits(1));
+  const Bits odd = Bits(0) - (quarters & Bits(1));
   const Bits exchanged = (bits(sine) ^ bits(cosine)) & odd;
-  const Bits of_sine_sign = (turns.low & Bits(2)) << 62;
-  const Bits of_cosine_sign = ((turns.low + Bits(1)) & Bits(2)) << 62;
+  const Bits of_sine_sign = (quarters & Bits(2)) << 62;
+  const Bits of_cosine_sign = ((quarters + Bits(1)) & Bits(2)) << 62;
   return {from_bits<V>((bits(sine) ^ exchanged) ^ of_sine_sign),
           from_bits<V>((bits(cosine) ^ exchanged) ^ of_cosine_sign)};
+}
+
+/// The sine and the cosine of |angle| <= largest_angle, rad; NaN beyond.
+template <class V>
+Circular<V> sine_and_cosine(const V& angle) {
+  constexpr double outside = __builtin_nan("");
+  const V x = select(absolute(angle) <= V(largest_angle), angle, V(outside));
+  const Nearest<V> turns(x * V(0x1.45f306dc9c883p-1));  // quarters of a turn, below 2^28
+  // π/2 in parts of 25 bits, whose products are exact; the differences with the first two are, too.
+  const V n = turns.value;
+  const V near = (x - n * V(0x1.921fb5p+0)) - n * V(0x1.110b46p-26);
+  const Sum<V> third = exact_sum(near, V(0.0) - n * V(0x1.1a6263p-54));
+  const Sum<V> fourth = exact_sum(third.value, V(0.0) - n * V(0x1.8a2e03p-81));
+  const V rest =
+      (third.rest + fourth.rest) - (n * V(0x1.c1cd12p-107) + n * V(0x1.2049c1114cf99p-132));
+  const V r = fourth.value + rest;
+  return quarters_and_rest(turns.low, r, (fourth.value - r) + rest);
+}
+
+/// The same of an angle within one turn, |angle| <= 2π, for less.
+template <class V>
+Circular<V> sine_and_cosine_in_turn(const V& angle) {
+  const Nearest<V> turns(angle * V(0x1.45f306dc9c883p-1));
+  // Of π/2 the first part has 50 bits: its products and the difference are exact.
+  const V near = angle - turns.value * V(0x1.921fb54442d18p+0);
+  const V rest = turns.value * V(0x1.1a62633145c07p-54), r = near - rest;
+  return quarters_and_rest(turns.low, r, (near - r) - rest);
 }
 
 // ---- exponentials ------------------------------------------------------------------------------
@@ -120,6 +135,13 @@ struct Exponent {
     change = rest + (V(0.5) * z + z * r * polynomial(r, of_rest));
   }
 };
+
+/// e^x for |x| <= 700, for less.
+template <class V>
+V exponential_in_range(const V& x) {
+  const Exponent<V> e(x);
+  return (V(1.0) + (e.r + e.change)) * e.n.power_of_two();
+}
 
 /// e^x for every x; subnormal, 0 and infinite where that is so.
 template <class V>

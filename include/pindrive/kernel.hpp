@@ -69,23 +69,27 @@ V angle_from_turn(const V& part, const V& rho) {
   V low = zero, high = pi;
   V angle = select((zero < arched) & (arched < V(3.0)), arched, V(1.5));
   Mask open = zero < lack;
-  // Halley's iteration, which triples the digits, or a bisection where it leaves the bracket.
+  // Householder's iteration of the third order, which has four times the digits after each step; or a
+  // bisection where it leaves the bracket.
   for (int i = 0; i < 60 && any(open); ++i) {
-    const Circular<V> turned = sine_and_cosine(angle);
-    const V decay = exponential(V(0.0) - rho * angle);
-    const V excess = decay * (turned.cosine + rho * turned.sine) - part;
+    const Circular<V> turned = sine_and_cosine_in_turn(angle);
+    const V decay = exponential_in_range(V(0.0) - rho * angle);
+    const V value = decay * (turned.cosine + rho * turned.sine), excess = value - part;
     const V slope = V(0.0) - scale * decay * turned.sine;
-    const V bend = V(0.0) - scale * decay * (turned.cosine - rho * turned.sine);
+    const V bend = V(-2.0) * rho * slope - scale * value;
+    const V change_of_bend = V(-2.0) * rho * bend - scale * slope;
     const Mask before = zero < excess;
     low = select(before, angle, low);
     high = select(before, high, angle);
-    const V step = V(2.0) * excess * slope / (V(2.0) * slope * slope - excess * bend);
-    const V tried = angle - step;
+    const V squared = slope * slope, product = excess * bend;
+    const V above = V(3.0) * excess * (V(2.0) * squared - product);
+    const V below = V(6.0) * slope * (squared - product) + excess * excess * change_of_bend;
+    const V tried = angle - above / below;
     const Mask inside = (low <= tried) & (tried <= high);
     const V next = select(inside, tried, V(0.5) * (low + high));
     const V change = absolute(next - angle);
     angle = select(open, next, angle);
-    open = open & !(change <= V(1e-6) * smaller(next, pi - next));
+    open = open & !(change <= V(1e-4) * smaller(next, pi - next));
   }
   return select(zero < lack, angle, zero);
 }
@@ -121,10 +125,10 @@ class Kernel {
     per_omega_ = V(1.0) / omega_;
     rho_ = V(0.0) - alpha_ * per_omega_;
     half_ = V(0x1.921fb54442d18p+1) * per_omega_;
-    shrink_ = exponential(alpha_ * half_);
+    shrink_ = exponential_in_range(alpha_ * half_);
     const V angle = angle_of(omega_, V(0.0) - alpha_);
     to_extreme_ = angle * per_omega_;
-    extreme_ = omega0_ * exponential(alpha_ * to_extreme_);
+    extreme_ = omega0_ * exponential_in_range(alpha_ * to_extreme_);
     between_ = (fp_ - ff_) * flexibility_;
     outside_ = (fp_ + ff_) * flexibility_;
     const V reach = absolute(x_) + (absolute(v_) + vp_) * per_omega_;
@@ -386,8 +390,8 @@ class Kernel {
   };
   /// So far on its turn about the centre.
   State after(const V& angle) const {
-    const Circular<V> turned = sine_and_cosine(angle);
-    const V decay = exponential(V(0.0) - rho_ * angle), y = x_ - centre_;
+    const Circular<V> turned = sine_and_cosine_in_turn(angle);
+    const V decay = exponential_in_range(V(0.0) - rho_ * angle), y = x_ - centre_;
     const V gain = decay * turned.sine * per_omega_;
     const V stay = decay * turned.cosine - alpha_ * gain;
     return {centre_ + (y * stay + v_ * gain),
@@ -403,7 +407,7 @@ class Kernel {
     const V sine = side * (alpha_ * acceleration_ - omega0_squared_ * v_);
     const V angle = angle_of(cosine, V(0.0) - sine);
     const V speed = root(cosine * cosine + sine * sine) * per_omega0_squared_;
-    return {angle, side * speed * exponential(V(0.0) - rho_ * angle)};
+    return {angle, side * speed * exponential_in_range(V(0.0) - rho_ * angle)};
   }
 
   struct Turn {
@@ -415,7 +419,7 @@ class Kernel {
     const V sine = acceleration_ - alpha_ * v_, cosine = omega_ * v_;
     const V angle = angle_of(absolute(cosine), V(0.0) - side * sine);
     const V distance = root(cosine * cosine + sine * sine) * per_omega0_squared_;
-    return {angle, side * distance * exponential(V(0.0) - rho_ * angle)};
+    return {angle, side * distance * exponential_in_range(V(0.0) - rho_ * angle)};
   }
 
   /// Down from the plate's velocity.

@@ -12,6 +12,9 @@ enum class Asked : int { state, numbers, settling };
 /// Releases and what became of them, one in each slot; columns as in PlainRelease, and these.
 struct KernelBlock {
   static constexpr int capacity = 256;
+  /// From a column to the next: not a power of two, which would put all columns in the same few sets
+  /// of the processor's cache.
+  static constexpr int stride = capacity + 8;
   static constexpr int inputs = 11;
   /// Those of PlainNumbers in their order, then four of the state.
   enum Column : int {
@@ -43,8 +46,8 @@ struct KernelBlock {
     columns
   };
 
-  double input[inputs][capacity];
-  double output[columns][capacity];
+  double input[inputs][stride];
+  double output[columns][stride];
   bool given_up[capacity];  ///< left to the general core
 };
 
@@ -92,7 +95,7 @@ __attribute__((
 #endif
 void follow_block(KernelBlock& block, int count, Asked asked, double band) {
   constexpr int width = Traits<V>::width;
-  const auto repeat_last = [&](double (*columns)[KernelBlock::capacity], int last, int until) {
+  const auto repeat_last = [&](double (*columns)[KernelBlock::stride], int last, int until) {
     for (int k = 0; k < KernelBlock::inputs; ++k)
       for (int i = last + 1; i < until; ++i) columns[k][i] = columns[k][last];
   };
@@ -101,7 +104,7 @@ void follow_block(KernelBlock& block, int count, Asked asked, double band) {
   bool put_off[width];
   repeat_last(block.input, count - 1, whole(count));
   for (int first = 0; first < count; first += width) {
-    follow_pack<V, false>(&block.input[0][first], &block.output[0][first], KernelBlock::capacity,
+    follow_pack<V, false>(&block.input[0][first], &block.output[0][first], KernelBlock::stride,
                           asked, band, &block.given_up[first], put_off);
     for (int i = 0; i < width && first + i < count; ++i)
       if (put_off[i]) later[number++] = first + i;

@@ -228,9 +228,9 @@ struct MaskedLanes : VectorLanes<8> {
   static Number choose(Truth t, Number a, Number b) {
     return (Number)_mm512_mask_blend_pd(t, raw(b), raw(a));
   }
-  static Truth both(Truth a, Truth b) { return static_cast<Truth>(a & b); }
-  static Truth either(Truth a, Truth b) { return static_cast<Truth>(a | b); }
-  static Truth opposite(Truth a) { return static_cast<Truth>(~a); }
+  static Truth both(Truth a, Truth b) { return _kand_mask8(a, b); }
+  static Truth either(Truth a, Truth b) { return _kor_mask8(a, b); }
+  static Truth opposite(Truth a) { return _knot_mask8(a); }
   static Truth truth(bool a) { return static_cast<Truth>(a ? 0xff : 0); }
   static bool any(Truth a) { return a != 0; }
   static bool at(Truth a, int i) { return ((a >> i) & 1) != 0; }

@@ -68,7 +68,7 @@ using Point = std::array<double, input_count>;
 /// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
 /// array may stand still.
 void points(const Inputs& inputs, std::size_t first, std::size_t count,
-            double (*columns)[Block::capacity]) {
+            double (*columns)[Block::stride]) {
   const std::size_t axes = inputs[0].ndim();
   const std::size_t along = axes == 0 ? 1 : inputs[0].shape(axes - 1);
   for (std::size_t done = 0; done < count;) {
@@ -282,7 +282,7 @@ class Batch {
  private:
   /// What a thread works with.
   struct Space {
-    double given[input_count][Block::capacity];
+    double given[input_count][Block::stride];
     Block block;
     std::vector<pd::Segment<double>> segments;
   };

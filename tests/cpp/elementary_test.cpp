@@ -41,8 +41,14 @@ V function(int which, const V& a, const V& b) {
       return pd::logarithm(a);
     case 5:
       return pd::logarithm_of_1_plus(a);
-    default:
+    case 6:
       return pd::angle_of(a, b);
+    case 7:
+      return pd::sine_and_cosine_in_turn(a).sine;
+    case 8:
+      return pd::sine_and_cosine_in_turn(a).cosine;
+    default:
+      return pd::exponential_in_range(a);
   }
 }
 Long exact(int which, double a, double b) {
@@ -59,13 +65,32 @@ Long exact(int which, double a, double b) {
       return EXACT(log)(Long(a));
     case 5:
       return EXACT(log1p)(Long(a));
-    default:
+    case 6:
       return EXACT(atan2)(Long(a), Long(b));
+    case 7:
+      return EXACT(sin)(Long(a));
+    case 8:
+      return EXACT(cos)(Long(a));
+    default:
+      return EXACT(exp)(Long(a));
   }
 }
-constexpr const char* names[] = {
-    "sine",    "cosine", "exponential", "exponential_minus_1", "logarithm", "logarithm_of_1_plus",
-    "angle_of"};
+constexpr const char* names[] = {"sine",
+                                 "cosine",
+                                 "exponential",
+                                 "exponential_minus_1",
+                                 "logarithm",
+                                 "logarithm_of_1_plus",
+                                 "angle_of",
+                                 "sine in a turn",
+                                 "cosine in a turn",
+                                 "exponential in range"};
+/// The range of those that have one.
+bool outside(int which, double a, double b) {
+  if (which == 6) return !(std::abs(a) < 0x1p1022 && std::abs(b) < 0x1p1022);
+  if (which == 9) return !(std::abs(a) <= 700);
+  return which > 6 && !(std::abs(a) <= 6.283185307179586);
+}
 
 /// An argument of a function: small, large, near what is hard for it.
 double drawn(int which, std::mt19937_64& random) {
@@ -93,6 +118,12 @@ double drawn(int which, std::mt19937_64& random) {
       if (kind < 0.3) return uniform(-1, 2);
       if (kind < 0.8) return sign * std::exp2(uniform(-1000, -1));
       return std::exp2(uniform(-60, 1024));
+    case 7:
+    case 8:
+      return kind < 0.9 ? uniform(-6.2831853, 6.2831853)
+                        : std::round(uniform(-4, 4)) * 1.5707963267948966;
+    case 9:
+      return kind < 0.5 ? uniform(-30, 1) : uniform(-700, 700);
     default:
       return kind < 0.5 ? uniform(-1, 1) : sign * std::exp2(uniform(-1000, 1000));
   }
@@ -138,7 +169,7 @@ int main(int argc, char** argv) {
   const std::vector<double> edges{0.0,     -0.0,   1.0,     -1.0,   inf,   -inf,  nan,  5e-324,
                                   -5e-324, 1e-308, -745.13, 709.78, 709.8, -800., 800., 1e300};
   bool good = true;
-  for (int which = 0; which < 7; ++which) {
+  for (int which = 0; which < 10; ++which) {
     std::mt19937_64 random(12);
     std::vector<double> a(edges), b(edges.size(), 1.0);
     while (a.size() < count) {
@@ -151,11 +182,10 @@ int main(int argc, char** argv) {
     double worst = 0, at = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       alone[i] = function(which, a[i], b[i]);
-      const bool outside = which < 2 && !(std::abs(a[i]) <= pd::largest_angle);
-      const bool infinite = which == 6 && !(std::abs(a[i]) < 0x1p1022 && std::abs(b[i]) < 0x1p1022);
-      if (infinite) continue;
+      if (outside(which, a[i], b[i])) continue;
+      const bool none = which < 2 && !(std::abs(a[i]) <= pd::largest_angle);
       const double error =
-          outside ? (std::isnan(alone[i]) ? 0 : INFINITY) : off(alone[i], exact(which, a[i], b[i]));
+          none ? (std::isnan(alone[i]) ? 0 : INFINITY) : off(alone[i], exact(which, a[i], b[i]));
       if (!(error <= worst)) worst = error, at = a[i];
     }
     good = good && worst <= 2;

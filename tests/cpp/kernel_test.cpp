@@ -116,7 +116,7 @@ Answers by_kernel(const Releases& releases, bool again) {
     const auto state = kernel.run(again ? V(std::nan("")) : rest, V(pd::settling_band));
     const auto numbers = kernel.numbers();
     const V* from = &numbers.peak_displacement;
-    for (int j = 0; j < 19; ++j) pk::store(from[j], &all.of[j][i]);
+    for (int j = 0; j < 21; ++j) pk::store(from[j], &all.of[j][i]);
     pk::store(again ? last.position : state.position, &all.of[19][i]);
     pk::store(again ? last.velocity : state.velocity, &all.of[20][i]);
     pk::store(again ? last.time : state.time, &all.of[21][i]);
