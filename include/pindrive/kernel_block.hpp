@@ -111,6 +111,7 @@ void follow_block(KernelBlock& block, int count, Asked asked, double band) {
   }
   double input[KernelBlock::inputs][width], output[KernelBlock::columns][width];
   bool given_up[width];
+  const int from = asked == Asked::state ? KernelBlock::rest_position : 0;
   for (int first = 0; first < number; first += width) {
     const int size = number - first < width ? number - first : width;
     for (int i = 0; i < width; ++i)
@@ -120,7 +121,7 @@ void follow_block(KernelBlock& block, int count, Asked asked, double band) {
     for (int i = 0; i < size; ++i) {
       const int slot = later[first + i];
       block.given_up[slot] = given_up[i];
-      for (int k = 0; k < KernelBlock::columns; ++k) block.output[k][slot] = output[k][i];
+      for (int k = from; k < KernelBlock::columns; ++k) block.output[k][slot] = output[k][i];
     }
   }
 }

@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <future>
@@ -62,7 +64,8 @@ enum : std::size_t {
 };
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
-using Statuses = nb::ndarray<const std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+/// Closed bounds of the arguments, then of the natural frequency and of the damping ratio.
+using Bounds = std::array<std::pair<double, double>, input_count + 2>;
 using Point = std::array<double, input_count>;
 
 /// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
@@ -89,6 +92,36 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
     }
     done += run;
   }
+}
+
+constexpr std::int8_t first_bad = static_cast<std::int8_t>(pd::Status::standstill) + 1;
+
+/// 0, or the flag of the first bound that a point breaks: those of its arguments, a static friction
+/// below the kinetic one, and those of what they make together, whose quotients may overflow.
+void judge(const double (*given)[Block::stride], std::size_t count, const Bounds& bounds,
+           std::int8_t* status) {
+  std::fill_n(status, count, std::int8_t{0});
+  const auto mark = [&](std::size_t flag, auto&& good) {
+    bool all = true;
+    for (std::size_t i = 0; i < count; ++i) all = all & good(i);
+    if (all) return;
+    for (std::size_t i = 0; i < count; ++i)
+      if (status[i] == 0 && !good(i)) status[i] = static_cast<std::int8_t>(first_bad + flag);
+  };
+  const auto within = [&](double value, std::size_t k) {
+    return (bounds[k].first <= value) & (value <= bounds[k].second);
+  };
+  for (std::size_t k = 0; k < input_count; ++k)
+    mark(k, [&, column = given[k]](std::size_t i) { return within(column[i], k); });
+  for (const auto k : {plate_static, finger_static})
+    mark(k, [&](std::size_t i) { return given[k][i] >= given[k - 1][i]; });
+  mark(input_count, [&](std::size_t i) {
+    return within(std::sqrt(given[stiffness][i] / given[mass][i]), input_count);
+  });
+  mark(input_count + 1, [&](std::size_t i) {
+    const double critical = 2 * std::sqrt(given[mass][i]) * std::sqrt(given[stiffness][i]);
+    return within(given[damping][i] / critical, input_count + 1);
+  });
 }
 
 pd::Drive<double> drive_of(const Point& p) {
@@ -223,11 +256,12 @@ class Column {
 
 class Batch {
  public:
-  /// A point whose status is not 0 is bad: it is left out, and marked.
-  Batch(const Inputs& inputs, const Statuses& given, const std::vector<std::string>& outputs,
+  /// A point that breaks a bound is left out, and marked.
+  Batch(const Inputs& inputs, const Bounds& bounds, const std::vector<std::string>& outputs,
         bool events, const pe::KernelFunctions& kernel)
       : inputs_(inputs),
-        given_(given),
+        bounds_(bounds),
+        size_(size_of(inputs)),
         names_(outputs),
         rows_(outputs.begin(), outputs.end()),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
@@ -244,7 +278,7 @@ class Batch {
     }
   }
 
-  std::size_t size() const { return given_.size(); }
+  std::size_t size() const { return size_; }
 
   /// Works all points off with so many threads, of which the caller's is one. `look` is called by
   /// the caller's now and then; when it returns false all of them stop.
@@ -283,9 +317,16 @@ class Batch {
   /// What a thread works with.
   struct Space {
     double given[input_count][Block::stride];
+    std::int8_t status[Block::capacity];
     Block block;
     std::vector<pd::Segment<double>> segments;
   };
+
+  static std::size_t size_of(const Inputs& inputs) {
+    std::size_t size = 1;
+    for (std::size_t axis = 0; axis < inputs[0].ndim(); ++axis) size *= inputs[0].shape(axis);
+    return size;
+  }
 
   template <class Watch>
   void work(Watch&& watch) {
@@ -296,12 +337,13 @@ class Batch {
       if (first >= size() || stopped_) return;
       const std::size_t count = std::min(share, size() - first);
       points(inputs_, first, count, space->given);
+      judge(space->given, count, bounds_, space->status);
       by_kernel(first, count, *space);
       followed += count;
       for (std::size_t i = 0; i < count; ++i) {
         if (stopped_) return;
-        if (given_.data()[first + i] != 0) {
-          leave_out(first + i);
+        if (space->status[i] != 0) {
+          leave_out(first + i, space->status[i]);
           continue;
         }
         // The kernel knows rigid fingers alone.
@@ -354,8 +396,8 @@ class Batch {
       events_[first + i] = static_cast<std::int32_t>(block.output[Block::events][i]);
   }
 
-  void leave_out(std::size_t i) {
-    status_[i] = given_.data()[i];
+  void leave_out(std::size_t i, std::int8_t status) {
+    status_[i] = status;
     ending_[i] = -1;
     if (events_.size() > 0) events_[i] = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k)
@@ -391,7 +433,8 @@ class Batch {
   }
 
   const Inputs& inputs_;
-  const Statuses& given_;
+  const Bounds& bounds_;
+  std::size_t size_;
   const std::vector<std::string>& names_;
   std::vector<Row> rows_;
   pd::detail::Asked asked_;
@@ -411,9 +454,9 @@ const pe::KernelFunctions& kernel_for(int width) {
   return *found;
 }
 
-nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads,
+nb::dict simulate_batch(const Inputs& inputs, const Bounds& bounds, std::size_t threads,
                         const std::vector<std::string>& outputs, bool events, int width) {
-  Batch batch(inputs, status, outputs, events, kernel_for(width));
+  Batch batch(inputs, bounds, outputs, events, kernel_for(width));
   bool interrupted = false;
   {
     const nb::gil_scoped_release unlocked;
@@ -450,12 +493,15 @@ void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
   m.def(
-      "simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "outputs"_a,
+      "simulate_batch", &simulate_batch, "inputs"_a, "bounds"_a, "threads"_a, "outputs"_a,
       "events"_a, "width"_a = 0,
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
-      "static and stiffness, mouse velocity, displacement, velocity, duration). A point whose "
-      "status is not 0 is left out: its numbers are NaN. The column of events is there if asked "
+      "static and stiffness, mouse velocity, displacement, velocity, duration). A point that "
+      "breaks one of the closed bounds, of the arguments in this order and of natural frequency "
+      "and "
+      "damping ratio, is left out: its status says which, its numbers are NaN. The column of "
+      "events is there if asked "
       "for; `general` says how many points the general core followed. The kernel works in packs of "
       "`width`; 0: the widest.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");

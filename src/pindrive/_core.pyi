@@ -97,9 +97,9 @@ def differentiate(numbers: tuple[float, float, float, tuple[float, float, float,
     The derivatives of a motion along a direction; both as the arguments of simulate.
     """
 
-def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int, outputs: Sequence[str], events: bool, width: int = 0) -> dict:
+def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], bounds: Sequence[tuple[float, float]], threads: int, outputs: Sequence[str], events: bool, width: int = 0) -> dict:
     """
-    Columns of the numbers named in outputs, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration). A point whose status is not 0 is left out: its numbers are NaN. The column of events is there if asked for; `general` says how many points the general core followed. The kernel works in packs of `width`; 0: the widest.
+    Columns of the numbers named in outputs, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration). A point that breaks one of the closed bounds, of the arguments in this order and of natural frequency and damping ratio, is left out: its status says which, its numbers are NaN. The column of events is there if asked for; `general` says how many points the general core followed. The kernel works in packs of `width`; 0: the widest.
     """
 
 def kernel_widths() -> list[int]:

@@ -49,6 +49,22 @@ _SAME_AS: Final = {
 }
 _INFINITE: Final = ("finger_stiffness", "duration")
 
+
+def _closed(bounds: Bounds) -> tuple[float, float]:
+    """The smallest and the largest value that the bounds hold."""
+    lower, upper = bounds.lower, bounds.upper
+    return (
+        lower if bounds.lower_closed else float(np.nextafter(lower, inf)),
+        upper if bounds.upper_closed else float(np.nextafter(upper, -inf)),
+    )
+
+
+# Of the arguments, and of two quotients of them that may overflow though each is in range.
+_BOUNDS: Final = [
+    *(_closed(POSITIVE_OR_RIGID if k in _INFINITE else q.bounds) for k, q in _ARGUMENTS.items()),
+    *(_closed(QUANTITIES[name].bounds) for name in ("natural_frequency", "damping_ratio")),
+]
+
 # In the order of `Status` and `End` in model.hpp.
 _FAILURES: Final = ("too_many_events", "standstill")
 _ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
@@ -142,7 +158,6 @@ def simulate_batch(
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
     for name in _ARGUMENTS.keys() - given.keys():
         aligned[name] = np.array(inf) if name in _INFINITE else aligned[_SAME_AS[name]]
-    status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
     unbounded = bool(np.isinf(aligned["duration"]).any())
     if unbounded:
@@ -151,7 +166,7 @@ def simulate_batch(
         wanted = [name for name in wanted if name != "duration"]
     computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
-    table = _core.simulate_batch(spread, status.ravel(), workers, numbers, "events" in wanted)
+    table = _core.simulate_batch(spread, _BOUNDS, workers, numbers, "events" in wanted)
     if _SETTLED in wanted:
         table[_SETTLED] = ~np.isnan(table[_NUMBERS[_SETTLING_TIME]])
     columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
@@ -254,36 +269,7 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
         raise ValueError(refusal(name, required, repr(values))) from None
 
 
-# ---- bad points, and what the numbers mean -------------------------------------------------------
-
-
-def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDArray[np.int8]:
-    """0, or the flag of the first argument that is bad, at every point."""
-    status = np.zeros(shape, np.int8)
-
-    def mark(name: str, bad: NDArray[np.bool_]) -> None:
-        if bad.any():
-            status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
-
-    for name, quantity in _ARGUMENTS.items():
-        bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
-        mark(name, ~_within(bounds, a[name]))
-    for contact in ("plate", "finger"):
-        mark(f"{contact}_static", a[f"{contact}_static"] < a[f"{contact}_kinetic"])
-    # Each in range, yet their quotient may overflow: no closed form could be computed then.
-    with np.errstate(all="ignore"):
-        frequency = np.sqrt(a["stiffness"] / a["mass"])
-        ratio = a["damping"] / (2.0 * np.sqrt(a["mass"]) * np.sqrt(a["stiffness"]))
-    for name, values in (("natural_frequency", frequency), ("damping_ratio", ratio)):
-        mark(name, ~_within(QUANTITIES[name].bounds, values))
-    return status
-
-
-def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the values the bounds hold; NaN is never one."""
-    above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
-    below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
-    return above & below
+# ---- what the numbers mean -----------------------------------------------------------------------
 
 
 def _attributes(name: str) -> dict[str, Any]:
