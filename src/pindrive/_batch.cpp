@@ -481,10 +481,11 @@ std::vector<int> kernel_widths() {
 
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-nb::object elementary(int which, const Numbers& a, const Numbers& b, int width) {
+nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, const Numbers& a,
+                                                                     const Numbers& b, int width) {
   Column<double> found(a.size());
   if (a.size() > 0) kernel_for(width).elementary(which, a.data(), b.data(), &found[0], a.size());
-  return nb::cast(found.array());
+  return found.array();
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(devic
 def kernel_widths() -> list[int]:
     """The widths of the kernel that this processor runs."""
 
-def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], b: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], width: int) -> object:
+def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], b: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], width: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """
     Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or the angle of the points (b, a), by the kernel of a width.
     """

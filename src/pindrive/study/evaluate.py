@@ -11,7 +11,7 @@ import numpy as np
 from pindrive.batch import simulate_batch
 from pindrive.drive import Contact, Drive, Profile
 from pindrive.motion import Motion, simulate
-from pindrive.study.outputs import LEDGER, MEASURED
+from pindrive.study.outputs import MEASURED
 from pindrive.study.plan import variable
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ def evaluate(
         inputs["plate_kinetic"] = inputs["plate_kinetic"] * inputs["plate_load"]
         given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
         given["mass"] = np.broadcast_to(given["mass"], (count,))
-        energy = not set(LEDGER).isdisjoint(outputs)
-        found = simulate_batch(**given, energy=energy, threads=threads)
+        found = simulate_batch(**given, outputs=outputs, threads=threads)
         table = {name: found[name].values for name in outputs}
     return {name: table[name] for name in outputs}
 
