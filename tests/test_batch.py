@@ -95,9 +95,8 @@ def meaning(flag: xr.DataArray) -> str:
 
 
 def assert_same(point: xr.Dataset, motion: Motion) -> None:
-    """Plain releases go through the kernel, which rounds in another order than the core: an event
-    that comes about almost tangentially keeps half of its digits (kernel_test.cpp is stricter).
-    """
+    # Plain releases go through the kernel, which rounds in another order than the core: an event
+    # that comes about almost tangentially keeps half of its digits (kernel_test.cpp is stricter).
     numbers = motion.numbers()
     assert {k: point[v].item() for k, v in NUMBERS.items()} == pytest.approx(
         {k: numbers[k] for k in NUMBERS}, rel=1e-9, abs=1e-15, nan_ok=True

@@ -1,5 +1,7 @@
-"""The kernel by itself: the same bits in every width, what is asked for and no more, and the elementary
-functions against thirty digits. How it stands beside the general core is shown by kernel_test.cpp.
+"""The kernel by itself: the same bits in every width, and what is asked for and no more.
+
+And the elementary functions against thirty digits. How the kernel stands beside the general core is
+shown by tests/cpp/kernel_test.cpp.
 """
 
 from __future__ import annotations
@@ -139,7 +141,7 @@ def test_the_last_state_is_that_of_the_motion() -> None:
         assert found.final_velocity[i] == pytest.approx(motion.velocity(end), rel=0, abs=1e-13)
 
 
-# ---- the elementary functions ----------------------------------------------------------------------
+# ---- the elementary functions ---------------------------------------------------------------------
 
 Exact = Callable[[Any, Any], Any]
 FUNCTIONS: list[tuple[str, Exact]] = [
