@@ -2,9 +2,10 @@
 
 Both are timed twice: keeping nothing but the last state, and with numbers: all that
 `simulate_batch` gives, and what the stepper (racing/moreau_jean.py) can measure of them on the way.
-Its error is the largest |x - x_exact| over its steps, as a part of the release displacement. A table
-follows of the kernel in packs of every width that the processor has, with the share of drives that it
-left to the general core. Where build/cpp/core is built, the general core is timed alone.
+Its error is the largest |x - x_exact| over its steps, as a part of the release displacement.
+
+A table follows of the kernel in packs of every width that the processor has, with the share of
+drives that it left to the general core. Where build/cpp/core is built, that core is timed alone.
 """
 
 from __future__ import annotations

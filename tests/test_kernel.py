@@ -141,7 +141,7 @@ def test_the_last_state_is_that_of_the_motion() -> None:
         assert found.final_velocity[i] == pytest.approx(motion.velocity(end), rel=0, abs=1e-13)
 
 
-# ---- the elementary functions ---------------------------------------------------------------------
+# ---- the elementary functions --------------------------------------------------------------------
 
 Exact = Callable[[Any, Any], Any]
 FUNCTIONS: list[tuple[str, Exact]] = [

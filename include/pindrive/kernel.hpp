@@ -492,11 +492,17 @@ class Kernel {
     const V when = most.angle * per_omega_;
     consider(which & (V(0.0) < when) & (when < time), t_ + when, most.velocity);
   }
+  /// Which are outside the settling band. Without damping, turning points may lie on its edge.
+  Mask outside_band(const Mask& which) {
+    const V beyond = absolute(x_ - rest_) - width_;
+    give_up(which & (absolute(beyond) <= V(near_tie) * size_ * flexibility_));
+    return which & (V(0.0) < beyond);
+  }
   /// What is carried to a position in a time.
   void carries(const Mask& which, const V& position, const V& time) {
     const V zero(0.0);
     consider(which, t_, vp_);
-    const Mask away = which & (width_ < absolute(x_ - rest_));
+    const Mask away = outside_band(which);
     linear_ = linear_ | away;
     settle_time_ = select(away, t_, settle_time_);
     settle_from_ = select(away, x_, settle_from_);
@@ -512,7 +518,7 @@ class Kernel {
   /// be the one that enters the band for good.
   void settles(const Mask& which, const V& turn_time, const V& distance, const V& side) {
     const V off = x_ - rest_;
-    const Mask away = which & (width_ < absolute(off));
+    const Mask away = outside_band(which);
     if (!any(away)) return;
     linear_ = linear_ & !away;
     settle_time_ = select(away, turn_time, settle_time_);
@@ -525,7 +531,7 @@ class Kernel {
 
   /// The same of one that ends before the turn.
   void settles_before_turn(const Mask& which) {
-    if (!any(which & (width_ < absolute(x_ - rest_)))) return;
+    if (!any(outside_band(which))) return;
     const Turn turn = next_turn();
     settles(which, t_ + turn.angle * per_omega_, turn.distance, V(-1.0));
   }
