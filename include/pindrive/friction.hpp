@@ -1,19 +1,47 @@
-/// Which mode follows: stick, slip or cross, at one contact or at two that share a level; and the
-/// forces of a mode.
+/// The law of friction: what a contact may do next, the force it carries, how the pin sets out in a
+/// mode and whether that mode lasts.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 
 namespace pindrive {
 
-/// The inputs from an instant on: the plate's velocity and the factor on its friction.
+/// The pin and the inputs at an instant.
 template <class T>
-struct Instant {
-  Line<T> plate_velocity, load;
+struct State {
+  T x, v;
+  T skin{0};                       ///< force in an elastic stick, N
+  Line<T> plate_velocity, load{};  ///< of the inputs from here on
+};
+
+/// Which end of a branch of its friction curve a sliding speed is at.
+enum class Bound : signed char { none, lower, upper };
+
+/// What a contact may do next, and where it starts exactly: a sliding speed at an end of its branch,
+/// an elastic stick at its stick limit (`upper`).
+struct Option {
+  Slide slide{Slide::absent};
+  int region{0};
+  Bound at{Bound::none};
+};
+
+struct Options {
+  std::array<Option, 3> list;
+  int count;
+  const Option* begin() const { return list.data(); }
+  const Option* end() const { return list.data() + count; }
+};
+
+/// A mode that may follow.
+struct Candidate {
+  Option plate, finger;
+  Mode mode() const { return {plate.slide, finger.slide, plate.region, finger.region}; }
 };
 
 /// m x'' + c x' + κ (x − x₀) = pull: what acts on a pin that sets out from x₀.
@@ -21,13 +49,16 @@ template <class T>
 struct Equation {
   T damping, stiffness;
   Line<T> pull;
-  T size;  ///< of all that the pull is the sum of, N
+};
 
-  /// What the pull and the damping at a velocity leave, less than this, is rounding, N.
-  T blur(T velocity) const {
-    using std::abs;
-    return 4 * std::numeric_limits<T>::epsilon() * (size + abs(damping * velocity));
-  }
+/// How the pin sets out in a candidate.
+template <class T>
+struct Start {
+  bool consistent{true};     ///< no guard becomes negative at once
+  T acceleration{0};         ///< m/s²
+  bool tangential{false};    ///< along with a surface, or with a breakpoint of its curve
+  Path<T> stick_force{};     ///< what the stuck contacts carry together, N
+  std::array<Path<T>, 2> left{};  ///< what they could carry beyond it, to either side, N
 };
 
 /// Set-valued friction of a pin between the plate (surface velocity v_p) and the finger (surface
@@ -37,17 +68,15 @@ class Friction {
  public:
   explicit Friction(const Drive<T, Surface>& drive) : drive_(drive) {}
 
-  /// The motion of a pin at x whose sliding and gripping contacts act on it.
-  Equation<T> equation(const Mode& mode, const Instant<T>& now, T x, T skin_force) const {
-    using std::abs;
-    const T inertia = drive_.mass * now.plate_velocity.rate, spring = drive_.stiffness * x;
-    Equation<T> sum{
-        drive_.damping, drive_.stiffness, {inertia - spring, T(0)}, abs(inertia) + abs(spring)};
-    add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, now.plate_velocity, now.load);
+  /// The motion of a pin on which the sliding and gripping contacts of a mode act.
+  Equation<T> equation(const Mode& mode, const State<T>& s) const {
+    Equation<T> sum{drive_.damping,
+                    drive_.stiffness,
+                    {drive_.mass * s.plate_velocity.rate - drive_.stiffness * s.x, T(0)}};
+    add_sliding(sum, drive_.plate, mode.plate, mode.plate_region, s.plate_velocity, s.load);
     if (!Surface::plain && mode.finger == Slide::gripping) {
       sum.stiffness += drive_.finger.stiffness;
-      sum.pull.value -= skin_force;
-      sum.size += abs(skin_force);
+      sum.pull.value -= s.skin;
     } else {
       add_sliding(sum, drive_.finger, mode.finger, mode.finger_region, {}, {T(1), T(0)});
     }
@@ -62,151 +91,264 @@ class Friction {
   }
 
   /// The velocity of the surface that a stuck pin moves with, m/s.
-  Line<T> level(const Mode& stuck, const Instant<T>& now) const {
-    return stuck.plate == Slide::stuck ? now.plate_velocity : Line<T>{};
-  }
-
-  /// The largest force that the stuck contacts can carry together, N.
-  Line<T> capacity(const Mode& stuck, const Instant<T>& now) const {
-    Line<T> sum{};
-    if (stuck.plate == Slide::stuck)
-      sum = {drive_.plate.static_limit * now.load.value, drive_.plate.static_limit * now.load.rate};
-    if (stuck.finger == Slide::stuck) sum.value += drive_.finger.static_limit;
-    return sum;
-  }
-
-  /// The force that the stuck contacts must carry along a flow, N.
-  Path<T> needed(const Equation<T>& equation, const Flow<T>& flow) const {
-    Path<T> moved = flow.position;
-    moved.start = T(0);
-    const Path<T> pull = equation.pull;
-    return drive_.mass * flow.acceleration() + equation.damping * flow.velocity +
-           equation.stiffness * moved + T(-1) * pull;
-  }
-  /// The same at the start of a mode, with the velocity and acceleration of a level, N.
-  T needed(const Equation<T>& equation, Line<T> level) const {
-    return drive_.mass * level.rate + equation.damping * level.value - equation.pull.value;
+  Line<T> level(const Mode& stuck, const State<T>& s) const {
+    return stuck.plate == Slide::stuck ? s.plate_velocity : Line<T>{};
   }
 
   /// Friction of the plate on the pin along the flow of a mode, N; of two stuck contacts the sum.
-  Path<T> plate_force(const Mode& mode, const Instant<T>& now, const Equation<T>& equation,
+  Path<T> plate_force(const Mode& mode, const State<T>& s, const Start<T>& start,
                       const Flow<T>& flow) const {
-    if (mode.plate == Slide::stuck) return needed(equation, flow);
+    if (mode.plate == Slide::stuck) return start.stick_force;
     return sliding_force(drive_.plate, mode.plate, mode.plate_region, flow.velocity,
-                         now.plate_velocity, now.load);
+                         s.plate_velocity, s.load);
   }
   /// Friction of the finger, N, beside it.
-  Path<T> finger_force(const Mode& mode, const Equation<T>& equation, const Flow<T>& flow,
-                       T skin_force) const {
-    if (mode.finger == Slide::stuck && mode.plate != Slide::stuck) return needed(equation, flow);
+  Path<T> finger_force(const Mode& mode, const State<T>& s, const Start<T>& start,
+                       const Flow<T>& flow) const {
+    if (mode.finger == Slide::stuck && mode.plate != Slide::stuck) return start.stick_force;
     if (Surface::plain || mode.finger != Slide::gripping)
       return sliding_force(drive_.finger, mode.finger, mode.finger_region, flow.velocity, {},
                            {T(1), T(0)});
     Path<T> force = -drive_.finger.stiffness * flow.position;
-    force.start = -skin_force;
+    force.start = -s.skin;
     return force;
   }
 
-  /// Mode of a pin that starts at x, v, with or without a stretched skin.
-  Mode starting(const Instant<T>& now, T x, T v, T skin_force, bool grips) const {
-    Mode mode{touch(drive_.plate, v - now.plate_velocity.value), touch(drive_.finger, v)};
-    if (drive_.finger.present() && !drive_.finger.rigid() && (grips || v == 0))
-      mode.finger = Slide::gripping;
-    sort_regions(mode, v, now);
-    return mode.stuck() ? holding(mode, mode, now, x, skin_force) : mode;
-  }
-
-  /// Mode of a pin that, sliding, has brought one rigid contact to its level at x. It came with a
-  /// force that pushed it there, so it sticks or crosses; it cannot turn back. What is as large as
-  /// the capacity to rounding holds: the mode that holds asks where it goes from there.
-  Mode arriving(const Mode& stuck, int side, const Instant<T>& now, T x, T skin_force) const {
-    return overload(stuck, now, x, skin_force) == side ? released(stuck, -side) : stuck;
-  }
-
-  /// Mode of a pin at rest against the surface of every contact marked stuck, of which those of
-  /// `before` held it until now: it stays where it can, or goes where the force takes it.
-  Mode holding(const Mode& stuck, const Mode& before, const Instant<T>& now, T x,
-               T skin_force) const {
-    const T w = now.plate_velocity.rate;
-    if (!stuck.both_stuck() || w == 0) {
-      const int side = overload(stuck, now, x, skin_force);
-      return side == 0 ? stuck : released(stuck, -side);
+  /// What a contact may do from here, the preferred first: to stick, else to go on as it does. `at`
+  /// is the end of its branch that its speed has just reached; another speed that is not inside its
+  /// branch is at the end of it.
+  Options options(const Surface& contact, Slide slide, int region, T u, T skin, Bound at) const {
+    if (slide == Slide::absent) return {{Option{slide}}, 1};
+    if (slides(slide)) {
+      const Region<T> range = contact.region(region);
+      const T speed = along(slide, u);
+      if (at == Bound::none)
+        at = speed >= range.to ? Bound::upper : speed > range.from ? Bound::none : Bound::lower;
+      if (at == Bound::none) return {{Option{slide, region}}, 1};
+      if (at == Bound::upper)
+        return {{Option{slide, region, at}, {slide, region + 1, Bound::lower}}, 2};
+      if (region > 0) return {{Option{slide, region, at}, {slide, region - 1, Bound::upper}}, 2};
+      slide = contact.rigid() ? Slide::stuck : Slide::gripping;  // with the force that it has
     }
-    // The surfaces part: with the plate, with the finger, or with neither.
-    const int parting = w > 0 ? 1 : -1;
-    Mode with_plate = stuck, with_finger = stuck;
-    with_plate.finger = static_cast<Slide>(parting);
-    with_finger.plate = static_cast<Slide>(-parting);
-    const bool plate_first = before.plate == Slide::stuck || before.finger != Slide::stuck;
-    for (const Mode& mode :
-         {plate_first ? with_plate : with_finger, plate_first ? with_finger : with_plate})
-      if (overload(mode, now, x, skin_force) == 0) return mode;
-    // Neither holds: the pin is thrown ahead of both or behind both, or slides between them.
-    const auto acceleration = [&](const Mode& mode) {
-      return -needed(equation(mode, now, x, skin_force), Line<T>{}) / drive_.mass;
+    if (!Surface::plain && slide == Slide::gripping) {
+      const int side = skin > 0 ? 1 : -1;
+      if (side * skin < contact.static_limit || side * u < 0) return {{Option{slide}}, 1};
+      return {{Option{slide, 0, Bound::upper},
+               {static_cast<Slide>(side), 0, u == 0 ? Bound::lower : Bound::none}},
+              2};
+    }
+    return {{Option{Slide::stuck},
+             {Slide::forward, 0, Bound::lower},
+             {Slide::backward, 0, Bound::lower}},
+            3};
+  }
+
+  /// Forces at this instant that differ by less are one, N: the rounding of what they are sums of,
+  /// with a position that is itself a sum of changes up to x_size.
+  T roundoff(const Candidate& any, const State<T>& s, T x_size) const {
+    using std::abs;
+    const auto of = [&](const Surface& contact, const Option& option, Line<T> surface) -> T {
+      if (option.slide == Slide::absent) return T(0);
+      T sum = contact.static_limit;
+      if (slides(option.slide) && contact.regions > 0)
+        sum += abs(sliding(contact, option, s.v - surface.value)) +
+               abs(contact.region(option.region).slope) * (abs(s.v) + abs(surface.value));
+      return sum;
     };
-    const Mode ahead = released(stuck, 1), behind = released(stuck, -1);
-    if (acceleration(ahead) > std::max(w, T(0))) return ahead;
-    if (acceleration(behind) < std::min(w, T(0))) return behind;
-    with_plate.plate = static_cast<Slide>(-parting);
-    return with_plate;
+    return rounding<T> *
+           (drive_.stiffness * x_size + abs(drive_.damping * s.v) +
+            2 * abs(drive_.mass * s.plate_velocity.rate) +
+            of(drive_.plate, any.plate, s.plate_velocity) * s.load.value +
+            of(drive_.finger, any.finger, {}));
   }
 
-  /// The mode in which the stuck contacts slide to the given side. What slides already stays in its
-  /// region.
-  Mode released(Mode stuck, int side) const {
-    const auto slide = static_cast<Slide>(side);
-    if (stuck.plate == Slide::stuck) {
-      stuck.plate = slide;
-      stuck.plate_region = 0;
-    }
-    if (stuck.finger == Slide::stuck) {
-      stuck.finger = slide;
-      stuck.finger_region = 0;
-    }
-    return stuck;
-  }
-
-  /// Puts each sliding contact in the region of its curve that its speed lies in.
-  void sort_regions(Mode& mode, T v, const Instant<T>& now) const {
-    mode.plate_region =
-        slides(mode.plate)
-            ? drive_.plate.region_of(sign(mode.plate) * (v - now.plate_velocity.value))
-            : 0;
-    mode.finger_region = slides(mode.finger) ? drive_.finger.region_of(sign(mode.finger) * v) : 0;
+  /// How the pin sets out in a candidate, and whether the candidate lasts: each of its guards that
+  /// is zero has a first derivative that is not zero and is positive. `limit` is the side on which a
+  /// stick force of the mode before has just come to its limit, 0 if none has.
+  Start<T> start(const Candidate& next, const Mode& before, int limit, const State<T>& s,
+                 T bound) const {
+    const Side plate{drive_.plate, next.plate, s.plate_velocity, s.load};
+    const Side finger{drive_.finger, next.finger, {}, {T(1), T(0)}};
+    if (limit != 0 && !(even(before.plate, plate, limit) && even(before.finger, finger, limit)))
+      limit = 0;
+    if (plate.stuck() || finger.stuck())
+      return plate.stuck() ? holding(plate, finger, limit, s, bound)
+                           : holding(finger, plate, limit, s, bound);
+    return setting_out(plate, finger, before, limit, s, bound);
   }
 
  private:
-  /// The sign of the force that the stuck contacts cannot carry; 0 if they can.
-  int overload(const Mode& stuck, const Instant<T>& now, T x, T skin_force) const {
-    using std::abs;
-    const Equation<T> sum = equation(stuck, now, x, skin_force);
-    const Line<T> held = level(stuck, now);
-    const T force = needed(sum, held), inertia = drive_.mass * held.rate;
-    const T blur = sum.blur(held.value) + 4 * std::numeric_limits<T>::epsilon() * abs(inertia);
-    return abs(force) <= capacity(stuck, now).value + blur ? 0 : force > 0 ? 1 : -1;
+  /// A contact in a candidate, with its surface and its load.
+  struct Side {
+    const Surface& contact;
+    Option option;
+    Line<T> surface, load;
+
+    bool stuck() const { return option.slide == Slide::stuck; }
+    bool grips() const { return !Surface::plain && option.slide == Slide::gripping; }
+    /// Whether nothing but accelerations tells where it goes.
+    bool level(T v) const { return option.at != Bound::none && (!grips() || v == 0); }
+  };
+
+  /// Whether a force that the contact carried until now goes on without a jump.
+  static bool even(Slide before, const Side& side, int limit) {
+    const Slide after = side.option.slide;
+    if (before == after) return true;
+    const bool same = side.contact.kinetic == side.contact.static_limit;
+    if (before == Slide::stuck) return same && sign(after) == -limit;
+    return same && before == Slide::gripping;
   }
 
-  static Slide touch(const Surface& contact, T u) {
-    if (!contact.present()) return Slide::absent;
-    return u > 0 ? Slide::forward : u < 0 ? Slide::backward : Slide::stuck;
+  /// Friction at a sliding speed, or at the end of the branch where it is: there it is one number,
+  /// whichever branch follows.
+  static T sliding(const Surface& contact, const Option& option, T u) {
+    if (option.at == Bound::none) return contact.region(option.region).at(along(option.slide, u));
+    return contact.region(option.region + (option.at == Bound::upper ? 1 : 0)).force;
+  }
+
+  /// The force of a contact that is not stuck, N, …
+  static T force(const Side& side, const State<T>& s) {
+    if (side.grips()) return -s.skin;
+    if (!slides(side.option.slide)) return T(0);
+    const T u = s.v - side.surface.value;
+    return -along(side.option.slide, sliding(side.contact, side.option, u)) * side.load.value;
+  }
+  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not
+  /// come together.
+  static T force_rate(const Side& side, const State<T>& s, T acceleration) {
+    if (side.grips()) return -side.contact.stiffness * s.v;
+    if (!slides(side.option.slide)) return T(0);
+    const Region<T> region = side.contact.region(side.option.region);
+    if (region.slope != 0)
+      return -region.slope * side.load.value * (acceleration - side.surface.rate);
+    return -along(side.option.slide, region.force) * side.load.rate;
+  }
+
+  struct Demand {
+    Path<T> force;
+    T rate_size;  ///< of the terms of its rate, N/s
+  };
+  /// The force that would keep the pin on the surface of a contact, beside what the other does.
+  Demand demand(const Side& on, const Side& other, const State<T>& s) const {
+    using std::abs;
+    const T a = on.surface.rate, inertia = drive_.mass * (s.plate_velocity.rate - a);
+    const T spring = drive_.stiffness * s.v, damper = drive_.damping * a;
+    const T rate = force_rate(other, s, a);
+    const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
+    return {{drive_.stiffness * s.x + drive_.damping * s.v - inertia - force(other, s), T(0), T(0),
+             spring + damper - rate, stiffness * a},
+            abs(spring) + abs(damper) + abs(rate)};
+  }
+
+  /// A contact, or both where the other sticks too, keeps the pin on its surface.
+  Start<T> holding(const Side& on, const Side& other, int limit, const State<T>& s, T bound) const {
+    using std::abs;
+    const T apart = on.surface.rate - other.surface.rate;
+    Start<T> start;
+    start.acceleration = on.surface.rate;
+    start.consistent = other.stuck() ? apart == 0 : goes_inside(other, s, apart, T(0), T(0));
+    if (!start.consistent) return start;
+    const Demand needed = demand(on, other, s);
+    start.stick_force = needed.force;
+    Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
+    if (other.stuck()) {
+      most.value += other.contact.static_limit * other.load.value;
+      most.rate += other.contact.static_limit * other.load.rate;
+    }
+    for (const int side : {1, -1}) {
+      Path<T> left = Path<T>(most) + T(-side) * needed.force;
+      if (abs(left.start) <= bound || side == limit) {
+        left.start = T(0);
+        if (abs(left.drift) <= rounding<T> * (needed.rate_size + abs(most.rate)) ||
+            touches(left.drift, left.curvature, bound))
+          left.drift = T(0);
+      }
+      const T first = left.start != 0 ? left.start : left.drift != 0 ? left.drift : left.curvature;
+      start.consistent = start.consistent && first >= 0;
+      start.left[side > 0 ? 0 : 1] = left;
+    }
+    return start;
+  }
+
+  /// No contact is stuck. A relative acceleration that is zero is exactly zero.
+  Start<T> setting_out(const Side& plate, const Side& finger, const Mode& before, int limit,
+                       const State<T>& s, T bound) const {
+    using std::abs;
+    Start<T> start;
+    const bool at_plate = plate.level(s.v), at_finger = finger.level(s.v);
+    Demand by_plate, by_finger;
+    T at_plate_force{0}, at_finger_force{0};  // relative accelerations, times mass
+    if (at_plate) {
+      by_plate = demand(plate, finger, s);
+      at_plate_force = force(plate, s) - by_plate.force.start;
+      start.tangential = abs(at_plate_force) <= bound || (limit != 0 && before.plate == Slide::stuck);
+      start.acceleration = plate.surface.rate;
+    }
+    if (at_finger && !start.tangential) {
+      by_finger = demand(finger, plate, s);
+      at_finger_force = force(finger, s) - by_finger.force.start;
+      start.tangential =
+          abs(at_finger_force) <= bound || (limit != 0 && before.finger == Slide::stuck);
+      start.acceleration = finger.surface.rate;
+    }
+    if (!start.tangential)
+      start.acceleration = (drive_.mass * s.plate_velocity.rate - drive_.stiffness * s.x -
+                            drive_.damping * s.v + force(plate, s) + force(finger, s)) /
+                           drive_.mass;
+    const auto leaves = [&](const Side& side, const Side& other, T relative_force) {
+      if (!start.tangential) return goes_inside(side, s, relative_force, T(0), T(0));
+      const T apart = start.acceleration - side.surface.rate;
+      if (apart != 0) return goes_inside(side, s, apart, T(0), T(0));
+      const Demand needed = demand(side, other, s);
+      const T own = force_rate(side, s, start.acceleration);
+      T jerk = own - needed.force.drift;
+      if (abs(jerk) <= rounding<T> * (needed.rate_size + abs(own))) jerk = T(0);
+      return goes_inside(side, s, T(0), jerk, -needed.force.curvature);
+    };
+    if (at_plate) start.consistent = leaves(plate, finger, at_plate_force);
+    if (at_finger)
+      start.consistent = start.consistent && leaves(finger, plate, at_finger_force);
+    else if (finger.option.at != Bound::none)
+      start.consistent =
+          start.consistent && goes_inside(finger, s, start.acceleration, T(0), T(0));
+    return start;
+  }
+
+  /// Whether what starts at an end of its range goes, or stays, inside, by the first derivative of
+  /// its relative velocity that is not zero. Without any it stays; but it would not slide.
+  bool goes_inside(const Side& side, const State<T>& s, T first, T second, T third) const {
+    const Option option = side.option;
+    if (option.at == Bound::none) return true;
+    const T decides = first != 0 ? first : second != 0 ? second : third;
+    if (!side.grips()) {
+      const int inside = option.at == Bound::lower ? sign(option.slide) : -sign(option.slide);
+      return inside * decides > 0 ||
+             (decides == 0 && (option.at == Bound::upper || option.region > 0));
+    }
+    const int inside = s.skin > 0 ? -1 : 1;
+    const T stiffness = side.contact.stiffness;
+    if (s.v == 0) return inside * decides >= 0;
+    return inside * s.v > 0 || touches(stiffness * inside * s.v, stiffness * inside * decides,
+                                       rounding<T> * side.contact.static_limit);
+  }
+
+  /// Whether a guard at its zero dips below it by no more than its roundoff.
+  static bool touches(T rate, T curvature, T bound) {
+    return rate < 0 && rate * rate <= 2 * curvature * bound;
   }
 
   /// R = −s (F + c (s u − from)) λ with u = x' − surface, brought to the other side where it acts
-  /// on x'. A slope and a changing load do not come together.
+  /// on x'.
   static void add_sliding(Equation<T>& sum, const Surface& contact, Slide slide, int index,
                           Line<T> surface, Line<T> load) {
     if (!slides(slide)) return;
     const Region<T> region = contact.region(index);
     const T force = along(slide, region.force - region.slope * region.from);
-    using std::abs;
-    sum.size += abs(force * load.value);
     sum.pull.value -= force * load.value;
     sum.pull.rate -= force * load.rate;
     if (region.slope == 0) return;
     const T drag = region.slope * load.value;
     sum.damping += drag;
-    sum.size += abs(drag * surface.value);
     sum.pull.value += drag * surface.value;
     sum.pull.rate += drag * surface.rate;
   }

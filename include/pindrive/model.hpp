@@ -6,14 +6,12 @@
 #include <limits>
 
 #include "pindrive/flow.hpp"
+#include "pindrive/limits.hpp"
 
 namespace pindrive {
 
-/// Every limit that is not physics, named once.
-inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
-inline constexpr int standstill_limit = 100;   ///< events at one instant after which it is given up
-inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
-inline constexpr double recurrence = 1e-14;    ///< how closely a state returns in a cycle, relative
+/// Default band of the settling time, as a part of |x(0) − x_end|.
+inline constexpr double settling_band = 0.05;
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
@@ -218,7 +216,7 @@ enum class End : signed char {
   limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
 };
 
-enum class Status : signed char { ok, too_many_events, standstill };
+enum class Status : signed char { ok, too_many_events, standstill, inconsistent };
 
 template <class T>
 struct Outcome {

@@ -43,6 +43,7 @@ struct Verdict {
   pd::Certificate<double> certificate;
   pd::Status status{};
   std::size_t segments{};
+  std::size_t instants{};  ///< segments of zero length
 
   bool good() const { return status == pd::Status::ok && certificate.worst() <= largest_residual; }
 };
@@ -67,7 +68,9 @@ inline Verdict judge(const Case& c, bool measured, std::vector<pd::Segment<doubl
   const auto outcome = pd::simulate(
       drive, inputs, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
   const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
-  Verdict verdict{{}, outcome.status, segments.size()};
+  const auto instants = std::count_if(
+      segments.begin(), segments.end(), [](const auto& s) { return !(s.end > s.begin); });
+  Verdict verdict{{}, outcome.status, segments.size(), static_cast<std::size_t>(instants)};
   if (outcome.status != pd::Status::ok) return verdict;
   pd::Certificate<double>& certificate = verdict.certificate;
   certificate = pd::Certifier<double>(motion, c.duration).certify();
