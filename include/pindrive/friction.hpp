@@ -51,14 +51,13 @@ struct Equation {
   Line<T> pull;
 };
 
-/// How the pin sets out in a candidate.
+/// How the pin sets out in a mode.
 template <class T>
 struct Start {
-  bool consistent{true};     ///< no guard becomes negative at once
-  T acceleration{0};         ///< m/s²
-  bool tangential{false};    ///< along with a surface, or with a breakpoint of its curve
-  Path<T> stick_force{};     ///< what the stuck contacts carry together, N
-  std::array<Path<T>, 2> left{};  ///< what they could carry beyond it, to either side, N
+  T acceleration{0};        ///< m/s²
+  bool tangential{false};   ///< it is that of a surface
+  Path<T> stick_force{};    ///< what the stuck contacts carry together, N …
+  std::array<Path<T>, 2> left{};  ///< … and could carry beyond it: forward, backward
 };
 
 /// Set-valued friction of a pin between the plate (surface velocity v_p) and the finger (surface
@@ -119,6 +118,7 @@ class Friction {
   /// branch is at the end of it.
   Options options(const Surface& contact, Slide slide, int region, T u, T skin, Bound at) const {
     if (slide == Slide::absent) return {{Option{slide}}, 1};
+    const Slide ahead = slide == Slide::forward ? Slide::backward : Slide::forward;  // it crosses
     if (slides(slide)) {
       const Region<T> range = contact.region(region);
       const T speed = along(slide, u);
@@ -137,10 +137,7 @@ class Friction {
                {static_cast<Slide>(side), 0, u == 0 ? Bound::lower : Bound::none}},
               2};
     }
-    return {{Option{Slide::stuck},
-             {Slide::forward, 0, Bound::lower},
-             {Slide::backward, 0, Bound::lower}},
-            3};
+    return {{Option{Slide::stuck}, {ahead, 0, Bound::lower}, {opposite(ahead), 0, Bound::lower}}, 3};
   }
 
   /// Forces at this instant that differ by less are one, N: the rounding of what they are sums of,
@@ -162,19 +159,18 @@ class Friction {
             of(drive_.finger, any.finger, {}));
   }
 
-  /// How the pin sets out in a candidate, and whether the candidate lasts: each of its guards that
-  /// is zero has a first derivative that is not zero and is positive. `limit` is the side on which a
-  /// stick force of the mode before has just come to its limit, 0 if none has.
-  Start<T> start(const Candidate& next, const Mode& before, int limit, const State<T>& s,
-                 T bound) const {
+  /// Whether a candidate is consistent: each of its guards that is zero has a first derivative that
+  /// is not zero and is positive. If so, `start` says how the pin sets out. `limit` is the side on
+  /// which a stick force of the mode before has just come to its limit, 0 if none has.
+  bool consistent(const Candidate& next, const Mode& before, int limit, const State<T>& s, T bound,
+                  Start<T>& start) const {
     const Side plate{drive_.plate, next.plate, s.plate_velocity, s.load};
     const Side finger{drive_.finger, next.finger, {}, {T(1), T(0)}};
     if (limit != 0 && !(even(before.plate, plate, limit) && even(before.finger, finger, limit)))
       limit = 0;
-    if (plate.stuck() || finger.stuck())
-      return plate.stuck() ? holding(plate, finger, limit, s, bound)
-                           : holding(finger, plate, limit, s, bound);
-    return setting_out(plate, finger, before, limit, s, bound);
+    if (plate.stuck()) return holds(plate, finger, limit, s, bound, start);
+    if (finger.stuck()) return holds(finger, plate, limit, s, bound, start);
+    return sets_out(plate, finger, before, limit, s, bound, start);
   }
 
  private:
@@ -224,94 +220,87 @@ class Friction {
     return -along(side.option.slide, region.force) * side.load.rate;
   }
 
-  struct Demand {
-    Path<T> force;
-    T rate_size;  ///< of the terms of its rate, N/s
+  /// The force that would keep the pin on the surface of a contact, beside what the other does, N.
+  T demand(const Side& on, const Side& other, const State<T>& s) const {
+    const T inertia = drive_.mass * (s.plate_velocity.rate - on.surface.rate);
+    return drive_.stiffness * s.x + drive_.damping * s.v - inertia - force(other, s);
+  }
+  struct Rates {
+    T rate, size, curvature;  ///< N/s, the same of the terms of the rate, N/s²
   };
-  /// The force that would keep the pin on the surface of a contact, beside what the other does.
-  Demand demand(const Side& on, const Side& other, const State<T>& s) const {
+  /// How it changes.
+  Rates demand_rates(const Side& on, const Side& other, const State<T>& s) const {
     using std::abs;
-    const T a = on.surface.rate, inertia = drive_.mass * (s.plate_velocity.rate - a);
-    const T spring = drive_.stiffness * s.v, damper = drive_.damping * a;
+    const T a = on.surface.rate, spring = drive_.stiffness * s.v, damper = drive_.damping * a;
     const T rate = force_rate(other, s, a);
     const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
-    return {{drive_.stiffness * s.x + drive_.damping * s.v - inertia - force(other, s), T(0), T(0),
-             spring + damper - rate, stiffness * a},
-            abs(spring) + abs(damper) + abs(rate)};
+    return {spring + damper - rate, abs(spring) + abs(damper) + abs(rate), stiffness * a};
   }
 
-  /// A contact, or both where the other sticks too, keeps the pin on its surface.
-  Start<T> holding(const Side& on, const Side& other, int limit, const State<T>& s, T bound) const {
+  /// A contact, and the other where it sticks too, keeps the pin on its surface.
+  bool holds(const Side& on, const Side& other, int limit, const State<T>& s, T bound,
+             Start<T>& start) const {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
-    Start<T> start;
-    start.acceleration = on.surface.rate;
-    start.consistent = other.stuck() ? apart == 0 : goes_inside(other, s, apart, T(0), T(0));
-    if (!start.consistent) return start;
-    const Demand needed = demand(on, other, s);
-    start.stick_force = needed.force;
+    if (other.stuck() ? apart != 0 : !goes_inside(other, s, apart, T(0), T(0))) return false;
     Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
     if (other.stuck()) {
       most.value += other.contact.static_limit * other.load.value;
       most.rate += other.contact.static_limit * other.load.rate;
     }
+    const T force = demand(on, other, s);
+    const T nearest = force < 0 ? most.value + force : most.value - force;
+    if (nearest < -bound && (force < 0 ? -1 : 1) != limit) return false;
+    const Rates rates = demand_rates(on, other, s);
+    start.acceleration = on.surface.rate;
+    start.tangential = false;
+    start.stick_force = {force, T(0), T(0), rates.rate, rates.curvature};
     for (const int side : {1, -1}) {
-      Path<T> left = Path<T>(most) + T(-side) * needed.force;
-      if (abs(left.start) <= bound || side == limit) {
-        left.start = T(0);
-        if (abs(left.drift) <= rounding<T> * (needed.rate_size + abs(most.rate)) ||
-            touches(left.drift, left.curvature, bound))
-          left.drift = T(0);
-      }
-      const T first = left.start != 0 ? left.start : left.drift != 0 ? left.drift : left.curvature;
-      start.consistent = start.consistent && first >= 0;
-      start.left[side > 0 ? 0 : 1] = left;
+      Path<T>& left = start.left[side > 0 ? 0 : 1];
+      left = {most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
+              -side * rates.curvature};
+      if (left.start > bound && side != limit) continue;
+      left.start = T(0);
+      if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
+          touches(left.drift, left.curvature, bound))
+        left.drift = T(0);
+      if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
     }
-    return start;
+    return true;
   }
 
-  /// No contact is stuck. A relative acceleration that is zero is exactly zero.
-  Start<T> setting_out(const Side& plate, const Side& finger, const Mode& before, int limit,
-                       const State<T>& s, T bound) const {
+  /// No contact sticks. A relative acceleration that is zero is exactly zero: the pin sets out along
+  /// with the surface.
+  bool sets_out(const Side& plate, const Side& finger, const Mode& before, int limit,
+                const State<T>& s, T bound, Start<T>& start) const {
     using std::abs;
-    Start<T> start;
-    const bool at_plate = plate.level(s.v), at_finger = finger.level(s.v);
-    Demand by_plate, by_finger;
-    T at_plate_force{0}, at_finger_force{0};  // relative accelerations, times mass
-    if (at_plate) {
-      by_plate = demand(plate, finger, s);
-      at_plate_force = force(plate, s) - by_plate.force.start;
-      start.tangential = abs(at_plate_force) <= bound || (limit != 0 && before.plate == Slide::stuck);
-      start.acceleration = plate.surface.rate;
-    }
-    if (at_finger && !start.tangential) {
-      by_finger = demand(finger, plate, s);
-      at_finger_force = force(finger, s) - by_finger.force.start;
-      start.tangential =
-          abs(at_finger_force) <= bound || (limit != 0 && before.finger == Slide::stuck);
-      start.acceleration = finger.surface.rate;
-    }
-    if (!start.tangential)
-      start.acceleration = (drive_.mass * s.plate_velocity.rate - drive_.stiffness * s.x -
-                            drive_.damping * s.v + force(plate, s) + force(finger, s)) /
-                           drive_.mass;
-    const auto leaves = [&](const Side& side, const Side& other, T relative_force) {
-      if (!start.tangential) return goes_inside(side, s, relative_force, T(0), T(0));
+    const T on_plate = force(plate, s), on_finger = force(finger, s);
+    start.acceleration = (drive_.mass * s.plate_velocity.rate - drive_.stiffness * s.x -
+                          drive_.damping * s.v + on_plate + on_finger) /
+                         drive_.mass;
+    start.tangential = false;
+    T over_plate{0}, over_finger{0};  // relative accelerations, times the mass
+    const auto meets = [&](const Side& side, const Side& other, T own, Slide was, T& over) {
+      if (!side.level(s.v)) return;
+      over = own - demand(side, other, s);
+      if (start.tangential) return;
+      start.tangential = abs(over) <= bound || (limit != 0 && was == Slide::stuck);
+      if (start.tangential) start.acceleration = side.surface.rate;
+    };
+    meets(plate, finger, on_plate, before.plate, over_plate);
+    meets(finger, plate, on_finger, before.finger, over_finger);
+    const auto leaves = [&](const Side& side, const Side& other, T over) {
+      if (side.option.at == Bound::none) return true;
+      if (!side.level(s.v)) return goes_inside(side, s, start.acceleration, T(0), T(0));
+      if (!start.tangential) return goes_inside(side, s, over, T(0), T(0));
       const T apart = start.acceleration - side.surface.rate;
       if (apart != 0) return goes_inside(side, s, apart, T(0), T(0));
-      const Demand needed = demand(side, other, s);
-      const T own = force_rate(side, s, start.acceleration);
-      T jerk = own - needed.force.drift;
-      if (abs(jerk) <= rounding<T> * (needed.rate_size + abs(own))) jerk = T(0);
-      return goes_inside(side, s, T(0), jerk, -needed.force.curvature);
+      const Rates rates = demand_rates(side, other, s);
+      const T own = force_rate(side, s, start.acceleration), jerk = own - rates.rate;
+      const bool none = abs(jerk) <= rounding<T> * (rates.size + abs(own));
+      return goes_inside(side, s, T(0), none ? T(0) : jerk, -rates.curvature);
     };
-    if (at_plate) start.consistent = leaves(plate, finger, at_plate_force);
-    if (at_finger)
-      start.consistent = start.consistent && leaves(finger, plate, at_finger_force);
-    else if (finger.option.at != Bound::none)
-      start.consistent =
-          start.consistent && goes_inside(finger, s, start.acceleration, T(0), T(0));
-    return start;
+    return leaves(plate, finger, over_plate) && leaves(finger, plate, over_finger);
   }
 
   /// Whether what starts at an end of its range goes, or stays, inside, by the first derivative of

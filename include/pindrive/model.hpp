@@ -158,6 +158,7 @@ enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent =
 
 inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
 inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
+inline Slide opposite(Slide slide) { return static_cast<Slide>(-sign(slide)); }
 /// A value in the direction of sliding.
 template <class T>
 T along(Slide slide, T value) {

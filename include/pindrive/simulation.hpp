@@ -45,7 +45,7 @@ class Simulation {
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
     for (long long events = 0; events < event_limit; ++events) {
-      if (!start_.consistent) {
+      if (!consistent_) {
         outcome_.status = Status::inconsistent;
         return outcome_;
       }
@@ -114,9 +114,9 @@ class Simulation {
         for (const Option& second : finger_first ? plate : finger) {
           if ((first.slide == Slide::stuck || second.slide == Slide::stuck) != stuck) continue;
           next_ = finger_first ? Candidate{second, first} : Candidate{first, second};
-          start_ = friction_.start(next_, before, reached_.limit, state_, bound);
-          if (start_.consistent) return;
+          if (friction_.consistent(next_, before, reached_.limit, state_, bound, start_)) return;
         }
+    consistent_ = false;
   }
 
   // ---- one mode ----------------------------------------------------------------------------------
@@ -193,12 +193,14 @@ class Simulation {
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
   }
 
-  /// Whether another guard runs below this one, at a constant distance.
+  /// Whether another guard runs below this one, at a constant distance beyond rounding.
   bool hidden(const Guard& guard) const {
+    using std::abs;
     const Path<T>& p = guard.path;
+    const T farther = p.start - rounding<T> * (p.start + abs(state_.v));
     for (int i = 0; i < guards_count_; ++i) {
       const Path<T>& q = guards_[i].path;
-      if (q.start < p.start && q.value == p.value && q.slope == p.slope && q.drift == p.drift &&
+      if (q.start < farther && q.value == p.value && q.slope == p.slope && q.drift == p.drift &&
           q.curvature == p.curvature)
         return true;
     }
@@ -317,6 +319,7 @@ class Simulation {
   } reached_;
   Candidate next_;
   Start<T> start_;
+  bool consistent_{true};
   std::array<Guard, 6> guards_;
   int guards_count_{0};
 
