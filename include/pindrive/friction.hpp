@@ -113,219 +113,7 @@ class Friction {
     return force;
   }
 
-  /// What a contact may do from here, the preferred first: to stick, else to go on as it does. `at`
-  /// is the end of its branch that its speed has just reached; another speed that is not inside its
-  /// branch is at the end of it.
-  Options options(const Surface& contact, Slide slide, int region, T u, T skin, Bound at) const {
-    if (slide == Slide::absent) return {{Option{slide}}, 1};
-    const Slide ahead = slide == Slide::forward ? Slide::backward : Slide::forward;  // it crosses
-    if (slides(slide)) {
-      const Region<T> range = contact.region(region);
-      const T speed = along(slide, u);
-      if (at == Bound::none)
-        at = speed >= range.to ? Bound::upper : speed > range.from ? Bound::none : Bound::lower;
-      if (at == Bound::none) return {{Option{slide, region}}, 1};
-      if (at == Bound::upper)
-        return {{Option{slide, region, at}, {slide, region + 1, Bound::lower}}, 2};
-      if (region > 0) return {{Option{slide, region, at}, {slide, region - 1, Bound::upper}}, 2};
-      slide = contact.rigid() ? Slide::stuck : Slide::gripping;  // with the force that it has
-    }
-    if (!Surface::plain && slide == Slide::gripping) {
-      const int side = skin > 0 ? 1 : -1;
-      if (side * skin < contact.static_limit || side * u < 0) return {{Option{slide}}, 1};
-      return {{Option{slide, 0, Bound::upper},
-               {static_cast<Slide>(side), 0, u == 0 ? Bound::lower : Bound::none}},
-              2};
-    }
-    return {{Option{Slide::stuck}, {ahead, 0, Bound::lower}, {opposite(ahead), 0, Bound::lower}}, 3};
-  }
-
-  /// Forces at this instant that differ by less are one, N: the rounding of what they are sums of,
-  /// with a position that is itself a sum of changes up to x_size.
-  T roundoff(const Candidate& any, const State<T>& s, T x_size) const {
-    using std::abs;
-    const auto of = [&](const Surface& contact, const Option& option, Line<T> surface) -> T {
-      if (option.slide == Slide::absent) return T(0);
-      T sum = contact.static_limit;
-      if (slides(option.slide) && contact.regions > 0)
-        sum += abs(sliding(contact, option, s.v - surface.value)) +
-               abs(contact.region(option.region).slope) * (abs(s.v) + abs(surface.value));
-      return sum;
-    };
-    return rounding<T> *
-           (drive_.stiffness * x_size + abs(drive_.damping * s.v) +
-            2 * abs(drive_.mass * s.plate_velocity.rate) +
-            of(drive_.plate, any.plate, s.plate_velocity) * s.load.value +
-            of(drive_.finger, any.finger, {}));
-  }
-
-  /// Whether a candidate is consistent: each of its guards that is zero has a first derivative that
-  /// is not zero and is positive. If so, `start` says how the pin sets out. `limit` is the side on
-  /// which a stick force of the mode before has just come to its limit, 0 if none has.
-  bool consistent(const Candidate& next, const Mode& before, int limit, const State<T>& s, T bound,
-                  Start<T>& start) const {
-    const Side plate{drive_.plate, next.plate, s.plate_velocity, s.load};
-    const Side finger{drive_.finger, next.finger, {}, {T(1), T(0)}};
-    if (limit != 0 && !(even(before.plate, plate, limit) && even(before.finger, finger, limit)))
-      limit = 0;
-    if (plate.stuck()) return holds(plate, finger, limit, s, bound, start);
-    if (finger.stuck()) return holds(finger, plate, limit, s, bound, start);
-    return sets_out(plate, finger, before, limit, s, bound, start);
-  }
-
  private:
-  /// A contact in a candidate, with its surface and its load.
-  struct Side {
-    const Surface& contact;
-    Option option;
-    Line<T> surface, load;
-
-    bool stuck() const { return option.slide == Slide::stuck; }
-    bool grips() const { return !Surface::plain && option.slide == Slide::gripping; }
-    /// Whether nothing but accelerations tells where it goes.
-    bool level(T v) const { return option.at != Bound::none && (!grips() || v == 0); }
-  };
-
-  /// Whether a force that the contact carried until now goes on without a jump.
-  static bool even(Slide before, const Side& side, int limit) {
-    const Slide after = side.option.slide;
-    if (before == after) return true;
-    const bool same = side.contact.kinetic == side.contact.static_limit;
-    if (before == Slide::stuck) return same && sign(after) == -limit;
-    return same && before == Slide::gripping;
-  }
-
-  /// Friction at a sliding speed, or at the end of the branch where it is: there it is one number,
-  /// whichever branch follows.
-  static T sliding(const Surface& contact, const Option& option, T u) {
-    if (option.at == Bound::none) return contact.region(option.region).at(along(option.slide, u));
-    return contact.region(option.region + (option.at == Bound::upper ? 1 : 0)).force;
-  }
-
-  /// The force of a contact that is not stuck, N, …
-  static T force(const Side& side, const State<T>& s) {
-    if (side.grips()) return -s.skin;
-    if (!slides(side.option.slide)) return T(0);
-    const T u = s.v - side.surface.value;
-    return -along(side.option.slide, sliding(side.contact, side.option, u)) * side.load.value;
-  }
-  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not
-  /// come together.
-  static T force_rate(const Side& side, const State<T>& s, T acceleration) {
-    if (side.grips()) return -side.contact.stiffness * s.v;
-    if (!slides(side.option.slide)) return T(0);
-    const Region<T> region = side.contact.region(side.option.region);
-    if (region.slope != 0)
-      return -region.slope * side.load.value * (acceleration - side.surface.rate);
-    return -along(side.option.slide, region.force) * side.load.rate;
-  }
-
-  /// The force that would keep the pin on the surface of a contact, beside what the other does, N.
-  T demand(const Side& on, const Side& other, const State<T>& s) const {
-    const T inertia = drive_.mass * (s.plate_velocity.rate - on.surface.rate);
-    return drive_.stiffness * s.x + drive_.damping * s.v - inertia - force(other, s);
-  }
-  struct Rates {
-    T rate, size, curvature;  ///< N/s, the same of the terms of the rate, N/s²
-  };
-  /// How it changes.
-  Rates demand_rates(const Side& on, const Side& other, const State<T>& s) const {
-    using std::abs;
-    const T a = on.surface.rate, spring = drive_.stiffness * s.v, damper = drive_.damping * a;
-    const T rate = force_rate(other, s, a);
-    const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
-    return {spring + damper - rate, abs(spring) + abs(damper) + abs(rate), stiffness * a};
-  }
-
-  /// A contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other, int limit, const State<T>& s, T bound,
-             Start<T>& start) const {
-    using std::abs;
-    const T apart = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? apart != 0 : !goes_inside(other, s, apart, T(0), T(0))) return false;
-    Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
-    if (other.stuck()) {
-      most.value += other.contact.static_limit * other.load.value;
-      most.rate += other.contact.static_limit * other.load.rate;
-    }
-    const T force = demand(on, other, s);
-    const T nearest = force < 0 ? most.value + force : most.value - force;
-    if (nearest < -bound && (force < 0 ? -1 : 1) != limit) return false;
-    const Rates rates = demand_rates(on, other, s);
-    start.acceleration = on.surface.rate;
-    start.tangential = false;
-    start.stick_force = {force, T(0), T(0), rates.rate, rates.curvature};
-    for (const int side : {1, -1}) {
-      Path<T>& left = start.left[side > 0 ? 0 : 1];
-      left = {most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
-              -side * rates.curvature};
-      if (left.start > bound && side != limit) continue;
-      left.start = T(0);
-      if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
-          touches(left.drift, left.curvature, bound))
-        left.drift = T(0);
-      if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
-    }
-    return true;
-  }
-
-  /// No contact sticks. A relative acceleration that is zero is exactly zero: the pin sets out along
-  /// with the surface.
-  bool sets_out(const Side& plate, const Side& finger, const Mode& before, int limit,
-                const State<T>& s, T bound, Start<T>& start) const {
-    using std::abs;
-    const T on_plate = force(plate, s), on_finger = force(finger, s);
-    start.acceleration = (drive_.mass * s.plate_velocity.rate - drive_.stiffness * s.x -
-                          drive_.damping * s.v + on_plate + on_finger) /
-                         drive_.mass;
-    start.tangential = false;
-    T over_plate{0}, over_finger{0};  // relative accelerations, times the mass
-    const auto meets = [&](const Side& side, const Side& other, T own, Slide was, T& over) {
-      if (!side.level(s.v)) return;
-      over = own - demand(side, other, s);
-      if (start.tangential) return;
-      start.tangential = abs(over) <= bound || (limit != 0 && was == Slide::stuck);
-      if (start.tangential) start.acceleration = side.surface.rate;
-    };
-    meets(plate, finger, on_plate, before.plate, over_plate);
-    meets(finger, plate, on_finger, before.finger, over_finger);
-    const auto leaves = [&](const Side& side, const Side& other, T over) {
-      if (side.option.at == Bound::none) return true;
-      if (!side.level(s.v)) return goes_inside(side, s, start.acceleration, T(0), T(0));
-      if (!start.tangential) return goes_inside(side, s, over, T(0), T(0));
-      const T apart = start.acceleration - side.surface.rate;
-      if (apart != 0) return goes_inside(side, s, apart, T(0), T(0));
-      const Rates rates = demand_rates(side, other, s);
-      const T own = force_rate(side, s, start.acceleration), jerk = own - rates.rate;
-      const bool none = abs(jerk) <= rounding<T> * (rates.size + abs(own));
-      return goes_inside(side, s, T(0), none ? T(0) : jerk, -rates.curvature);
-    };
-    return leaves(plate, finger, over_plate) && leaves(finger, plate, over_finger);
-  }
-
-  /// Whether what starts at an end of its range goes, or stays, inside, by the first derivative of
-  /// its relative velocity that is not zero. Without any it stays; but it would not slide.
-  bool goes_inside(const Side& side, const State<T>& s, T first, T second, T third) const {
-    const Option option = side.option;
-    if (option.at == Bound::none) return true;
-    const T decides = first != 0 ? first : second != 0 ? second : third;
-    if (!side.grips()) {
-      const int inside = option.at == Bound::lower ? sign(option.slide) : -sign(option.slide);
-      return inside * decides > 0 ||
-             (decides == 0 && (option.at == Bound::upper || option.region > 0));
-    }
-    const int inside = s.skin > 0 ? -1 : 1;
-    const T stiffness = side.contact.stiffness;
-    if (s.v == 0) return inside * decides >= 0;
-    return inside * s.v > 0 || touches(stiffness * inside * s.v, stiffness * inside * decides,
-                                       rounding<T> * side.contact.static_limit);
-  }
-
-  /// Whether a guard at its zero dips below it by no more than its roundoff.
-  static bool touches(T rate, T curvature, T bound) {
-    return rate < 0 && rate * rate <= 2 * curvature * bound;
-  }
-
   /// R = −s (F + c (s u − from)) λ with u = x' − surface, brought to the other side where it acts
   /// on x'.
   static void add_sliding(Equation<T>& sum, const Surface& contact, Slide slide, int index,
@@ -354,6 +142,265 @@ class Friction {
   }
 
   const Drive<T, Surface>& drive_;
+};
+
+/// What the last event reached exactly.
+struct Reached {
+  Bound plate{Bound::none}, finger{Bound::none};  ///< an end of a sliding contact's branch
+  int limit{0};  ///< the side on which a stick force is at its limit
+};
+
+/// The choice of the mode that follows at an instant: of the candidates, the first that is
+/// consistent. Every guard that is zero decides by its first derivative that is not.
+template <class T, class Surface>
+class Selection {
+ public:
+  /// `x_size` is the largest that the position is a sum of, m.
+  Selection(const Drive<T, Surface>& drive, const State<T>& state, T x_size, const Mode& before,
+            const Reached& reached)
+      : drive_(drive),
+        s_(state),
+        limit_(reached.limit),
+        plate_{drive.plate, before.plate, state.plate_velocity, state.load,
+               options(drive.plate, before.plate, before.plate_region,
+                       state.v - state.plate_velocity.value, reached.plate)},
+        finger_{drive.finger, before.finger, {}, {T(1), T(0)},
+                options(drive.finger, before.finger, before.finger_region, state.v,
+                        reached.finger)},
+        inertia_(drive.mass * state.plate_velocity.rate),
+        pull_(drive.stiffness * state.x + drive.damping * state.v) {
+    using std::abs;
+    roundoff_ = rounding<T> * (drive.stiffness * x_size + abs(drive.damping * state.v) +
+                               2 * abs(inertia_) + size(plate_) + size(finger_));
+  }
+
+  /// False if no candidate is consistent. Preferred is what sticks; of two contacts that cannot both,
+  /// the one that held until now, or the plate. `start` says how the pin sets out.
+  bool next(Candidate& chosen, Start<T>& start) {
+    const bool finger_first = finger_.before == Slide::stuck && plate_.before != Slide::stuck;
+    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
+    for (const bool stuck : {true, false})
+      for (const Option& one : first.options)
+        for (const Option& other : second.options) {
+          if ((one.slide == Slide::stuck || other.slide == Slide::stuck) != stuck) continue;
+          first.option = &one;
+          second.option = &other;
+          if (!consistent(start)) continue;
+          chosen = {*plate_.option, *finger_.option};
+          return true;
+        }
+    return false;
+  }
+
+ private:
+  /// A contact, with what it did until now, and a candidate for what it does next.
+  struct Side {
+    const Surface& contact;
+    Slide before;
+    Line<T> surface, load;
+    Options options;
+    const Option* option{nullptr};
+
+    bool stuck() const { return option->slide == Slide::stuck; }
+    bool grips() const { return !Surface::plain && option->slide == Slide::gripping; }
+    /// Whether the force that it carried until now goes on without a jump.
+    bool even(int limit) const {
+      const Slide after = option->slide;
+      if (before == after) return true;
+      if (contact.kinetic != contact.static_limit) return false;
+      return before == Slide::stuck ? sign(after) == -limit : before == Slide::gripping;
+    }
+  };
+
+  /// What a contact may do, the preferred first: to stick, else to go on as it does. `at` is the end
+  /// of its branch that its speed has just reached; another speed that is not inside its branch is at
+  /// the end of it.
+  Options options(const Surface& contact, Slide slide, int region, T u, Bound at) const {
+    if (slide == Slide::absent) return {{Option{slide}}, 1};
+    const Slide ahead = slide == Slide::forward ? Slide::backward : Slide::forward;  // it crosses
+    if (slides(slide)) {
+      const Region<T> range = contact.region(region);
+      const T speed = along(slide, u);
+      if (at == Bound::none)
+        at = speed >= range.to ? Bound::upper : speed > range.from ? Bound::none : Bound::lower;
+      if (at == Bound::none) return {{Option{slide, region}}, 1};
+      if (at == Bound::upper)
+        return {{Option{slide, region, at}, {slide, region + 1, Bound::lower}}, 2};
+      if (region > 0) return {{Option{slide, region, at}, {slide, region - 1, Bound::upper}}, 2};
+      slide = contact.rigid() ? Slide::stuck : Slide::gripping;  // with the force that it has
+    }
+    if (!Surface::plain && slide == Slide::gripping) {
+      const int side = s_.skin > 0 ? 1 : -1;
+      if (side * s_.skin < contact.static_limit || side * u < 0) return {{Option{slide}}, 1};
+      return {{Option{slide, 0, Bound::upper},
+               {static_cast<Slide>(side), 0, u == 0 ? Bound::lower : Bound::none}},
+              2};
+    }
+    return {{Option{Slide::stuck}, {ahead, 0, Bound::lower}, {opposite(ahead), 0, Bound::lower}}, 3};
+  }
+
+  /// How large the terms are that a contact brings into a sum of forces, N.
+  T size(const Side& side) const {
+    using std::abs;
+    const Option& option = side.options.list[0];
+    if (option.slide == Slide::absent) return T(0);
+    T sum = side.contact.static_limit;
+    if (slides(option.slide) && side.contact.regions > 0)
+      sum += abs(sliding(side, option)) + abs(side.contact.region(option.region).slope) *
+                                              (abs(s_.v) + abs(side.surface.value));
+    return sum * side.load.value;
+  }
+
+  /// Friction at a sliding speed, or at the end of the branch where it is: there it is one number,
+  /// whichever branch follows.
+  T sliding(const Side& side, const Option& option) const {
+    if (option.at == Bound::none)
+      return side.contact.region(option.region).at(along(option.slide, s_.v - side.surface.value));
+    return side.contact.region(option.region + (option.at == Bound::upper ? 1 : 0)).force;
+  }
+
+  /// The force of a contact that is not stuck, N, …
+  T force(const Side& side) const {
+    if (side.grips()) return -s_.skin;
+    if (!slides(side.option->slide)) return T(0);
+    return -along(side.option->slide, sliding(side, *side.option)) * side.load.value;
+  }
+  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not
+  /// come together.
+  T force_rate(const Side& side, T acceleration) const {
+    if (side.grips()) return -side.contact.stiffness * s_.v;
+    if (!slides(side.option->slide)) return T(0);
+    const Region<T> region = side.contact.region(side.option->region);
+    if (region.slope != 0)
+      return -region.slope * side.load.value * (acceleration - side.surface.rate);
+    return -along(side.option->slide, region.force) * side.load.rate;
+  }
+
+  /// The force that would keep the pin on the surface of a contact, beside what the other does, N.
+  T demand(const Side& on, T of_other) const {
+    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
+  }
+  struct Rates {
+    T rate, size, curvature;  ///< N/s, the same of the terms of the rate, N/s²
+  };
+  /// How it changes.
+  Rates demand_rates(const Side& on, const Side& other) const {
+    using std::abs;
+    const T a = on.surface.rate, spring = drive_.stiffness * s_.v, damper = drive_.damping * a;
+    const T rate = force_rate(other, a);
+    const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
+    return {spring + damper - rate, abs(spring) + abs(damper) + abs(rate), stiffness * a};
+  }
+
+  bool consistent(Start<T>& start) const {
+    if (plate_.stuck()) return holds(plate_, finger_, start);
+    if (finger_.stuck()) return holds(finger_, plate_, start);
+    return sets_out(start);
+  }
+
+  /// The side on which a stick force stays exactly at its limit; 0 if forces jump.
+  int limit() const {
+    return limit_ != 0 && plate_.even(limit_) && finger_.even(limit_) ? limit_ : 0;
+  }
+
+  /// A contact, and the other where it sticks too, keeps the pin on its surface.
+  bool holds(const Side& on, const Side& other, Start<T>& start) const {
+    using std::abs;
+    const T apart = on.surface.rate - other.surface.rate;
+    if (other.stuck() ? apart != 0 : !goes_inside(other, apart, T(0), T(0))) return false;
+    Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
+    if (other.stuck()) {
+      most.value += other.contact.static_limit * other.load.value;
+      most.rate += other.contact.static_limit * other.load.rate;
+    }
+    const T force = demand(on, other.stuck() ? T(0) : this->force(other));
+    const int at_limit = limit();
+    if (most.value - abs(force) < -roundoff_ && (force < 0 ? -1 : 1) != at_limit) return false;
+    const Rates rates = demand_rates(on, other);
+    start.acceleration = on.surface.rate;
+    start.tangential = false;
+    start.stick_force = {force, T(0), T(0), rates.rate, rates.curvature};
+    for (const int side : {1, -1}) {
+      Path<T>& left = start.left[side > 0 ? 0 : 1];
+      left = {most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
+              -side * rates.curvature};
+      if (left.start > roundoff_ && side != at_limit) continue;
+      left.start = T(0);
+      if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
+          touches(left.drift, left.curvature, roundoff_))
+        left.drift = T(0);
+      if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
+    }
+    return true;
+  }
+
+  /// No contact sticks. A relative acceleration that is zero is exactly zero: the pin sets out along
+  /// with the surface.
+  bool sets_out(Start<T>& start) const {
+    using std::abs;
+    const T of_plate = force(plate_), of_finger = force(finger_);
+    start.acceleration = (inertia_ - pull_ + of_plate + of_finger) / drive_.mass;
+    start.tangential = false;
+    T over_plate{0}, over_finger{0};  // relative accelerations, times the mass
+    const auto meets = [&](const Side& side, T own, T other, T& over) {
+      if (!level(side)) return;
+      over = own - demand(side, other);
+      if (start.tangential) return;
+      start.tangential = abs(over) <= roundoff_ || (side.before == Slide::stuck && limit() != 0);
+      if (start.tangential) start.acceleration = side.surface.rate;
+    };
+    meets(plate_, of_plate, of_finger, over_plate);
+    meets(finger_, of_finger, of_plate, over_finger);
+    return leaves(plate_, finger_, over_plate, start) && leaves(finger_, plate_, over_finger, start);
+  }
+
+  /// Whether nothing but accelerations tells where a contact goes.
+  bool level(const Side& side) const {
+    return side.option->at != Bound::none && (!side.grips() || s_.v == 0);
+  }
+
+  bool leaves(const Side& side, const Side& other, T over, const Start<T>& start) const {
+    using std::abs;
+    if (side.option->at == Bound::none) return true;
+    if (!level(side)) return goes_inside(side, start.acceleration, T(0), T(0));
+    if (!start.tangential) return goes_inside(side, over, T(0), T(0));
+    const T apart = start.acceleration - side.surface.rate;
+    if (apart != 0) return goes_inside(side, apart, T(0), T(0));
+    const Rates rates = demand_rates(side, other);
+    const T own = force_rate(side, start.acceleration), jerk = own - rates.rate;
+    const bool none = abs(jerk) <= rounding<T> * (rates.size + abs(own));
+    return goes_inside(side, T(0), none ? T(0) : jerk, -rates.curvature);
+  }
+
+  /// Whether what starts at an end of its range goes, or stays, inside, by the first derivative of
+  /// its relative velocity that is not zero. Without any it stays; but it would not slide.
+  bool goes_inside(const Side& side, T first, T second, T third) const {
+    const Option& option = *side.option;
+    if (option.at == Bound::none) return true;
+    const T decides = first != 0 ? first : second != 0 ? second : third;
+    if (!side.grips()) {
+      const int inside = option.at == Bound::lower ? sign(option.slide) : -sign(option.slide);
+      return inside * decides > 0 ||
+             (decides == 0 && (option.at == Bound::upper || option.region > 0));
+    }
+    const int inside = s_.skin > 0 ? -1 : 1;
+    const T stiffness = side.contact.stiffness;
+    if (s_.v == 0) return inside * decides >= 0;
+    return inside * s_.v > 0 || touches(stiffness * inside * s_.v, stiffness * inside * decides,
+                                        rounding<T> * side.contact.static_limit);
+  }
+
+  /// Whether a guard at its zero dips below it by no more than its roundoff.
+  static bool touches(T rate, T curvature, T bound) {
+    return rate < 0 && rate * rate <= 2 * curvature * bound;
+  }
+
+  const Drive<T, Surface>& drive_;
+  const State<T>& s_;
+  int limit_;
+  Side plate_, finger_;
+  T inertia_, pull_;  ///< m v_p'; k x + b v, N
+  T roundoff_;        ///< forces that differ by less are one, N
 };
 
 }  // namespace pindrive

@@ -98,25 +98,9 @@ class Simulation {
 
   // ---- which mode follows ------------------------------------------------------------------------
 
-  /// The mode that follows: of the candidates, the first that is consistent. Preferred is what
-  /// sticks; of two contacts that cannot both, the one that held until now, or the plate.
   void select(const Mode& before) {
-    const T u = state_.v - state_.plate_velocity.value;
-    const Options plate = friction_.options(drive_.plate, before.plate, before.plate_region, u, T(0),
-                                            reached_.plate);
-    const Options finger = friction_.options(drive_.finger, before.finger, before.finger_region,
-                                             state_.v, state_.skin, reached_.finger);
-    next_ = {plate.list[0], finger.list[0]};
-    const T bound = friction_.roundoff(next_, state_, x_size_);
-    const bool finger_first = before.finger == Slide::stuck && before.plate != Slide::stuck;
-    for (const bool stuck : {true, false})
-      for (const Option& first : finger_first ? finger : plate)
-        for (const Option& second : finger_first ? plate : finger) {
-          if ((first.slide == Slide::stuck || second.slide == Slide::stuck) != stuck) continue;
-          next_ = finger_first ? Candidate{second, first} : Candidate{first, second};
-          if (friction_.consistent(next_, before, reached_.limit, state_, bound, start_)) return;
-        }
-    consistent_ = false;
+    Selection<T, Surface> selection(drive_, state_, x_size_, before, reached_);
+    consistent_ = selection.next(next_, start_);
   }
 
   // ---- one mode ----------------------------------------------------------------------------------
@@ -312,11 +296,7 @@ class Simulation {
   T x_size_;      ///< the largest that the position is a sum of, m
   T row_{never};  ///< time of the next row of an input, s
 
-  /// What the last event reached exactly.
-  struct {
-    Bound plate{Bound::none}, finger{Bound::none};
-    int limit{0};  ///< the side of a stick force at its limit
-  } reached_;
+  Reached reached_;
   Candidate next_;
   Start<T> start_;
   bool consistent_{true};
