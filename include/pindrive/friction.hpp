@@ -27,8 +27,8 @@ enum class Bound : signed char { none, lower, upper };
 /// an elastic stick at its stick limit (`upper`).
 struct Option {
   Slide slide{Slide::absent};
-  int region{0};
   Bound at{Bound::none};
+  int region{0};
 };
 
 struct Options {
@@ -223,20 +223,20 @@ class Selection {
       const T speed = along(slide, u);
       if (at == Bound::none)
         at = speed >= range.to ? Bound::upper : speed > range.from ? Bound::none : Bound::lower;
-      if (at == Bound::none) return {{Option{slide, region}}, 1};
+      if (at == Bound::none) return {{Option{slide, at, region}}, 1};
       if (at == Bound::upper)
-        return {{Option{slide, region, at}, {slide, region + 1, Bound::lower}}, 2};
-      if (region > 0) return {{Option{slide, region, at}, {slide, region - 1, Bound::upper}}, 2};
+        return {{Option{slide, at, region}, {slide, Bound::lower, region + 1}}, 2};
+      if (region > 0) return {{Option{slide, at, region}, {slide, Bound::upper, region - 1}}, 2};
       slide = contact.rigid() ? Slide::stuck : Slide::gripping;  // with the force that it has
     }
     if (!Surface::plain && slide == Slide::gripping) {
       const int side = s_.skin > 0 ? 1 : -1;
       if (side * s_.skin < contact.static_limit || side * u < 0) return {{Option{slide}}, 1};
-      return {{Option{slide, 0, Bound::upper},
-               {static_cast<Slide>(side), 0, u == 0 ? Bound::lower : Bound::none}},
+      return {{Option{slide, Bound::upper},
+               {static_cast<Slide>(side), u == 0 ? Bound::lower : Bound::none}},
               2};
     }
-    return {{Option{Slide::stuck}, {ahead, 0, Bound::lower}, {opposite(ahead), 0, Bound::lower}}, 3};
+    return {{Option{Slide::stuck}, {ahead, Bound::lower}, {opposite(ahead), Bound::lower}}, 3};
   }
 
   /// How large the terms are that a contact brings into a sum of forces, N.

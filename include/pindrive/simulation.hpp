@@ -171,13 +171,21 @@ class Simulation {
       if (guard.path.start >= 0 && guard.path.constant()) continue;
       if (hidden(guard)) continue;
       const T horizon = first < never ? first + rounding<T> * (time_ + first) : never;
-      guard.root = first_root(flow.oscillator, guard.path, 1, horizon);
+      guard.root = guard.path.straight() && guard.path.centre() == 0
+                       ? zero(flow.oscillator, guard.path)
+                       : first_root(flow.oscillator, guard.path, 1, horizon);
       first = std::min(first, guard.root);
     }
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
   }
 
-  /// Whether another guard runs below this one, at a constant distance beyond rounding.
+  /// The first zero of a pure oscillation.
+  static T zero(const Oscillator<T>& oscillator, const Path<T>& path) {
+    return Rooted<T>::at(oscillator, path, oscillator.zeros(path.start, path.slope).first);
+  }
+
+  /// Whether another guard comes to zero first for certain: it runs below this one, at a constant
+  /// distance beyond rounding, or falls to the middle of its oscillation while this one rises.
   bool hidden(const Guard& guard) const {
     using std::abs;
     const Path<T>& p = guard.path;
@@ -186,6 +194,9 @@ class Simulation {
       const Path<T>& q = guards_[i].path;
       if (q.start < farther && q.value == p.value && q.slope == p.slope && q.drift == p.drift &&
           q.curvature == p.curvature)
+        return true;
+      if (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0 &&
+          q.straight() && p.straight())
         return true;
     }
     return false;
