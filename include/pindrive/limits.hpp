@@ -20,6 +20,6 @@ inline constexpr int standstill_limit = 100;
 
 /// How closely a state returns in a cycle, as a part of its size: a hundred roundings, which is what
 /// the events of one round leave.
-inline constexpr double recurrence = 1e-14;
+inline constexpr double return_tolerance = 1e-14;
 
 }  // namespace pindrive

@@ -9,7 +9,7 @@
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
 #include "pindrive/model.hpp"
-#include "pindrive/recurrence.hpp"
+#include "pindrive/return.hpp"
 #include "pindrive/roots.hpp"
 
 namespace pindrive {
@@ -21,16 +21,17 @@ class Simulation {
   Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
       : drive_(drive),
         inputs_(inputs),
-        friction_(drive),
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.half_period()),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
-        state_{inputs.displacement, inputs.velocity, T(0), {}, {}} {
+        state_{inputs.displacement, inputs.velocity},
+        plate_{drive.plate, {}, {}},
+        finger_{drive.finger, {}, {T(1), T(0)}} {
     using std::abs;
     using std::isnan;
     x_size_ = abs(state_.x);
     look_ahead();
-    const T v = state_.v, u = v - state_.plate_velocity.value;
+    const T v = state_.v, u = v - plate_.surface.value;
     Mode mode{touch(drive.plate, u), touch(drive.finger, v)};
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
@@ -38,33 +39,29 @@ class Simulation {
       mode.finger = Slide::gripping;
     if (slides(mode.plate)) mode.plate_region = drive.plate.region_of(along(mode.plate, u));
     if (slides(mode.finger)) mode.finger_region = drive.finger.region_of(along(mode.finger, v));
-    select(mode);
+    select(mode, {});
   }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
     for (long long events = 0; events < event_limit; ++events) {
-      if (!consistent_) {
-        outcome_.status = Status::inconsistent;
-        return outcome_;
-      }
+      if (outcome_.status != Status::ok) return outcome_;
       Segment<T> segment = begin();
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
-      if (finished) {
-        if (tau == never) outcome_.end = ending(segment);
-        if (outcome_.end == End::moving && inputs_.duration < never) {
-          segment.end = inputs_.duration;
-          segment.moved = segment.flow.after(segment.end - segment.begin);
-        }
-      } else {
-        jump(segment, tau);
-        select(segment.mode);
-        const Mode after = next_.mode();
+      if (!finished) {
+        select(segment.mode, jump(segment, tau));
+        const Mode after = mode();
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
-        note_recurrence(segment);
+        if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
+      } else if (tau == never) {
+        end_with(segment, outcome_);
+      }
+      if (finished && outcome_.end == End::moving && inputs_.duration < never) {
+        segment.end = inputs_.duration;
+        segment.moved = segment.flow.after(segment.end - segment.begin);
       }
       sink(segment);
       outcome_.until = segment.end;
@@ -81,13 +78,15 @@ class Simulation {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+  using Side = Touch<T, Surface>;
 
-  /// What stays positive while a mode lasts.
+  /// What stays positive while a mode lasts: the distance of a sliding speed from a bound, or (none)
+  /// what contacts that stick could carry beyond what they do, to a side.
   struct Guard {
     Path<T> path;
-    Bound bound;  ///< of the branch of a sliding contact; none: of what can be carried …
+    Bound bound;
     bool plate, finger;
-    int side;  ///< … to this side
+    int side;
     T root{never};
   };
 
@@ -98,66 +97,183 @@ class Simulation {
 
   // ---- which mode follows ------------------------------------------------------------------------
 
-  void select(const Mode& before) {
-    Selection<T, Surface> selection(drive_, state_, x_size_, before, reached_);
-    consistent_ = selection.next(next_, start_);
+  /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
+  /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
+  /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
+  void select(const Mode& before, const Reached& reached) {
+    using std::abs;
+    plate_.ask(before.plate, before.plate_region, reached.plate, state_);
+    finger_.ask(before.finger, before.finger_region, reached.finger, state_);
+    limit_ = reached.limit;
+    inertia_ = drive_.mass * plate_.surface.rate;
+    pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
+    plate_.does = plate_.options[0];
+    finger_.does = finger_.options[0];
+    roundoff_ = rounding<T> * (drive_.stiffness * x_size_ + abs(drive_.damping * state_.v) +
+                               2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
+    const bool finger_first = before.finger == Slide::stuck && before.plate != Slide::stuck;
+    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
+    for (const bool stuck : {true, false})
+      for (int i = 0; i < first.count; ++i)
+        for (int j = 0; j < second.count; ++j) {
+          first.does = first.options[i];
+          second.does = second.options[j];
+          if ((first.stuck() || second.stuck()) == stuck && consistent()) return;
+        }
+    outcome_.status = Status::inconsistent;
+  }
+
+  bool consistent() {
+    if (plate_.stuck()) return holds(plate_, finger_);
+    if (finger_.stuck()) return holds(finger_, plate_);
+    return sets_out();
+  }
+
+  /// The side on which a stick force stays exactly at its limit; 0 if a force jumps.
+  int limit() const {
+    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) ? limit_ : 0;
+  }
+
+  /// The force that would keep the pin on the surface of a contact, beside what the other does, N, …
+  T demand(const Side& on, const Side& other) const {
+    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - other.force(state_);
+  }
+  struct Rates {
+    T rate, size, curvature;  ///< N/s, the same of the terms of the rate, N/s²
+  };
+  /// … and how it changes.
+  Rates demand_rates(const Side& on, const Side& other) const {
+    using std::abs;
+    const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
+    const T rate = other.force_rate(state_.v, a);
+    const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
+    return {spring + damper - rate, abs(spring) + abs(damper) + abs(rate), stiffness * a};
+  }
+
+  /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
+  bool holds(const Side& on, const Side& other) {
+    using std::abs;
+    const T apart = on.surface.rate - other.surface.rate;
+    if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
+    Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
+    if (other.stuck()) {
+      most.value += other.contact.static_limit * other.load.value;
+      most.rate += other.contact.static_limit * other.load.rate;
+    }
+    const T force = demand(on, other);
+    const int at_limit = limit();
+    if (most.value - abs(force) < -roundoff_ && (force < 0 ? -1 : 1) != at_limit) return false;
+    const Rates rates = demand_rates(on, other);
+    stick_force_ = {force, T(0), T(0), rates.rate, rates.curvature};
+    guard_count_ = 0;
+    for (const int side : {1, -1}) {
+      Path<T> left{most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
+                   -side * rates.curvature};
+      if (!(left.start > roundoff_) || side == at_limit) {
+        left.start = T(0);
+        if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
+            touches(left.drift, left.curvature, roundoff_))
+          left.drift = T(0);
+        if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
+      }
+      guards_[guard_count_++] = {left, Bound::none, plate_.stuck(), finger_.stuck(), side};
+    }
+    return true;
+  }
+
+  /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
+  /// exactly zero: it sets out along with that surface.
+  bool sets_out() {
+    using std::abs;
+    tangential_ = false;
+    guard_count_ = 0;
+    acceleration_ = (inertia_ - pull_ + plate_.force(state_) + finger_.force(state_)) / drive_.mass;
+    const auto relative = [&](const Side& side, const Side& other) {  // times the mass
+      if (!side.rests(state_.v)) return T(0);
+      const T force = side.force(state_) - demand(side, other);
+      if (!tangential_ &&
+          (abs(force) <= roundoff_ || (side.before == Slide::stuck && limit() != 0))) {
+        tangential_ = true;
+        acceleration_ = side.surface.rate;
+      }
+      return force;
+    };
+    const T of_plate = relative(plate_, finger_), of_finger = relative(finger_, plate_);
+    const auto leaves = [&](const Side& side, const Side& other, T force) {
+      const T apart = acceleration_ - side.surface.rate;
+      if (!tangential_ || apart != 0 || !side.rests(state_.v))
+        return side.goes_inside(state_, tangential_ || !side.rests(state_.v) ? apart : force);
+      const Rates rates = demand_rates(side, other);
+      const T own = side.force_rate(state_.v, acceleration_), jerk = own - rates.rate;
+      const bool none = abs(jerk) <= rounding<T> * (rates.size + abs(own));
+      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -rates.curvature);
+    };
+    return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
   }
 
   // ---- one mode ----------------------------------------------------------------------------------
 
-  /// The segment of the mode that follows, and its guards.
+  Mode mode() const {
+    return {plate_.does.slide, finger_.does.slide, plate_.does.region, finger_.does.region};
+  }
+
+  /// The segment of the mode that was selected, and its guards.
   Segment<T> begin() {
-    const Mode mode = next_.mode();
     Segment<T> segment;
     segment.begin = time_;
     segment.end = never;
-    segment.mode = mode;
+    segment.mode = mode();
     segment.event = {};
-    segment.flow = mode.stuck() ? Flow<T>::stuck(state_.x, friction_.level(mode, state_))
-                                : free_flow(mode);
-    segment.plate_velocity = state_.plate_velocity;
-    segment.plate_force = friction_.plate_force(mode, state_, start_, segment.flow);
-    segment.finger_force = friction_.finger_force(mode, state_, start_, segment.flow);
-    guards_count_ = 0;
-    const auto sliding = [&](const Surface& contact, const Option& option, Line<T> surface,
-                             bool plate) {
-      if (!slides(option.slide)) return;
-      const Region<T> region = contact.region(option.region);
-      const Path<T> level = surface;
-      Path<T> above = along(option.slide, T(1)) * (segment.flow.velocity + T(-1) * level);
-      Path<T> below = T(-1) * above;
-      above.start = option.at == Bound::lower ? T(0) : above.start - region.from;
-      guards_[guards_count_++] = {above, Bound::lower, plate, !plate, 0};
-      if (!(region.to < never)) return;
-      below.start = option.at == Bound::upper ? T(0) : below.start + region.to;
-      guards_[guards_count_++] = {below, Bound::upper, plate, !plate, 0};
-    };
-    sliding(drive_.finger, next_.finger, {}, false);
-    sliding(drive_.plate, next_.plate, state_.plate_velocity, true);
-    for (const int side : {1, -1}) {
-      const Line<T> skin{drive_.finger.static_limit, T(0)};
-      if (!Surface::plain && mode.finger == Slide::gripping)
-        guards_[guards_count_++] = {Path<T>(skin) + T(side) * segment.finger_force, Bound::none,
-                                    false, true, side};
-      if (mode.stuck())
-        guards_[guards_count_++] = {start_.left[side > 0 ? 0 : 1], Bound::none,
-                                    mode.plate == Slide::stuck, mode.finger == Slide::stuck, side};
-    }
+    segment.plate_velocity = plate_.surface;
+    segment.flow = segment.mode.stuck()
+                       ? Flow<T>::stuck(state_.x, plate_.stuck() ? plate_.surface : Line<T>{})
+                       : free_flow();
+    const Flow<T>& flow = segment.flow;
+    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(flow, state_);
+    segment.finger_force =
+        finger_.stuck() && !plate_.stuck() ? stick_force_ : finger_.force_along(flow, state_);
+    add_guards(finger_, segment, false);
+    add_guards(plate_, segment, true);
     return segment;
   }
 
-  Flow<T> free_flow(const Mode& mode) const {
-    const Equation<T> equation = friction_.equation(mode, state_);
+  Flow<T> free_flow() const {
+    Equation<T> sum{
+        drive_.damping, drive_.stiffness, {inertia_ - drive_.stiffness * state_.x, T(0)}};
+    plate_.add_to(sum, state_);
+    finger_.add_to(sum, state_);
     const Oscillator<T> oscillator =
-        friction_.constant(mode)
-            ? plain_
-            : Oscillator<T>(drive_.mass, equation.damping, equation.stiffness);
-    const T drift = equation.pull.rate / equation.stiffness;
-    const T pull = start_.tangential
-                       ? drive_.mass * start_.acceleration + equation.damping * (state_.v - drift)
-                       : equation.pull.value - equation.damping * drift;
-    return Flow<T>::free(oscillator, state_.x, state_.v, start_.acceleration,
-                         -pull / equation.stiffness, drift);
+        linear() ? plain_ : Oscillator<T>(drive_.mass, sum.damping, sum.stiffness);
+    const T drift = sum.pull.rate / sum.stiffness;
+    const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (state_.v - drift)
+                               : sum.pull.value - sum.damping * drift;
+    return Flow<T>::free(oscillator, state_.x, state_.v, acceleration_, -pull / sum.stiffness,
+                         drift);
+  }
+
+  /// Whether no contact damps or stiffens.
+  bool linear() const {
+    return Surface::plain ||
+           (!finger_.grips() && drive_.plate.regions == 0 && drive_.finger.regions == 0);
+  }
+
+  void add_guards(const Side& side, const Segment<T>& segment, bool plate) {
+    const auto add = [&](const Path<T>& path, Bound bound, int to) {
+      guards_[guard_count_++] = {path, bound, plate, !plate, to};
+    };
+    if (side.grips()) {
+      const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
+      for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, to);
+    }
+    if (!side.slips()) return;
+    const Region<T> region = side.contact.region(side.does.region);
+    const Path<T> surface = side.surface;
+    Path<T> above = along(side.does.slide, T(1)) * (segment.flow.velocity + T(-1) * surface);
+    Path<T> below = T(-1) * above;
+    above.start = side.does.at == Bound::lower ? T(0) : above.start - region.from;
+    below.start = side.does.at == Bound::upper ? T(0) : below.start + region.to;
+    add(above, Bound::lower, 0);
+    if (region.to < never) add(below, Bound::upper, 0);
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
@@ -165,157 +281,111 @@ class Simulation {
     const T row = row_ - time_;
     T first = row;
     if (flow.velocity.oscillates()) first = std::min(first, flow.oscillator.serves_for());
-    for (int i = 0; i < guards_count_; ++i) {
+    for (int i = 0; i < guard_count_; ++i) {
       Guard& guard = guards_[i];
-      guard.root = never;
-      if (guard.path.start >= 0 && guard.path.constant()) continue;
-      if (hidden(guard)) continue;
+      const Path<T>& path = guard.path;
+      if ((path.start >= 0 && path.constant()) || comes_later(path)) continue;
       const T horizon = first < never ? first + rounding<T> * (time_ + first) : never;
-      guard.root = guard.path.straight() && guard.path.centre() == 0
-                       ? zero(flow.oscillator, guard.path)
-                       : first_root(flow.oscillator, guard.path, 1, horizon);
+      guard.root = first_root(flow.oscillator, path, 1, horizon);
       first = std::min(first, guard.root);
     }
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
   }
 
-  /// The first zero of a pure oscillation.
-  static T zero(const Oscillator<T>& oscillator, const Path<T>& path) {
-    return Rooted<T>::at(oscillator, path, oscillator.zeros(path.start, path.slope).first);
-  }
-
-  /// Whether another guard comes to zero first for certain: it runs below this one, at a constant
+  /// Whether another guard comes to zero before this one for certain: it runs below, at a constant
   /// distance beyond rounding, or falls to the middle of its oscillation while this one rises.
-  bool hidden(const Guard& guard) const {
+  bool comes_later(const Path<T>& p) const {
     using std::abs;
-    const Path<T>& p = guard.path;
     const T farther = p.start - rounding<T> * (p.start + abs(state_.v));
-    for (int i = 0; i < guards_count_; ++i) {
+    for (int i = 0; i < guard_count_; ++i) {
       const Path<T>& q = guards_[i].path;
-      if (q.start < farther && q.value == p.value && q.slope == p.slope && q.drift == p.drift &&
-          q.curvature == p.curvature)
-        return true;
-      if (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0 &&
-          q.straight() && p.straight())
-        return true;
+      if (!p.straight() || !q.straight()) continue;
+      if (q.start < farther && q.value == p.value && q.slope == p.slope) return true;
+      if (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0) return true;
     }
     return false;
   }
 
   // ---- to the event ------------------------------------------------------------------------------
 
-  /// Ends a segment and brings the state to the event: what has reached its end is exactly there.
-  void jump(Segment<T>& segment, T tau) {
+  /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
+  Reached jump(Segment<T>& segment, T tau) {
     using std::abs;
-    const Mode mode = segment.mode;
     const Flow<T>& flow = segment.flow;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    const bool half_turn = tau == half_period_ && flow.velocity.value == 0 && friction_.constant(mode);
+    const bool half_turn = tau == half_period_ && flow.velocity.value == 0 && linear();
     segment.moved = half_turn ? half_turn_ : flow.after(tau);
     state_.x = flow.position.at(segment.moved, tau);
     state_.v = flow.velocity.at(segment.moved, tau);
     x_size_ = std::max({x_size_, abs(state_.x), abs(flow.position.value * segment.moved.decline),
                         abs(flow.position.slope * segment.moved.gain)});
-    if (!Surface::plain && mode.finger == Slide::gripping)
+    if (finger_.grips())
       state_.skin = -segment.finger_force.at(segment.moved, tau);
-    else if (!Surface::plain && slides(mode.finger))
-      state_.skin = sign(mode.finger) * drive_.finger.kinetic;
+    else if (finger_.slips())
+      state_.skin = sign(finger_.does.slide) * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     segment.end = time_ = row ? row_ : time_ + tau;
     if (row) {
       look_ahead();
     } else {
-      state_.plate_velocity.value = state_.plate_velocity.at(tau);
-      state_.load.value = state_.load.at(tau);
+      plate_.surface.value = plate_.surface.at(tau);
+      plate_.load.value = plate_.load.at(tau);
     }
-    reached_ = {};
-    bool at_plate = mode.plate == Slide::stuck, at_finger = mode.finger == Slide::stuck;
-    for (int i = 0; i < guards_count_; ++i) {
+    Reached reached;
+    bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
+    for (int i = 0; i < guard_count_; ++i) {
       const Guard& guard = guards_[i];
       if (!(guard.root <= coincident)) continue;
       if (guard.bound == Bound::none) {
-        if (mode.finger == Slide::gripping && guard.finger)
+        if (finger_.grips() && guard.finger)
           state_.skin = guard.side * drive_.finger.static_limit;
         else if (!row)
-          reached_.limit = guard.side;
+          reached.limit = guard.side;
         continue;
       }
-      (guard.plate ? reached_.plate : reached_.finger) = guard.bound;
-      const int index = guard.plate ? mode.plate_region : mode.finger_region;
-      if (guard.bound == Bound::lower && index == 0) {
-        (guard.plate ? at_plate : at_finger) = true;
-      } else {
-        const Region<T> region = (guard.plate ? drive_.plate : drive_.finger).region(index);
-        const T speed = guard.bound == Bound::lower ? region.from : region.to;
-        state_.v = guard.plate ? state_.plate_velocity.value + sign(mode.plate) * speed
-                               : sign(mode.finger) * speed;
-      }
+      (guard.plate ? reached.plate : reached.finger) = guard.bound;
+      const Side& side = guard.plate ? plate_ : finger_;
+      const Region<T> region = side.contact.region(side.does.region);
+      if (guard.bound == Bound::lower && side.does.region == 0)
+        (guard.plate ? on_plate : on_finger) = true;
+      else
+        state_.v = side.surface.value +
+                   along(side.does.slide, guard.bound == Bound::lower ? region.from : region.to);
     }
-    if (at_plate && at_finger) state_.plate_velocity.value = T(0);
-    if (at_finger)
-      state_.v = T(0);
-    else if (at_plate)
-      state_.v = state_.plate_velocity.value;
+    if (on_plate && on_finger) plate_.surface.value = T(0);
+    if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+    return reached;
   }
 
   void look_ahead() {
-    state_.plate_velocity = inputs_.mouse_velocity.from(time_);
-    state_.load = inputs_.plate_load.from(time_);
+    plate_.surface = inputs_.mouse_velocity.from(time_);
+    plate_.load = inputs_.plate_load.from(time_);
     row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
-  }
-
-  // ---- how the motion ends -----------------------------------------------------------------------
-
-  /// How a mode that lasts for ever ends.
-  End ending(const Segment<T>& segment) {
-    const Flow<T>& flow = segment.flow;
-    outcome_.since = time_;
-    if (!flow.position.oscillates())
-      return flow.velocity.start == 0 && flow.velocity.straight() ? End::resting : End::moving;
-    const T alpha = flow.oscillator.alpha();
-    if (alpha < 0) return End::decaying;
-    if (alpha > 0) return End::moving;
-    outcome_.period = flow.oscillator.period();
-    const bool tangential = flow.velocity.slope == 0 && next_.plate.at == Bound::lower;
-    return tangential ? End::grazing : End::free;
-  }
-
-  void note_recurrence(const Segment<T>& segment) {
-    const Mode before = segment.mode, after = next_.mode();
-    const bool release = before.plate == Slide::stuck && after.plate != Slide::stuck;
-    if (release) hold_begin_ = segment.begin;
-    if (row_ < never || !(release || after.plate_region > before.plate_region)) return;
-    const Visit<T> now{time_, state_.x, state_.v, state_.skin, hold_begin_, after, release};
-    const Visit<T>* earlier = recurrence_.earlier(drive_, now);
-    if (!earlier) return;
-    outcome_.end = release || earlier->released ? End::stick_slip : End::limit_cycle;
-    outcome_.period = time_ - earlier->time;
-    outcome_.cycle_begin = outcome_.since = earlier->time;
-    if (release && after.finger != Slide::gripping)
-      outcome_.since = std::max(earlier->hold_begin, earlier->time - (time_ - hold_begin_));
   }
 
   const Drive<T, Surface>& drive_;
   const Inputs<T, Input>& inputs_;
-  Friction<T, Surface> friction_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
   Transition<T> half_turn_;  ///< and how it has moved on there
 
   T time_{0};
   State<T> state_;
-  T x_size_;      ///< the largest that the position is a sum of, m
-  T row_{never};  ///< time of the next row of an input, s
+  T x_size_;              ///< the largest that the position is a sum of, m
+  T row_{never};          ///< time of the next row of an input, s
+  Side plate_, finger_;   ///< and what they do in the mode that was selected
+  int limit_{0};          ///< the side of a stick force that has just come to its limit
+  T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
+  T roundoff_{};          ///< forces that differ by less are one, N
 
-  Reached reached_;
-  Candidate next_;
-  Start<T> start_;
-  bool consistent_{true};
+  // How the pin sets out: with this acceleration, which may be that of a surface, or carried.
+  T acceleration_{};
+  bool tangential_{false};
+  Path<T> stick_force_{};
   std::array<Guard, 6> guards_;
-  int guards_count_{0};
+  int guard_count_{0};
 
-  Recurrence<T> recurrence_;
-  T hold_begin_{0};
+  Return<T> returns_;
   Outcome<T> outcome_{};
 };
 

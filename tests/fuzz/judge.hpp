@@ -68,8 +68,8 @@ inline Verdict judge(const Case& c, bool measured, std::vector<pd::Segment<doubl
   const auto outcome = pd::simulate(
       drive, inputs, [&](const pd::Segment<double>& segment) { segments.push_back(segment); });
   const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(), outcome);
-  const auto instants = std::count_if(
-      segments.begin(), segments.end(), [](const auto& s) { return !(s.end > s.begin); });
+  const auto instants = std::count_if(segments.begin(), segments.end(),
+                                      [](const auto& s) { return !(s.end > s.begin); });
   Verdict verdict{{}, outcome.status, segments.size(), static_cast<std::size_t>(instants)};
   if (outcome.status != pd::Status::ok) return verdict;
   pd::Certificate<double>& certificate = verdict.certificate;
