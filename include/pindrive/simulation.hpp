@@ -113,13 +113,16 @@ class Simulation {
                                2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
     const bool finger_first = before.finger == Slide::stuck && before.plate != Slide::stuck;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
-    for (const bool stuck : {true, false})
+    const bool may_stick = plate_.stuck() || finger_.stuck();
+    for (const bool stuck : {true, false}) {
+      if (stuck && !may_stick) continue;
       for (int i = 0; i < first.count; ++i)
         for (int j = 0; j < second.count; ++j) {
           first.does = first.options[i];
           second.does = second.options[j];
           if ((first.stuck() || second.stuck()) == stuck && consistent()) return;
         }
+    }
     outcome_.status = Status::inconsistent;
   }
 
@@ -286,7 +289,10 @@ class Simulation {
       const Path<T>& path = guard.path;
       if ((path.start >= 0 && path.constant()) || comes_later(path)) continue;
       const T horizon = first < never ? first + rounding<T> * (time_ + first) : never;
-      guard.root = first_root(flow.oscillator, path, 1, horizon);
+      guard.root = path.straight() && path.centre() == 0
+                       ? Rooted<T>::at(flow.oscillator, path,
+                                       flow.oscillator.zeros(path.start, path.slope).first)
+                       : first_root(flow.oscillator, path, 1, horizon);
       first = std::min(first, guard.root);
     }
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
