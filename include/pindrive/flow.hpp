@@ -64,6 +64,13 @@ class Oscillator {
   /// The rate at which the slowest part of the motion grows (> 0) or decays (< 0), 1/s.
   T slowest_rate() const { return oscillates() ? alpha_ : alpha_ < 0 ? gentle() : alpha_ + omega_; }
 
+  /// How long it is in the range of doubles: until what is slowest has decayed to e^−700 of its start,
+  /// or has grown by e^700. Beyond, no zero is looked for.
+  T lasts_for() const {
+    using std::abs;
+    return extinct / abs(slowest_rate());
+  }
+
   /// How long a start of rounded numbers serves: where two growing waves draw apart, so does what
   /// rounding put into the faster one, by e⁶ in this time.
   T serves_for() const {
@@ -107,30 +114,25 @@ class Oscillator {
     return hypot(omega_ * rate, rate_slope - alpha_ * rate) / omega0_squared_;
   }
 
-  /// Where a free oscillation of this value and slope at τ = 0 vanishes afterwards.
+  /// Where a free oscillation of this value and slope at τ = 0 vanishes while it lasts.
   Zeros<T> zeros(T value, T slope) const {
     using std::atan2;
-    using std::log1p;
     constexpr T never = std::numeric_limits<T>::infinity();
-    if (oscillates()) {
-      // The phase in (0, π], by one formula for an oscillation and its mirror image.
-      const T cosine = slope - alpha_ * value;
-      const int mirror = cosine < 0 ? -1 : 1;
-      T angle = value == 0 ? T(0) : atan2(-mirror * value * omega_, mirror * cosine);
-      if (angle <= 0) angle += pi;
-      if (alpha_ * angle < -extinct * omega_) return {never, never};
-      return {angle / omega_, pi / omega_};
-    }
-    const T ratio = value / (gentle() * value - slope), apart = to_other_root();
-    if (!(ratio > 0) || apart * ratio <= -1) return {never, never};
-    return {omega_ > 0 ? log1p(apart * ratio) / apart : ratio, never};
+    const auto lasting = [&](T tau) { return tau <= lasts_for() ? tau : never; };
+    if (!oscillates()) return {lasting(only_zero(value, slope)), never};
+    // The phase in (0, π], by one formula for an oscillation and its mirror image.
+    const T cosine = slope - alpha_ * value;
+    const int mirror = cosine < 0 ? -1 : 1;
+    T angle = value == 0 ? T(0) : atan2(-mirror * value * omega_, mirror * cosine);
+    if (angle <= 0) angle += pi;
+    return {lasting(angle / omega_), lasting(pi / omega_)};
   }
 
  private:
   static constexpr T pi = T(3.141592653589793238462643383279502884L);
   static constexpr T series_reach = T(0.1);
   static constexpr T early = T(0.2);
-  static constexpr T extinct = T(700);  ///< e^−700: what has decayed so far is zero in doubles
+  static constexpr T extinct = T(700);  ///< e^−700 is about the smallest double
 
   /// The power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: their first moments without cancellation.
   Transition<T> soon_after(T tau) const {
@@ -158,6 +160,20 @@ class Oscillator {
                    (1 - z / 20 *
                             (1 - z / 42 *
                                      (1 - z / 72 * (1 - z / 110 * (1 - z / 156 * (1 - z / 210))))));
+  }
+
+  /// Where two real waves cancel. A wave whose part is rounding is absent, and one alone has no zero.
+  T only_zero(T value, T slope) const {
+    using std::abs;
+    using std::log1p;
+    constexpr T never = std::numeric_limits<T>::infinity();
+    constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+    const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
+    const auto cancels = [&](T wave) { return abs(wave - slope) <= rounding * (abs(wave) + abs(slope)); };
+    if (cancels(steady) || cancels(other)) return never;
+    const T ratio = value / (steady - slope);
+    if (!(ratio > 0) || apart * ratio <= -1) return never;
+    return omega_ > 0 ? log1p(apart * ratio) / apart : ratio;
   }
 
   /// The gentle one of two real rates: from the other, which needs no subtraction, and ω₀².

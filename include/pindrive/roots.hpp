@@ -74,6 +74,17 @@ Path<T> exact_at_start(Path<T> path, int side) {
   return path;
 }
 
+/// The path with a centre that is rounding made exact: a wave that dies out towards its zero does not
+/// end on one side of it by chance.
+template <class T>
+Path<T> exact_at_centre(Path<T> path) {
+  using std::abs;
+  constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+  if (path.straight() && abs(path.centre()) <= rounding * (abs(path.start) + abs(path.value)))
+    path.value = path.start;
+  return path;
+}
+
 /// The earliest τ > 0 at which start + drift·τ + curvature·τ²/2, on its side before, leaves it.
 template <class T>
 T parabola_root(Path<T> path, int side) {
@@ -114,7 +125,7 @@ class Roots {
       const T low = left_;
       const bool turned = right == extremum_;
       left_ = right;
-      if (Degree == 1 && !approaching_) {  // its turns are closed forms: it moves away from zero
+      if (recedes()) {
         approaching_ = turned;
         continue;
       }
@@ -147,6 +158,9 @@ class Roots {
 
   bool shrinks() const { return Degree == 1 && oscillator_.alpha() <= 0; }
 
+  /// Whether it moves away from zero until its next extremum, whose time is a closed form.
+  bool recedes() const { return Degree == 1 && !approaching_; }
+
   T slope() const { return path_.slope + path_.drift; }
 
   int side_of_slope() const {
@@ -174,6 +188,7 @@ class Roots {
   /// do not overflow.
   T end_of_bracket() {
     const T right = std::min(extremum_, horizon_);
+    if (recedes()) return right < never ? right : left_;
     const T rate = oscillator_.slowest_rate();
     if (rate > 0) return right < never || approaching_ ? std::min(right, left_ + 16 / rate) : left_;
     if (right < never) return right;
@@ -199,7 +214,7 @@ class Roots<T, 0> {
  public:
   Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
       : zeros_(oscillator.zeros(side * path.start > 0 ? path.start : T(0), path.slope)),
-        horizon_(horizon) {}
+        horizon_(std::min(horizon, oscillator.lasts_for())) {}
 
   T next() {
     const T zero = count_ == 0 ? zeros_.first : zeros_.first + count_ * zeros_.spacing;
@@ -242,13 +257,14 @@ bool too_small(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
 
 /// Calls visit(τ) at each sign change of a path in (0, horizon], until it returns false.
 template <class T, class Visitor>
-void each_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon,
+void each_root(const Oscillator<T>& oscillator, const Path<T>& given, int side, T horizon,
                Visitor&& visit) {
+  const Path<T> path = exact_at_centre(given);
   const auto all = [&](auto roots) {
     for (;;) {
       const T root = roots.next();
       if (!(root < std::numeric_limits<T>::infinity())) return;
-      if (!visit(Rooted<T>::at(oscillator, path, root))) return;
+      if (!visit(Rooted<T>::at(oscillator, given, root))) return;
     }
   };
   if (!path.oscillates()) {

@@ -22,7 +22,7 @@ class Simulation {
       : drive_(drive),
         inputs_(inputs),
         plain_(drive.mass, drive.damping, drive.stiffness),
-        half_period_(plain_.half_period()),
+        half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
         state_{inputs.displacement, inputs.velocity},
         plate_{drive.plate, {}, {}},
@@ -247,6 +247,10 @@ class Simulation {
     finger_.add_to(sum, state_);
     const Oscillator<T> oscillator =
         linear() ? plain_ : Oscillator<T>(drive_.mass, sum.damping, sum.stiffness);
+    using std::abs;
+    // A pin without speed on which forces act that cancel to rounding is at rest.
+    if (state_.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= roundoff_)
+      return Flow<T>::free(oscillator, state_.x, state_.v, T(0), T(0), T(0));
     const T drift = sum.pull.rate / sum.stiffness;
     const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (state_.v - drift)
                                : sum.pull.value - sum.damping * drift;

@@ -101,6 +101,20 @@ class Measurement {
     return settled_after(result.end_position, band);
   }
 
+  /// Until a motion that decays stays within a thousandth of the size of the oscillation that it
+  /// began with, or until its last event.
+  T decayed() const {
+    using std::abs;
+    using std::sqrt;
+    Transient<T> result;
+    ending(result);
+    const Drive<T>& drive = motion_.drive();
+    const Path<T>& x = motion_.begin()->flow.position;
+    const T speed = motion_.begin()->flow.velocity.start;
+    const T size = abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
+    return std::max(last_outside(result.end_position, size / 1000), motion_.outcome().since);
+  }
+
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
@@ -250,13 +264,20 @@ class Measurement {
     if (outcome.end == End::moving) return Transient<T>::none;
     T since = outcome.since;
     if (outcome.end == End::resting || outcome.end == End::decaying) {
-      const T width = band * abs(motion_.begin()->flow.position.start - x_end);
-      // The last time outside the band counts: the segments are looked at from the end.
-      const Segment<T>* segment = motion_.end();
-      do since = entry(*--segment, x_end, width);
-      while (since == 0 && segment != motion_.begin());
+      const T x = motion_.begin()->flow.position.start, way = x - x_end;
+      constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+      const T width = abs(way) <= rounding * (abs(x) + abs(x_end)) ? T(0) : band * abs(way);
+      since = last_outside(x_end, width);
     }
     return since <= duration_ && since < never ? since : Transient<T>::none;
+  }
+
+  /// The last time at which |x − x_end| is beyond the width: 0 if it never is, infinite if it always is.
+  T last_outside(T x_end, T width) const {
+    T since{0};
+    for (const Segment<T>* segment = motion_.end(); since == 0 && segment != motion_.begin();)
+      since = entry(*--segment, x_end, width);
+    return since;
   }
 
   /// When, in a segment, |x − x_end| comes within the width to stay there, followed from extremum
@@ -291,7 +312,7 @@ class Measurement {
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
       if (may_turn(segment)) {
-        const Stretch last = last_outside(segment, x_end, width);
+        const Stretch last = last_stretch_outside(segment, x_end, width);
         before = x.at(segment.after(last.from), last.from) - x_end;
         extrema(segment, x, last.from, last.to, follow_to);
       } else {
@@ -326,7 +347,7 @@ class Measurement {
   };
   /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
   /// long vibration is halved until the few periods are left in which it leaves the band last.
-  static Stretch last_outside(const Segment<T>& segment, T x_end, T width) {
+  static Stretch last_stretch_outside(const Segment<T>& segment, T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     Stretch last{T(0), segment.end - segment.begin};
@@ -424,12 +445,11 @@ class Measurement {
   T duration_;
 };
 
-/// The duration that was asked for or, without one, long enough to see the ending: the decay of the
-/// slowest mode to a thousandth and until settled, or a few periods of what lasts.
+/// The duration that was asked for or, without one, long enough to see the ending: a decay to a
+/// thousandth and until settled, or a few periods of what lasts.
 template <class T>
 T duration_of(const Motion<T>& motion) {
   using std::isfinite;
-  using std::log;
   using std::sqrt;
   if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
   constexpr T never = std::numeric_limits<T>::infinity();
@@ -439,9 +459,10 @@ T duration_of(const Motion<T>& motion) {
     case End::resting:
       return std::max(outcome.since * T(1.25), period);
     case End::decaying: {
-      const T rate = -std::prev(motion.end())->flow.oscillator.slowest_rate();
-      const T settled = Measurement<T>(motion, never).settling_time(T(settling_band));
-      const T decayed = outcome.since + period + log(T(1000)) / rate;
+      const Measurement<T> measured(motion, never);
+      const T settled = measured.settling_time(T(settling_band));
+      const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
+      if (!(decayed < never)) return outcome.since + period;
       return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;
     }
     case End::free:
