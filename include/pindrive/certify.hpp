@@ -10,8 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pindrive/breakaway.hpp"
 #include "pindrive/guard.hpp"
-#include "pindrive/let_go.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/quadrature.hpp"
 
@@ -28,7 +28,7 @@ struct Certificate {
   T sliding_sign{0};  ///< friction opposes the sliding; no level was passed unseen
   T sticking{0};      ///< a stuck contact does not slide
   T continuity{0};    ///< x and x' do not jump, nor the skin but where its grip breaks
-  T transitions{0};   ///< a contact breaks loose or crosses only where it cannot hold
+  T transitions{0};   ///< a contact slips from rest only where it cannot stick
   T energy{0};        ///< what goes in, is stored and is dissipated adds up
   T dissipation{0};   ///< friction and damper take energy, never give
 
@@ -52,6 +52,7 @@ class Certifier {
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_) break;
       const Stage stage = stage_of(segment);
+      breaks_away(stage);
       const State last = walk(stage);
       if (segment.end > duration_) break;
       const Segment<T>* next = &segment + 1;
@@ -356,22 +357,27 @@ class Certifier {
             force_scale_);
       raise(gained_, std::min(energy(left) - energy(right), T(0)));
     }
-    const auto let_go = [](Kind kind) { return kind == Kind::slip || kind == Kind::cross; };
-    const bool plate = let_go(event.plate), finger = let_go(event.finger) && !soft();
-    if (!plate && !finger) return;
-    const Aftermath<T> now{
-        right.x,         right.v, right.plate_force, right.finger_force, after.plate_velocity,
-        after.load.value};
-    const auto met = [](Slide slide, Kind kind) { return !slides(slide) || kind != Kind::none; };
+  }
+
+  /// A contact begins to slip from rest only where it cannot stick.
+  void breaks_away(const Stage& stage) {
+    using std::abs;
+    const auto began = [&](Slide slide, Slide& was, T& since) {
+      if (slide != was) since = stage.segment.begin;
+      was = slide;
+      return since == stage.segment.begin;
+    };
+    const bool plate = began(stage.segment.mode.plate, plate_, plate_since_);
+    const bool finger = began(stage.segment.mode.finger, finger_, finger_since_);
+    const State s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
-    if (drive_.finger.rigid() && std::abs(right.v) <= still &&
-        std::abs(now.plate_velocity.value) <= still && now.plate_velocity.rate != 0) {
-      if (met(before.mode.plate, event.plate) && met(before.mode.finger, event.finger))
-        worst(result_.transitions,
-              spare_capacity_parting(drive_, before.mode, after.segment.mode, now), force_scale_);
-    } else {
-      worst(result_.transitions, spare_capacity(drive_, plate, finger, now), force_scale_);
-    }
+    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
+    const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
+    if (!(plate && on_plate) && !(finger && on_finger)) return;
+    const Beginning<T> now{
+        s.x,      s.v,      s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
+        on_plate, on_finger};
+    worst(result_.transitions, spare_stick_limit(drive_, stage.segment.mode, now), force_scale_);
   }
 
   static constexpr T never = std::numeric_limits<T>::infinity();
@@ -380,8 +386,10 @@ class Certifier {
   Drive<T> drive_;
   T duration_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
-  T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
-  T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
+  T balance_{0}, unaccounted_{0}, gained_{0};           ///< J: of the ledger so far, at its worst …
+  T stored_{0}, input_{0}, dissipated_{0};              ///< … and what it is measured against
+  Slide plate_{Slide::absent}, finger_{Slide::absent};  ///< what they do, …
+  T plate_since_{0}, finger_since_{0};                  ///< … since when
   Certificate<T> result_{};
 };
 

@@ -169,7 +169,9 @@ class Oscillator {
     constexpr T never = std::numeric_limits<T>::infinity();
     constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
     const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
-    const auto cancels = [&](T wave) { return abs(wave - slope) <= rounding * (abs(wave) + abs(slope)); };
+    const auto cancels = [&](T wave) {
+      return abs(wave - slope) <= rounding * (abs(wave) + abs(slope));
+    };
     if (cancels(steady) || cancels(other)) return never;
     const T ratio = value / (steady - slope);
     if (!(ratio > 0) || apart * ratio <= -1) return never;

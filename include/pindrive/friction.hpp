@@ -22,10 +22,13 @@ struct Reached {
   int limit{0};  ///< the side of that force
 };
 
-/// The pin: position (m), velocity (m/s) and the force in an elastic stick (N).
+/// The pin at an instant.
 template <class T>
 struct State {
-  T x, v, skin{0};
+  T x, v;         ///< m, m/s
+  T skin{0};      ///< force in an elastic stick, N
+  T x_size{0};    ///< the largest that the position is a sum of, m
+  T roundoff{0};  ///< forces that differ by less are one, N
 };
 
 /// m x'' + c x' + κ (x − x₀) = pull: what acts on a pin that sets out from x₀.
@@ -187,9 +190,8 @@ struct Touch {
     }
     const int inside = s.skin > 0 ? -1 : 1;
     if (s.v == 0) return inside * decides >= 0;
-    return inside * s.v > 0 ||
-           touches(contact.stiffness * inside * s.v, contact.stiffness * inside * decides,
-                   rounding<T> * contact.static_limit);
+    return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
+                                       contact.stiffness * inside * decides, s.roundoff);
   }
 };
 

@@ -24,12 +24,12 @@ class Simulation {
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
-        state_{inputs.displacement, inputs.velocity},
+        state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
         plate_{drive.plate, {}, {}},
         finger_{drive.finger, {}, {T(1), T(0)}} {
     using std::abs;
     using std::isnan;
-    x_size_ = abs(state_.x);
+    state_.x_size = abs(state_.x);
     look_ahead();
     const T v = state_.v, u = v - plate_.surface.value;
     Mode mode{touch(drive.plate, u), touch(drive.finger, v)};
@@ -109,8 +109,9 @@ class Simulation {
     pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
     plate_.does = plate_.options[0];
     finger_.does = finger_.options[0];
-    roundoff_ = rounding<T> * (drive_.stiffness * x_size_ + abs(drive_.damping * state_.v) +
-                               2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
+    state_.roundoff =
+        rounding<T> * (drive_.stiffness * state_.x_size + abs(drive_.damping * state_.v) +
+                       2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
     const bool finger_first = before.finger == Slide::stuck && before.plate != Slide::stuck;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
     const bool may_stick = plate_.stuck() || finger_.stuck();
@@ -165,17 +166,18 @@ class Simulation {
     }
     const T force = demand(on, other);
     const int at_limit = limit();
-    if (most.value - abs(force) < -roundoff_ && (force < 0 ? -1 : 1) != at_limit) return false;
+    if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
+      return false;
     const Rates rates = demand_rates(on, other);
     stick_force_ = {force, T(0), T(0), rates.rate, rates.curvature};
     guard_count_ = 0;
     for (const int side : {1, -1}) {
       Path<T> left{most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
                    -side * rates.curvature};
-      if (!(left.start > roundoff_) || side == at_limit) {
+      if (!(left.start > state_.roundoff) || side == at_limit) {
         left.start = T(0);
         if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
-            touches(left.drift, left.curvature, roundoff_))
+            touches(left.drift, left.curvature, state_.roundoff))
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
@@ -195,7 +197,7 @@ class Simulation {
       if (!side.rests(state_.v)) return T(0);
       const T force = side.force(state_) - demand(side, other);
       if (!tangential_ &&
-          (abs(force) <= roundoff_ || (side.before == Slide::stuck && limit() != 0))) {
+          (abs(force) <= state_.roundoff || (side.before == Slide::stuck && limit() != 0))) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
@@ -249,7 +251,7 @@ class Simulation {
         linear() ? plain_ : Oscillator<T>(drive_.mass, sum.damping, sum.stiffness);
     using std::abs;
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (state_.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= roundoff_)
+    if (state_.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= state_.roundoff)
       return Flow<T>::free(oscillator, state_.x, state_.v, T(0), T(0), T(0));
     const T drift = sum.pull.rate / sum.stiffness;
     const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (state_.v - drift)
@@ -327,8 +329,9 @@ class Simulation {
     segment.moved = half_turn ? half_turn_ : flow.after(tau);
     state_.x = flow.position.at(segment.moved, tau);
     state_.v = flow.velocity.at(segment.moved, tau);
-    x_size_ = std::max({x_size_, abs(state_.x), abs(flow.position.value * segment.moved.decline),
-                        abs(flow.position.slope * segment.moved.gain)});
+    state_.x_size =
+        std::max({state_.x_size, abs(state_.x), abs(flow.position.value * segment.moved.decline),
+                  abs(flow.position.slope * segment.moved.gain)});
     if (finger_.grips())
       state_.skin = -segment.finger_force.at(segment.moved, tau);
     else if (finger_.slips())
@@ -381,12 +384,10 @@ class Simulation {
 
   T time_{0};
   State<T> state_;
-  T x_size_;              ///< the largest that the position is a sum of, m
   T row_{never};          ///< time of the next row of an input, s
   Side plate_, finger_;   ///< and what they do in the mode that was selected
   int limit_{0};          ///< the side of a stick force that has just come to its limit
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
-  T roundoff_{};          ///< forces that differ by less are one, N
 
   // How the pin sets out: with this acceleration, which may be that of a surface, or carried.
   T acceleration_{};

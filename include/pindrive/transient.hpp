@@ -111,7 +111,8 @@ class Measurement {
     const Drive<T>& drive = motion_.drive();
     const Path<T>& x = motion_.begin()->flow.position;
     const T speed = motion_.begin()->flow.velocity.start;
-    const T size = abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
+    const T size =
+        abs(x.start - result.end_position) + abs(speed) / sqrt(drive.stiffness / drive.mass);
     return std::max(last_outside(result.end_position, size / 1000), motion_.outcome().since);
   }
 

@@ -49,7 +49,7 @@ _SAME_AS: Final = {
 _INFINITE: Final = ("finger_stiffness", "duration")
 
 # In the order of `Status` and `End` in model.hpp.
-_FAILURES: Final = ("too_many_events", "standstill")
+_FAILURES: Final = ("too_many_events", "standstill", "inconsistent")
 _ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
 _BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "natural_frequency", "damping_ratio"))
 _FLAGS: Final = {

@@ -205,6 +205,11 @@ class Motion:
                 f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
                 "parameter by a little, and please report the drive"
             )
+        if self._core.status == 3:
+            return (
+                f"stopped at t = {self._core.until:.6g} s: no mode agrees with the state; change a "
+                "parameter by a little, and please report the drive"
+            )
         return (
             f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
             "and damping are too weak to end the motion; give a shorter duration"

@@ -168,11 +168,12 @@ int main(int argc, char** argv) {
     if (!found.name) continue;
     const bool fails = persists(c);
     ++(fails ? failures : coincidences);
-    std::printf("%s: pair %ld, 1 -+ %.3g: %s %.17g and %.17g\n", fails ? "FAILED" : "coincidence", i,
-                c.off, found.name, found.below, found.above);
+    std::printf("%s: pair %ld, 1 -+ %.3g: %s %.17g and %.17g\n", fails ? "FAILED" : "coincidence",
+                i, c.off, found.name, found.below, found.above);
   }
-  std::printf("%ld pairs across critical damping: %ld fail, %ld coincidences; the others differ "
-              "by at most %.2g of what is allowed\n",
-              count, failures, coincidences, largest);
+  std::printf(
+      "%ld pairs across critical damping: %ld fail, %ld coincidences; the others differ "
+      "by at most %.2g of what is allowed\n",
+      count, failures, coincidences, largest);
   return failures == 0 && 1000 * coincidences <= count ? 0 : 1;
 }
