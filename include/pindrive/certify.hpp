@@ -359,16 +359,21 @@ class Certifier {
     }
   }
 
-  /// A contact begins to slip from rest only where it cannot stick.
+  /// A contact begins to slip from rest only where it cannot stick. Segments in which nothing has time
+  /// to change are one instant with the next.
   void breaks_away(const Stage& stage) {
     using std::abs;
+    const Segment<T>& segment = stage.segment;
+    if (!brief_) instant_ = segment.begin;
+    brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_;
     const auto began = [&](Slide slide, Slide& was, T& since) {
-      if (slide != was) since = stage.segment.begin;
+      if (slide != was) since = segment.begin;
       was = slide;
-      return since == stage.segment.begin;
+      return since >= instant_;
     };
-    const bool plate = began(stage.segment.mode.plate, plate_, plate_since_);
-    const bool finger = began(stage.segment.mode.finger, finger_, finger_since_);
+    const bool plate = began(segment.mode.plate, plate_, plate_since_);
+    const bool finger = began(segment.mode.finger, finger_, finger_since_);
+    if (brief_) return;
     const State s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
     const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
@@ -377,7 +382,7 @@ class Certifier {
     const Beginning<T> now{
         s.x,      s.v,      s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
         on_plate, on_finger};
-    worst(result_.transitions, spare_stick_limit(drive_, stage.segment.mode, now), force_scale_);
+    worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
   }
 
   static constexpr T never = std::numeric_limits<T>::infinity();
@@ -390,6 +395,8 @@ class Certifier {
   T stored_{0}, input_{0}, dissipated_{0};              ///< … and what it is measured against
   Slide plate_{Slide::absent}, finger_{Slide::absent};  ///< what they do, …
   T plate_since_{0}, finger_since_{0};                  ///< … since when
+  T instant_{0};  ///< when the instant began that ends where the segment begins
+  bool brief_{false};
   Certificate<T> result_{};
 };
 
