@@ -24,8 +24,8 @@ struct Beginning {
 template <class T>
 T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>& now) {
   using std::abs;
-  const bool plate = now.rests_on_plate && slides(mode.plate);
-  const bool finger = now.rests_on_finger && slides(mode.finger);
+  const bool plate = now.rests_on_plate && slips(mode.plate);
+  const bool finger = now.rests_on_finger && slips(mode.finger);
   if (mode.stuck() || !(plate || finger)) return T(0);
   const T at_plate = drive.plate.static_limit * now.load, at_finger = drive.finger.static_limit;
   const T pull = drive.damping * now.v + drive.stiffness * now.x;

@@ -15,7 +15,7 @@ inline constexpr double settling_band = 0.05;
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
-struct Region {
+struct Branch {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
@@ -23,27 +23,27 @@ struct Region {
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
-/// The regions between the rows (speed, force) of a friction curve, at most count + 1; none for the
+/// The branches between the rows (speed, force) of a friction curve, at most count + 1; none for the
 /// one row of Coulomb friction. The last slope goes on; where it falls, until the force is zero:
 /// friction never pushes.
 template <class T>
-int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) {
+int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches) {
   if (count < 2) return 0;
   constexpr T never = std::numeric_limits<T>::infinity();
   const int last = count - 1;
   for (int i = 0; i < last; ++i) {
     const T slope = (forces[i + 1] - forces[i]) / (speeds[i + 1] - speeds[i]);
-    regions[i] = {speeds[i], speeds[i + 1], forces[i], slope};
+    branches[i] = {speeds[i], speeds[i + 1], forces[i], slope};
   }
-  const T slope = regions[last - 1].slope;
-  regions[last] = {speeds[last], never, forces[last], slope};
+  const T slope = branches[last - 1].slope;
+  branches[last] = {speeds[last], never, forces[last], slope};
   if (!(slope < 0)) return count;
   if (!(forces[last] > 0)) {
-    regions[last] = {speeds[last], never, T(0), T(0)};
+    branches[last] = {speeds[last], never, T(0), T(0)};
     return count;
   }
-  regions[last].to = speeds[last] - forces[last] / slope;
-  regions[count] = {regions[last].to, never, T(0), T(0)};
+  branches[last].to = speeds[last] - forces[last] / slope;
+  branches[count] = {branches[last].to, never, T(0), T(0)};
   return count + 1;
 }
 
@@ -55,21 +55,21 @@ struct Contact {
   T stiffness{std::numeric_limits<T>::infinity()};  ///< tangential, N/m; > 0, infinite if rigid
 
   /// Kinetic friction over sliding speed; none: `kinetic` at every speed (Coulomb).
-  const Region<T>* curve{nullptr};
-  int regions{0};
+  const Branch<T>* curve{nullptr};
+  int branches{0};
 
   static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
-  Region<T> region(int index) const {
-    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
+  Branch<T> branch(int index) const {
+    if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
     return curve[index];
   }
-  int region_of(T speed) const {
+  int branch_of(T speed) const {
     int index = 0;
-    while (index + 1 < regions && speed >= curve[index].to) ++index;
+    while (index + 1 < branches && speed >= curve[index].to) ++index;
     return index;
   }
-  bool present() const { return static_limit > 0 || regions > 1; }
+  bool present() const { return static_limit > 0 || branches > 1; }
 };
 
 /// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,
@@ -79,11 +79,11 @@ struct Coulomb {
   T kinetic{0}, static_limit{0};
 
   static constexpr bool plain = true;  ///< neither a curve nor skin
-  static constexpr int regions = 0;
+  static constexpr int branches = 0;
   static constexpr T stiffness = std::numeric_limits<T>::infinity();
   static constexpr bool rigid() { return true; }
-  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0)}; }
-  static constexpr int region_of(T) { return 0; }
+  Branch<T> branch(int) const { return {T(0), stiffness, kinetic, T(0)}; }
+  static constexpr int branch_of(T) { return 0; }
   bool present() const { return static_limit > 0; }
 };
 
@@ -153,24 +153,33 @@ struct Inputs {
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
 };
 
-/// What a contact does: the sign of its sliding velocity, stuck, no contact, or skin that grips.
-enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent = 2, gripping = 3 };
+/// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is
+/// absent, or sticks elastically: skin that stretches with the pin.
+enum class ContactState : signed char {
+  slip_backward = -1,
+  stick = 0,
+  slip_forward = 1,
+  absent = 2,
+  elastic_stick = 3
+};
 
-inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
-inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
-inline Slide opposite(Slide slide) { return static_cast<Slide>(-sign(slide)); }
+inline bool slips(ContactState state) {
+  return state == ContactState::slip_backward || state == ContactState::slip_forward;
+}
+inline int sign(ContactState state) { return slips(state) ? static_cast<int>(state) : 0; }
+inline ContactState opposite(ContactState state) { return static_cast<ContactState>(-sign(state)); }
 /// A value in the direction of sliding.
 template <class T>
-T along(Slide slide, T value) {
-  return slide == Slide::forward ? value : -value;
+T along(ContactState state, T value) {
+  return state == ContactState::slip_forward ? value : -value;
 }
 
 struct Mode {
-  Slide plate, finger;
-  int plate_region{0}, finger_region{0};  ///< of the friction curve, while sliding
+  ContactState plate, finger;
+  int plate_branch{0}, finger_branch{0};  ///< of the friction curve, while sliding
 
-  bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
-  bool both_stuck() const { return plate == finger && finger == Slide::stuck; }
+  bool stuck() const { return plate == ContactState::stick || finger == ContactState::stick; }
+  bool both_stuck() const { return plate == finger && finger == ContactState::stick; }
 };
 
 /// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
@@ -181,10 +190,10 @@ struct Event {
   Kind plate{Kind::none}, finger{Kind::none};
 };
 
-inline Kind change(Slide before, Slide after) {
+inline Kind change(ContactState before, ContactState after) {
   if (before == after) return Kind::none;
-  if (slides(before) == slides(after)) return Kind::cross;
-  return slides(before) ? Kind::stick : Kind::slip;
+  if (slips(before) == slips(after)) return Kind::cross;
+  return slips(before) ? Kind::stick : Kind::slip;
 }
 
 /// Whether the sliding velocity came to zero.

@@ -9,7 +9,7 @@
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// How a mode that lasts for ever ends the motion.
 template <class T>
@@ -23,7 +23,7 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
     outcome.end = End::decaying;
   } else if (alpha == 0) {
     // Released without a relative acceleration it touches the plate's velocity once a period.
-    const bool grazes = slides(last.mode.plate) && flow.velocity.slope == 0 &&
+    const bool grazes = slips(last.mode.plate) && flow.velocity.slope == 0 &&
                         flow.velocity.start == last.plate_velocity.value;
     outcome.end = grazes ? End::grazing : End::free;
     outcome.period = flow.oscillator.period();
@@ -41,16 +41,16 @@ class Return {
   void meet(const Drive& drive, const Segment<T>& ended, const Mode& after, const State<T>& state,
             Outcome<T>& outcome) {
     const Mode before = ended.mode;
-    const bool release = before.plate == Slide::stuck && after.plate != Slide::stuck;
+    const bool release = before.plate == ContactState::stick && after.plate != ContactState::stick;
     if (release) hold_begin_ = ended.begin;
-    if (!release && after.plate_region <= before.plate_region) return;
+    if (!release && after.plate_branch <= before.plate_branch) return;
     const Visit now{ended.end, hold_begin_, state, after, release};
     if (visits_ > 0 && same(drive, now)) {
       outcome.end = release || kept_.released ? End::stick_slip : End::limit_cycle;
       outcome.period = now.time - kept_.time;
       outcome.cycle_begin = outcome.since = kept_.time;
       // It began where the first carried phase joined the one that it repeats.
-      if (release && after.finger != Slide::gripping)
+      if (release && after.finger != ContactState::elastic_stick)
         outcome.since = std::max(kept_.hold_begin, kept_.time - (now.time - hold_begin_));
     }
     kept_.released = kept_.released || release;
@@ -79,7 +79,7 @@ class Return {
     const T omega0 = sqrt(drive.stiffness / drive.mass);
     const T size = abs(now.state.x) + abs(now.state.v) / omega0;
     return kept_.mode.plate == now.mode.plate && kept_.mode.finger == now.mode.finger &&
-           kept_.mode.plate_region == now.mode.plate_region &&
+           kept_.mode.plate_branch == now.mode.plate_branch &&
            alike(kept_.state.x, now.state.x, size) &&
            alike(kept_.state.v, now.state.v, size * omega0) &&
            alike(kept_.state.skin, now.state.skin, drive.finger.static_limit);
@@ -90,4 +90,4 @@ class Return {
   long long visits_{0}, next_{0};  ///< so far, and when the one that is kept is renewed
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -12,7 +12,7 @@
 #include "pindrive/return.hpp"
 #include "pindrive/roots.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Follows one pin from its release and hands each segment to the sink, in order of time.
 template <class T, class Surface = Contact<T>, class Input = Profile<T>>
@@ -36,17 +36,16 @@ class Simulation {
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
     if (drive.finger.present() && !drive.finger.rigid() && (given || v == 0))
-      mode.finger = Slide::gripping;
-    if (slides(mode.plate)) mode.plate_region = drive.plate.region_of(along(mode.plate, u));
-    if (slides(mode.finger)) mode.finger_region = drive.finger.region_of(along(mode.finger, v));
+      mode.finger = ContactState::elastic_stick;
+    if (slips(mode.plate)) mode.plate_branch = drive.plate.branch_of(along(mode.plate, u));
+    if (slips(mode.finger)) mode.finger_branch = drive.finger.branch_of(along(mode.finger, v));
     select(mode, {});
   }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
-    for (long long events = 0; events < event_limit; ++events) {
-      if (outcome_.status != Status::ok) return outcome_;
+    for (long long events = 0; outcome_.status == Status::ok; ++events) {
       Segment<T> segment = begin();
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
@@ -67,12 +66,9 @@ class Simulation {
       outcome_.until = segment.end;
       if (finished || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
-      if (standing > standstill_limit) {
-        outcome_.status = Status::standstill;
-        return outcome_;
-      }
+      if (standing > standstill_limit) outcome_.status = Status::standstill;
+      if (events + 1 == event_limit) outcome_.status = Status::too_many_events;
     }
-    outcome_.status = Status::too_many_events;
     return outcome_;
   }
 
@@ -90,9 +86,11 @@ class Simulation {
     T root{never};
   };
 
-  static Slide touch(const Surface& contact, T u) {
-    if (!contact.present()) return Slide::absent;
-    return u > 0 ? Slide::forward : u < 0 ? Slide::backward : Slide::stuck;
+  static ContactState touch(const Surface& contact, T u) {
+    if (!contact.present()) return ContactState::absent;
+    return u > 0   ? ContactState::slip_forward
+           : u < 0 ? ContactState::slip_backward
+                   : ContactState::stick;
   }
 
   // ---- which mode follows ------------------------------------------------------------------------
@@ -102,81 +100,73 @@ class Simulation {
   /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
   void select(const Mode& before, const Reached& reached) {
     using std::abs;
-    plate_.ask(before.plate, before.plate_region, reached.plate, state_);
-    finger_.ask(before.finger, before.finger_region, reached.finger, state_);
-    limit_ = reached.limit;
-    inertia_ = drive_.mass * plate_.surface.rate;
-    pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
+    const T damper = drive_.damping * state_.v;
+    plate_.ask(before.plate, before.plate_branch, reached.plate, state_);
+    finger_.ask(before.finger, before.finger_branch, reached.finger, state_);
     plate_.does = plate_.options[0];
     finger_.does = finger_.options[0];
+    inertia_ = drive_.mass * plate_.surface.rate;
+    pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
-        rounding<T> * (drive_.stiffness * state_.x_size + abs(drive_.damping * state_.v) +
-                       2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
-    const bool finger_first = before.finger == Slide::stuck && before.plate != Slide::stuck;
-    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
+        rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
+                       plate_.size(state_.v) + finger_.size(state_.v));
     const bool may_stick = plate_.stuck() || finger_.stuck();
-    for (const bool stuck : {true, false}) {
-      if (stuck && !may_stick) continue;
+    const bool finger_first = before.finger == ContactState::stick && before.plate != before.finger;
+    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
+    for (int stuck = may_stick ? 1 : 0; stuck >= 0; --stuck)
       for (int i = 0; i < first.count; ++i)
         for (int j = 0; j < second.count; ++j) {
           first.does = first.options[i];
           second.does = second.options[j];
-          if ((first.stuck() || second.stuck()) == stuck && consistent()) return;
+          if ((first.stuck() || second.stuck()) != (stuck == 1)) continue;
+          if (plate_.stuck()    ? holds(plate_, finger_, reached.limit)
+              : finger_.stuck() ? holds(finger_, plate_, reached.limit)
+                                : sets_out(reached.limit))
+            return;
         }
-    }
     outcome_.status = Status::inconsistent;
   }
 
-  bool consistent() {
-    if (plate_.stuck()) return holds(plate_, finger_);
-    if (finger_.stuck()) return holds(finger_, plate_);
-    return sets_out();
-  }
-
-  /// The side on which a stick force stays exactly at its limit; 0 if a force jumps.
-  int limit() const {
-    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) ? limit_ : 0;
+  /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
+  bool continues(int limit) const {
+    return limit != 0 && plate_.continues(limit) && finger_.continues(limit);
   }
 
   /// The force that would keep the pin on the surface of a contact, beside what the other does, N, …
   T demand(const Side& on, const Side& other) const {
     return pull_ - (inertia_ - drive_.mass * on.surface.rate) - other.force(state_);
   }
-  struct Rates {
-    T rate, size, curvature;  ///< N/s, the same of the terms of the rate, N/s²
-  };
-  /// … and how it changes.
-  Rates demand_rates(const Side& on, const Side& other) const {
+  /// … and how it changes; `size` is that of the terms of its slope.
+  Path<T> demand_from(T force, const Side& on, const Side& other, T& size) const {
     using std::abs;
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
     const T rate = other.force_rate(state_.v, a);
-    const T stiffness = drive_.stiffness + (other.grips() ? other.contact.stiffness : T(0));
-    return {spring + damper - rate, abs(spring) + abs(damper) + abs(rate), stiffness * a};
+    const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
+    size = abs(spring) + abs(damper) + abs(rate);
+    return {force, T(0), T(0), spring + damper - rate, stiffness * a};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other) {
+  bool holds(const Side& on, const Side& other, int limit) {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
-    Line<T> most{on.contact.static_limit * on.load.value, on.contact.static_limit * on.load.rate};
-    if (other.stuck()) {
-      most.value += other.contact.static_limit * other.load.value;
-      most.rate += other.contact.static_limit * other.load.rate;
-    }
+    const T of_on = on.contact.static_limit;
+    const T of_other = other.stuck() ? other.contact.static_limit : T(0);
+    const Line<T> most{of_on * on.load.value + of_other * other.load.value,
+                       of_on * on.load.rate + of_other * other.load.rate};
     const T force = demand(on, other);
-    const int at_limit = limit();
+    const int at_limit = continues(limit) ? limit : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
-    const Rates rates = demand_rates(on, other);
-    stick_force_ = {force, T(0), T(0), rates.rate, rates.curvature};
+    T size;
+    stick_force_ = demand_from(force, on, other, size);
     guard_count_ = 0;
     for (const int side : {1, -1}) {
-      Path<T> left{most.value - side * force, T(0), T(0), most.rate - side * rates.rate,
-                   -side * rates.curvature};
+      Path<T> left = Path<T>(most) + T(-side) * stick_force_;
       if (!(left.start > state_.roundoff) || side == at_limit) {
         left.start = T(0);
-        if (abs(left.drift) <= rounding<T> * (rates.size + abs(most.rate)) ||
+        if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
             touches(left.drift, left.curvature, state_.roundoff))
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
@@ -188,16 +178,17 @@ class Simulation {
 
   /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
   /// exactly zero: it sets out along with that surface.
-  bool sets_out() {
+  bool sets_out(int limit) {
     using std::abs;
     tangential_ = false;
     guard_count_ = 0;
-    acceleration_ = (inertia_ - pull_ + plate_.force(state_) + finger_.force(state_)) / drive_.mass;
+    const T forces = plate_.force(state_) + finger_.force(state_);
+    acceleration_ = (inertia_ - pull_ + forces) / drive_.mass;
     const auto relative = [&](const Side& side, const Side& other) {  // times the mass
-      if (!side.rests(state_.v)) return T(0);
+      if (!side.rests(state_.v)) return acceleration_;
       const T force = side.force(state_) - demand(side, other);
-      if (!tangential_ &&
-          (abs(force) <= state_.roundoff || (side.before == Slide::stuck && limit() != 0))) {
+      const bool lets_go = side.before == ContactState::stick && continues(limit);
+      if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
@@ -207,11 +198,12 @@ class Simulation {
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       const T apart = acceleration_ - side.surface.rate;
       if (!tangential_ || apart != 0 || !side.rests(state_.v))
-        return side.goes_inside(state_, tangential_ || !side.rests(state_.v) ? apart : force);
-      const Rates rates = demand_rates(side, other);
-      const T own = side.force_rate(state_.v, acceleration_), jerk = own - rates.rate;
-      const bool none = abs(jerk) <= rounding<T> * (rates.size + abs(own));
-      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -rates.curvature);
+        return side.goes_inside(state_, tangential_ ? apart : force);
+      T size;
+      const Path<T> needed = demand_from(T(0), side, other, size);
+      const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
+      const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
+      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
     return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
   }
@@ -219,70 +211,63 @@ class Simulation {
   // ---- one mode ----------------------------------------------------------------------------------
 
   Mode mode() const {
-    return {plate_.does.slide, finger_.does.slide, plate_.does.region, finger_.does.region};
+    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
   }
 
   /// The segment of the mode that was selected, and its guards.
   Segment<T> begin() {
-    Segment<T> segment;
-    segment.begin = time_;
-    segment.end = never;
-    segment.mode = mode();
-    segment.event = {};
-    segment.plate_velocity = plate_.surface;
-    segment.flow = segment.mode.stuck()
-                       ? Flow<T>::stuck(state_.x, plate_.stuck() ? plate_.surface : Line<T>{})
-                       : free_flow();
-    const Flow<T>& flow = segment.flow;
-    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(flow, state_);
-    segment.finger_force =
-        finger_.stuck() && !plate_.stuck() ? stick_force_ : finger_.force_along(flow, state_);
+    Segment<T> segment{time_, never,          mode(),       {},          flow(),
+                       {},    plate_.surface, stick_force_, stick_force_};
+    if (!plate_.stuck()) segment.plate_force = plate_.force_along(segment.flow, state_);
+    if (!finger_.stuck() || plate_.stuck())
+      segment.finger_force = finger_.force_along(segment.flow, state_);
     add_guards(finger_, segment, false);
     add_guards(plate_, segment, true);
     return segment;
   }
 
-  Flow<T> free_flow() const {
-    Equation<T> sum{
-        drive_.damping, drive_.stiffness, {inertia_ - drive_.stiffness * state_.x, T(0)}};
-    plate_.add_to(sum, state_);
-    finger_.add_to(sum, state_);
+  Flow<T> flow() const {
+    using std::abs;
+    const State<T>& s = state_;
+    if (plate_.stuck() || finger_.stuck())
+      return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
+    Equation<T> sum{drive_.damping, drive_.stiffness, {inertia_ - drive_.stiffness * s.x, T(0)}};
+    plate_.add_to(sum, s);
+    finger_.add_to(sum, s);
     const Oscillator<T> oscillator =
         linear() ? plain_ : Oscillator<T>(drive_.mass, sum.damping, sum.stiffness);
-    using std::abs;
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (state_.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= state_.roundoff)
-      return Flow<T>::free(oscillator, state_.x, state_.v, T(0), T(0), T(0));
+    if (s.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= s.roundoff)
+      return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
     const T drift = sum.pull.rate / sum.stiffness;
-    const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (state_.v - drift)
+    const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (s.v - drift)
                                : sum.pull.value - sum.damping * drift;
-    return Flow<T>::free(oscillator, state_.x, state_.v, acceleration_, -pull / sum.stiffness,
-                         drift);
+    return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -pull / sum.stiffness, drift);
   }
 
   /// Whether no contact damps or stiffens.
   bool linear() const {
     return Surface::plain ||
-           (!finger_.grips() && drive_.plate.regions == 0 && drive_.finger.regions == 0);
+           (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
   }
 
   void add_guards(const Side& side, const Segment<T>& segment, bool plate) {
     const auto add = [&](const Path<T>& path, Bound bound, int to) {
       guards_[guard_count_++] = {path, bound, plate, !plate, to};
     };
-    if (side.grips()) {
+    if (side.elastic()) {
       const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
       for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, to);
     }
-    if (!side.slips()) return;
-    const Region<T> region = side.contact.region(side.does.region);
+    if (!side.sliding()) return;
+    const Branch<T> range = side.branch();
     const Path<T> surface = side.surface;
-    Path<T> above = along(side.does.slide, T(1)) * (segment.flow.velocity + T(-1) * surface);
+    Path<T> above = along(side.does.state, T(1)) * (segment.flow.velocity + T(-1) * surface);
     Path<T> below = T(-1) * above;
-    above.start = side.does.at == Bound::lower ? T(0) : above.start - region.from;
-    below.start = side.does.at == Bound::upper ? T(0) : below.start + region.to;
+    above.start = side.does.at == Bound::lower ? T(0) : above.start - range.from;
+    below.start = side.does.at == Bound::upper ? T(0) : below.start + range.to;
     add(above, Bound::lower, 0);
-    if (region.to < never) add(below, Bound::upper, 0);
+    if (range.to < never) add(below, Bound::upper, 0);
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
@@ -295,10 +280,7 @@ class Simulation {
       const Path<T>& path = guard.path;
       if ((path.start >= 0 && path.constant()) || comes_later(path)) continue;
       const T horizon = first < never ? first + rounding<T> * (time_ + first) : never;
-      guard.root = path.straight() && path.centre() == 0
-                       ? Rooted<T>::at(flow.oscillator, path,
-                                       flow.oscillator.zeros(path.start, path.slope).first)
-                       : first_root(flow.oscillator, path, 1, horizon);
+      guard.root = first_root(flow.oscillator, path, 1, horizon);
       first = std::min(first, guard.root);
     }
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
@@ -309,13 +291,13 @@ class Simulation {
   bool comes_later(const Path<T>& p) const {
     using std::abs;
     const T farther = p.start - rounding<T> * (p.start + abs(state_.v));
-    for (int i = 0; i < guard_count_; ++i) {
-      const Path<T>& q = guards_[i].path;
-      if (!p.straight() || !q.straight()) continue;
-      if (q.start < farther && q.value == p.value && q.slope == p.slope) return true;
-      if (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0) return true;
-    }
-    return false;
+    return p.straight() &&
+           std::any_of(guards_.begin(), guards_.begin() + guard_count_, [&](auto& g) {
+             const Path<T>& q = g.path;
+             if (!q.straight()) return false;
+             return (q.start < farther && q.value == p.value && q.slope == p.slope) ||
+                    (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0);
+           });
   }
 
   // ---- to the event ------------------------------------------------------------------------------
@@ -323,19 +305,16 @@ class Simulation {
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
   Reached jump(Segment<T>& segment, T tau) {
     using std::abs;
-    const Flow<T>& flow = segment.flow;
+    const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    const bool half_turn = tau == half_period_ && flow.velocity.value == 0 && linear();
-    segment.moved = half_turn ? half_turn_ : flow.after(tau);
-    state_.x = flow.position.at(segment.moved, tau);
-    state_.v = flow.velocity.at(segment.moved, tau);
-    state_.x_size =
-        std::max({state_.x_size, abs(state_.x), abs(flow.position.value * segment.moved.decline),
-                  abs(flow.position.slope * segment.moved.gain)});
-    if (finger_.grips())
-      state_.skin = -segment.finger_force.at(segment.moved, tau);
-    else if (finger_.slips())
-      state_.skin = sign(finger_.does.slide) * drive_.finger.kinetic;
+    const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
+    const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+    state_.x = position.at(moved, tau);
+    state_.v = segment.flow.velocity.at(moved, tau);
+    state_.x_size = std::max({state_.x_size, abs(state_.x), abs(position.value * moved.decline),
+                              abs(position.slope * moved.gain)});
+    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    if (finger_.sliding()) state_.skin = along(finger_.does.state, drive_.finger.kinetic);
     const bool row = tau == row_ - time_;
     segment.end = time_ = row ? row_ : time_ + tau;
     if (row) {
@@ -349,21 +328,18 @@ class Simulation {
     for (int i = 0; i < guard_count_; ++i) {
       const Guard& guard = guards_[i];
       if (!(guard.root <= coincident)) continue;
-      if (guard.bound == Bound::none) {
-        if (finger_.grips() && guard.finger)
-          state_.skin = guard.side * drive_.finger.static_limit;
-        else if (!row)
-          reached.limit = guard.side;
-        continue;
-      }
-      (guard.plate ? reached.plate : reached.finger) = guard.bound;
       const Side& side = guard.plate ? plate_ : finger_;
-      const Region<T> region = side.contact.region(side.does.region);
-      if (guard.bound == Bound::lower && side.does.region == 0)
-        (guard.plate ? on_plate : on_finger) = true;
-      else
-        state_.v = side.surface.value +
-                   along(side.does.slide, guard.bound == Bound::lower ? region.from : region.to);
+      if (guard.bound != Bound::none) {
+        (guard.plate ? reached.plate : reached.finger) = guard.bound;
+        const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
+        state_.v = side.surface.value + along(side.does.state, speed);
+        if (guard.bound == Bound::lower && side.does.branch == 0)
+          (guard.plate ? on_plate : on_finger) = true;
+      } else if (side.elastic()) {
+        state_.skin = guard.side * drive_.finger.static_limit;
+      } else if (!row) {
+        reached.limit = guard.side;
+      }
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
@@ -385,8 +361,7 @@ class Simulation {
   T time_{0};
   State<T> state_;
   T row_{never};          ///< time of the next row of an input, s
-  Side plate_, finger_;   ///< and what they do in the mode that was selected
-  int limit_{0};          ///< the side of a stick force that has just come to its limit
+  Side plate_, finger_;   ///< in the mode that was selected
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
   // How the pin sets out: with this acceleration, which may be that of a surface, or carried.
@@ -400,4 +375,4 @@ class Simulation {
   Outcome<T> outcome_{};
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

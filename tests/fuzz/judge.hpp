@@ -17,9 +17,9 @@ namespace pd = pindrive;
 
 inline constexpr double largest_residual = 1e-9;
 
-/// The rows of a curve as regions; the last slope goes on until the force is zero.
-inline std::vector<pd::Region<double>> regions(const Rows& rows) {
-  std::vector<pd::Region<double>> all;
+/// The rows of a curve as branches; the last slope goes on until the force is zero.
+inline std::vector<pd::Branch<double>> branches(const Rows& rows) {
+  std::vector<pd::Branch<double>> all;
   if (rows.at.size() == 1) return all;
   double slope = 0;
   for (std::size_t i = 0; i + 1 < rows.at.size(); ++i) {
@@ -51,8 +51,8 @@ struct Verdict {
 /// A drive and its inputs as the core takes them: they point into the case, which outlives them.
 struct Given {
   explicit Given(const Case& c)
-      : plate(regions(c.curve[0])),
-        finger(regions(c.curve[1])),
+      : plate(branches(c.curve[0])),
+        finger(branches(c.curve[1])),
         drive{
             c.mass,
             c.stiffness,
@@ -71,7 +71,7 @@ struct Given {
                : pd::Profile<double>(rows.at.data(), rows.value.data(), rows.at.size());
   }
 
-  std::vector<pd::Region<double>> plate, finger;
+  std::vector<pd::Branch<double>> plate, finger;
   pd::Drive<double> drive;
   pd::Inputs<double> inputs;
 };

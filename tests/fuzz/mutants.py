@@ -34,8 +34,8 @@ MUTANTS = (
     Mutant(
         "breaks loose to the wrong side",
         "friction.hpp",
-        "const auto slide = static_cast<Slide>(side);",
-        "const auto slide = static_cast<Slide>(-side);",
+        "const auto slide = static_cast<ContactState>(side);",
+        "const auto slide = static_cast<ContactState>(-side);",
     ),
     Mutant(
         "always sticks on arrival",
@@ -59,8 +59,8 @@ MUTANTS = (
     Mutant(
         "static friction of the finger is doubled",
         "friction.hpp",
-        "if (stuck.finger == Slide::stuck) sum.value += drive_.finger.static_limit;",
-        "if (stuck.finger == Slide::stuck) sum.value += 2 * drive_.finger.static_limit;",
+        "if (stuck.finger == ContactState::stick) sum.value += drive_.finger.static_limit;",
+        "if (stuck.finger == ContactState::stick) sum.value += 2 * drive_.finger.static_limit;",
     ),
     Mutant(
         "no inertial force",
@@ -101,14 +101,14 @@ MUTANTS = (
     Mutant(
         "skin slips only while the plate holds the pin",
         "simulation.hpp",
-        "if (!Surface::plain && mode.finger == Slide::gripping)\n      holding(",
-        "if (mode.finger == Slide::gripping && mode.plate == Slide::stuck)\n      holding(",
+        "if (!Surface::plain && mode.finger == ContactState::elastic_stick)\n      holding(",
+        "if (mode.finger == ContactState::elastic_stick && mode.plate == ContactState::stick)\n      holding(",
     ),
     Mutant(
         "the plate holds for ever",
         "simulation.hpp",
         "    if (mode.stuck())\n      holding(",
-        "    if (mode.stuck() && mode.plate != Slide::stuck)\n      holding(",
+        "    if (mode.stuck() && mode.plate != ContactState::stick)\n      holding(",
     ),
     Mutant(
         "the rows of the load are overlooked",

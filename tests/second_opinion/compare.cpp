@@ -58,9 +58,9 @@ Course new_course(const fuzz::Given& given, double rounding) {
 
 Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding) {
   const auto branches = [](const auto& rows) {
-    std::vector<so::Region<double>> regions;
-    for (const auto& row : rows) regions.push_back({row.from, row.to, row.force, row.slope});
-    return regions;
+    std::vector<so::Region<double>> branches;
+    for (const auto& row : rows) branches.push_back({row.from, row.to, row.force, row.slope});
+    return branches;
   };
   const auto profile = [](const fuzz::Rows& rows) {
     return rows.at.size() == 1
