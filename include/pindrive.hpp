@@ -15,11 +15,11 @@
 /// motion, `Dual` makes everything its own derivative. Names in `pindrive::detail` are internal.
 #pragma once
 
-#include "pindrive/batch.hpp"     // IWYU pragma: export
-#include "pindrive/certify.hpp"   // IWYU pragma: export
-#include "pindrive/dual.hpp"      // IWYU pragma: export
-#include "pindrive/energy.hpp"    // IWYU pragma: export
-#include "pindrive/model.hpp"     // IWYU pragma: export
-#include "pindrive/motion.hpp"    // IWYU pragma: export
-#include "pindrive/simulate.hpp"  // IWYU pragma: export
-#include "pindrive/transient.hpp" // IWYU pragma: export
+#include "pindrive/batch.hpp"      // IWYU pragma: export
+#include "pindrive/certify.hpp"    // IWYU pragma: export
+#include "pindrive/dual.hpp"       // IWYU pragma: export
+#include "pindrive/energy.hpp"     // IWYU pragma: export
+#include "pindrive/model.hpp"      // IWYU pragma: export
+#include "pindrive/motion.hpp"     // IWYU pragma: export
+#include "pindrive/simulate.hpp"   // IWYU pragma: export
+#include "pindrive/transient.hpp"  // IWYU pragma: export

@@ -120,7 +120,8 @@ class Certifier {
     const auto watch = [&](const Path<T>& path, T Certificate<T>::* law, T scale) {
       stage.watches[stage.count++] = {{flow.oscillator, path}, law, scale};
     };
-    const auto sliding = [&](const Contact<T>& contact, ContactState slide, int index, Line<T> surface) {
+    const auto sliding = [&](const Contact<T>& contact, ContactState slide, int index,
+                             Line<T> surface) {
       if (!slips(slide)) return;
       const Branch<T> branch =
           contact.branch(std::clamp(index, 0, std::max(contact.branches - 1, 0)));
@@ -296,7 +297,8 @@ class Certifier {
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
     sums.plate = -over(plate, v + T(-1) * v_plate);
-    if (segment.mode.finger != ContactState::elastic_stick) sums.finger = -over(segment.finger_force, v);
+    if (segment.mode.finger != ContactState::elastic_stick)
+      sums.finger = -over(segment.finger_force, v);
     account(energy(from), energy(to), sums);
   }
 
@@ -327,7 +329,8 @@ class Certifier {
         weight * (s.plate_force * v_plate + drive_.mass * stage.plate_velocity.rate * s.v);
     sums.damper += weight * drive_.damping * s.v * s.v;
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
-    if (stage.segment.mode.finger != ContactState::elastic_stick) sums.finger -= weight * s.finger_force * s.v;
+    if (stage.segment.mode.finger != ContactState::elastic_stick)
+      sums.finger -= weight * s.finger_force * s.v;
   }
 
   void account(T before, T after, const Sums& sums) {
@@ -391,10 +394,10 @@ class Certifier {
   Drive<T> drive_;
   T duration_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
-  T balance_{0}, unaccounted_{0}, gained_{0};           ///< J: of the ledger so far, at its worst …
-  T stored_{0}, input_{0}, dissipated_{0};              ///< … and what it is measured against
+  T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
+  T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
   ContactState plate_{ContactState::absent}, finger_{ContactState::absent};  ///< what they do, …
-  T plate_since_{0}, finger_since_{0};                  ///< … since when
+  T plate_since_{0}, finger_since_{0};                                       ///< … since when
   T instant_{0};  ///< when the instant began that ends where the segment begins
   bool brief_{false};
   Certificate<T> result_{};

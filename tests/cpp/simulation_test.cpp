@@ -99,9 +99,11 @@ void hard_drives() {
   const auto starts = [](const Segments& s, ContactState plate, ContactState finger) {
     return !s.empty() && s[0].end > 0 && s[0].mode.plate == plate && s[0].mode.finger == finger;
   };
-  expect(starts(hard("plate-at-its-limit-as-the-mouse-sets-off"), ContactState::slip_forward, ContactState::stick),
+  expect(starts(hard("plate-at-its-limit-as-the-mouse-sets-off"), ContactState::slip_forward,
+                ContactState::stick),
          "the plate, at its limit, would hold for no time: the finger holds");
-  expect(starts(hard("finger-can-hold-where-the-plate-cannot"), ContactState::slip_backward, ContactState::stick),
+  expect(starts(hard("finger-can-hold-where-the-plate-cannot"), ContactState::slip_backward,
+                ContactState::stick),
          "the finger can hold where the plate cannot");
   const Segments turns = hard("skin-turns-at-its-limit-by-rounding");
   expect(turns.size() > 40 && std::none_of(turns.begin() + 1, turns.end(),

@@ -4,7 +4,18 @@
 //   compare COUNT SEED [FROM]
 //
 // Every drive on which the two differ is printed with the first difference. What lasts no longer than
-// rounding is left out: the older core has modes that last no time.
+// rounding is left out: the older core has modes that last no time. 220 of 1 000 000 drives of seed 1
+// differ, in four ways:
+//
+// - An elastic stick whose vibration reaches its limit by no more than rounding: the older core slips for
+//   some 1e-9 s, this one stays (17934, 11087, 55276).
+// - A contact exactly at its limit where the plate begins to pull or the mouse sets off: the older core
+//   asked the other contact first, or none again; this one finds the contact that can hold, or the
+//   departure at once (5384, 54267, 93178, 47856).
+// - A motion that has faded to the rounding of its position: whether its last swings of 1e-18 m/s cross or
+//   stick is rounding in both (6129, 114658, 788, 243044).
+// - The name of the ending, where it is one of these (32231), or where a pin that sets out with the plate's
+//   velocity touches it once a period, which is grazing (131224).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -78,8 +89,7 @@ Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding
                                   profile(c.plate_load)};
   Course course;
   course.rounding = rounding;
-  course.finish(
-      so::simulate(drive, inputs, [&](const auto& segment) { course.add(segment); }));
+  course.finish(so::simulate(drive, inputs, [&](const auto& segment) { course.add(segment); }));
   return course;
 }
 
@@ -95,8 +105,9 @@ bool differ(long long number, const Course& old, const Course& now, double toler
     if (std::min(a.begin, b.begin) >= until) break;
     if (a.plate == b.plate && a.finger == b.finger && std::abs(a.begin - b.begin) <= tolerance)
       continue;
-    std::printf("%lld: phase %zu, old at %.17g plate %d finger %d, new at %.17g plate %d finger %d\n",
-                number, i, a.begin, a.plate, a.finger, b.begin, b.plate, b.finger);
+    std::printf(
+        "%lld: phase %zu, old at %.17g plate %d finger %d, new at %.17g plate %d finger %d\n",
+        number, i, a.begin, a.plate, a.finger, b.begin, b.plate, b.finger);
     return true;
   }
   // Whether a vibration that has died out has another event far beyond the duration is no difference.
