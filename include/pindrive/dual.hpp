@@ -48,7 +48,7 @@ struct Dual {
   friend bool isfinite(Dual a) { return std::isfinite(a.value); }
   friend bool isnan(Dual a) { return std::isnan(a.value); }
   friend Dual floor(Dual a) { return std::floor(a.value); }
-  friend Dual abs(Dual a) { return a.value < 0 ? -a : a; }
+  friend Dual abs(Dual a) { return std::signbit(a.value) ? -a : a; }  // of −0 too
 
   friend Dual sqrt(Dual a) {
     const T root = std::sqrt(a.value);
