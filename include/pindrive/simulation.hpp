@@ -2,15 +2,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
+#include "pindrive/guards.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/return.hpp"
-#include "pindrive/roots.hpp"
 
 namespace pindrive::detail {
 
@@ -76,16 +75,6 @@ class Simulation {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Side = Touch<T, Surface>;
 
-  /// What stays positive while a mode lasts: the distance of a sliding speed from a bound, or (none)
-  /// what contacts that stick could carry beyond what they do, to a side.
-  struct Guard {
-    Path<T> path;
-    Bound bound;
-    bool plate, finger;
-    int side;
-    T root{never};
-  };
-
   static ContactState touch(const Surface& contact, T u) {
     if (!contact.present()) return ContactState::absent;
     return u > 0   ? ContactState::slip_forward
@@ -133,8 +122,8 @@ class Simulation {
   }
 
   /// The force that would keep the pin on the surface of a contact, beside what the other does, N, …
-  T demand(const Side& on, const Side& other) const {
-    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - other.force(state_);
+  T demand(const Side& on, T of_other) const {
+    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
   }
   /// … and how it changes; `size` is that of the terms of its slope.
   Path<T> demand_from(T force, const Side& on, const Side& other, T& size) const {
@@ -155,13 +144,13 @@ class Simulation {
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
-    const T force = demand(on, other);
+    const T force = demand(on, other.force(state_));
     const int at_limit = continues(limit) ? limit : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
     stick_force_ = demand_from(force, on, other, size);
-    guard_count_ = 0;
+    guards_.clear();
     for (const int side : {1, -1}) {
       Path<T> left = Path<T>(most) + T(-side) * stick_force_;
       if (!(left.start > state_.roundoff) || side == at_limit) {
@@ -171,7 +160,7 @@ class Simulation {
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
-      guards_[guard_count_++] = {left, Bound::none, plate_.stuck(), finger_.stuck(), side};
+      guards_.add({left, Bound::none, plate_.stuck(), finger_.stuck(), side});
     }
     return true;
   }
@@ -181,12 +170,12 @@ class Simulation {
   bool sets_out(int limit) {
     using std::abs;
     tangential_ = false;
-    guard_count_ = 0;
-    const T forces = plate_.force(state_) + finger_.force(state_);
-    acceleration_ = (inertia_ - pull_ + forces) / drive_.mass;
-    const auto relative = [&](const Side& side, const Side& other) {  // times the mass
+    guards_.clear();
+    const T plate = plate_.force(state_), finger = finger_.force(state_);
+    acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
+    const auto relative = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
-      const T force = side.force(state_) - demand(side, other);
+      const T force = own - demand(side, of_other);
       const bool lets_go = side.before == ContactState::stick && continues(limit);
       if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
         tangential_ = true;
@@ -194,7 +183,8 @@ class Simulation {
       }
       return force;
     };
-    const T of_plate = relative(plate_, finger_), of_finger = relative(finger_, plate_);
+    const T of_plate = relative(plate_, plate, finger),
+            of_finger = relative(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       const T apart = acceleration_ - side.surface.rate;
       if (!tangential_ || apart != 0 || !side.rests(state_.v))
@@ -253,7 +243,7 @@ class Simulation {
 
   void add_guards(const Side& side, const Segment<T>& segment, bool plate) {
     const auto add = [&](const Path<T>& path, Bound bound, int to) {
-      guards_[guard_count_++] = {path, bound, plate, !plate, to};
+      guards_.add({path, bound, plate, !plate, to});
     };
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
@@ -273,31 +263,10 @@ class Simulation {
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_;
-    T first = row;
-    if (flow.velocity.oscillates()) first = std::min(first, flow.oscillator.serves_for());
-    for (int i = 0; i < guard_count_; ++i) {
-      Guard& guard = guards_[i];
-      const Path<T>& path = guard.path;
-      if ((path.start >= 0 && path.constant()) || comes_later(path)) continue;
-      const T horizon = first < never ? first + rounding<T> * (time_ + first) : never;
-      guard.root = first_root(flow.oscillator, path, 1, horizon);
-      first = std::min(first, guard.root);
-    }
+    const bool restarts = flow.velocity.oscillates();
+    const T limit = restarts ? std::min(row, flow.oscillator.serves_for()) : row;
+    const T first = guards_.earliest(flow.oscillator, state_.v, time_, limit);
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
-  }
-
-  /// Whether another guard comes to zero before this one for certain: it runs below, at a constant
-  /// distance beyond rounding, or falls to the middle of its oscillation while this one rises.
-  bool comes_later(const Path<T>& p) const {
-    using std::abs;
-    const T farther = p.start - rounding<T> * (p.start + abs(state_.v));
-    return p.straight() &&
-           std::any_of(guards_.begin(), guards_.begin() + guard_count_, [&](auto& g) {
-             const Path<T>& q = g.path;
-             if (!q.straight()) return false;
-             return (q.start < farther && q.value == p.value && q.slope == p.slope) ||
-                    (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0);
-           });
   }
 
   // ---- to the event ------------------------------------------------------------------------------
@@ -325,9 +294,8 @@ class Simulation {
     }
     Reached reached;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
-    for (int i = 0; i < guard_count_; ++i) {
-      const Guard& guard = guards_[i];
-      if (!(guard.root <= coincident)) continue;
+    for (const Guard<T>& guard : guards_) {
+      if (!(guard.zero <= coincident)) continue;
       const Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         (guard.plate ? reached.plate : reached.finger) = guard.bound;
@@ -368,8 +336,7 @@ class Simulation {
   T acceleration_{};
   bool tangential_{false};
   Path<T> stick_force_{};
-  std::array<Guard, 6> guards_;
-  int guard_count_{0};
+  Guards<T> guards_;
 
   Return<T> returns_;
   Outcome<T> outcome_{};

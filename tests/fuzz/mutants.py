@@ -46,8 +46,8 @@ MUTANTS = (
     Mutant(
         "slips where a tenth of the stick limit is left",
         "simulation.hpp",
-        "const T force = demand(on, other);\n    const int at_limit",
-        "const T force = demand(on, other) / T(0.9);\n    const int at_limit",
+        "const T force = demand(on, other.force(state_));\n    const int at_limit",
+        "const T force = demand(on, other.force(state_)) / T(0.9);\n    const int at_limit",
     ),
     Mutant(
         "static friction of the sticking contact is its kinetic friction",
@@ -130,8 +130,8 @@ MUTANTS = (
     Mutant(
         "the plate holds for ever",
         "simulation.hpp",
-        "guards_[guard_count_++] = {left, Bound::none,",
-        "if (!plate_.stuck()) guards_[guard_count_++] = {left, Bound::none,",
+        "guards_.add({left, Bound::none,",
+        "if (!plate_.stuck()) guards_.add({left, Bound::none,",
     ),
     Mutant(
         "the rows of the load are overlooked",
@@ -142,7 +142,7 @@ MUTANTS = (
     ),
     Mutant(
         "a guard that another one precedes is not the later one",
-        "simulation.hpp",
+        "guards.hpp",
         "(q.start < farther && q.value",
         "(p.start < q.start && q.value",
     ),
