@@ -29,13 +29,6 @@ struct State {
   T roundoff{0};  ///< forces that differ by less are one, N
 };
 
-/// m x'' + c x' + κ (x − x₀) = pull: what acts on a pin that sets out from x₀.
-template <class T>
-struct Equation {
-  T damping, stiffness;
-  Line<T> pull;
-};
-
 /// Whether a guard at its zero dips below it by no more than its roundoff.
 template <class T>
 bool touches(T rate, T curvature, T roundoff) {
@@ -73,7 +66,8 @@ struct Touch {
     before = state;
     count = 1;
     const T u = s.v - surface.value;
-    const bool backward = state == ContactState::slip_forward;  // to cross is asked first
+    const auto across =
+        opposite(state == ContactState::slip_forward ? state : ContactState::slip_backward);
     if (slips(state)) {
       const Branch<T> range = contact.branch(branch);
       const T speed = along(state, u);
@@ -81,7 +75,7 @@ struct Touch {
                        : speed >= range.to    ? Bound::upper
                        : speed > range.from   ? Bound::none
                                               : Bound::lower;
-      options[0] = {state, at, branch};
+      does = options[0] = {state, at, branch};
       if (at == Bound::none) return;
       if (at == Bound::upper || branch > 0) {
         options[1] = at == Bound::upper ? Option{state, Bound::lower, branch + 1}
@@ -92,11 +86,10 @@ struct Touch {
       // Skin grips with the force that it has.
       state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
     }
-    options[0] = {state, Bound::none, 0};
+    does = options[0] = {state, Bound::none, 0};
     if (state == ContactState::stick) {
-      const auto other = backward ? ContactState::slip_backward : ContactState::slip_forward;
-      options[1] = {other, Bound::lower, 0};
-      options[2] = {opposite(other), Bound::lower, 0};
+      options[1] = {across, Bound::lower, 0};
+      options[2] = {opposite(across), Bound::lower, 0};
       count = 3;
     } else if (!Surface::plain && state == ContactState::elastic_stick) {
       const int side = s.skin > 0 ? 1 : -1;
@@ -130,11 +123,9 @@ struct Touch {
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
     using std::abs;
-    if (does.state == ContactState::absent) return T(0);
-    T sum = contact.static_limit;
-    if (sliding() && contact.branches > 0)
-      sum += abs(kinetic(v)) + abs(branch().slope) * (abs(v) + abs(surface.value));
-    return sum * load.value;
+    if (!sliding() || contact.branches == 0) return contact.static_limit * load.value;
+    const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
+    return (contact.static_limit + abs(kinetic(v)) + rounded) * load.value;
   }
 
   /// R = −s (F + c (s u − from)) λ with u = x' − surface: without c x', N, and c.
@@ -145,16 +136,16 @@ struct Touch {
     if (range.slope == 0) return {force * load.value, force * load.rate};
     return {force * load.value + drag * surface.value, force * load.rate + drag * surface.rate};
   }
-  /// Adds its force to an equation.
-  void add_to(Equation<T>& sum, const State<T>& s) const {
+  /// Adds its force to the equation m x'' + c x' + κ (x − x₀) = pull of a pin that sets out from x₀.
+  void add_to(T& damping, T& stiffness, Line<T>& pull, const State<T>& s) const {
     if (elastic()) {
-      sum.stiffness += contact.stiffness;
-      sum.pull.value -= s.skin;
+      stiffness += contact.stiffness;
+      pull.value -= s.skin;
     } else if (sliding()) {
       T drag;
       const Line<T> force = constant_force(drag);
-      sum.pull = {sum.pull.value + force.value, sum.pull.rate + force.rate};
-      sum.damping += drag;
+      pull = {pull.value + force.value, pull.rate + force.rate};
+      damping += drag;
     }
   }
   /// Its force along a flow, unless it sticks, N.

@@ -44,15 +44,15 @@ class Simulation {
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
-    for (long long events = 0; outcome_.status == Status::ok; ++events) {
+    for (long long events = 1;; ++events) {
       Segment<T> segment = begin();
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
       if (!finished) {
-        select(segment.mode, jump(segment, tau));
+        const Mode before = segment.mode;
+        select(before, jump(segment, tau));
         const Mode after = mode();
-        segment.event = {change(segment.mode.plate, after.plate),
-                         change(segment.mode.finger, after.finger)};
+        segment.event = {change(before.plate, after.plate), change(before.finger, after.finger)};
         if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);
@@ -66,9 +66,9 @@ class Simulation {
       if (finished || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
       if (standing > standstill_limit) outcome_.status = Status::standstill;
-      if (events + 1 == event_limit) outcome_.status = Status::too_many_events;
+      if (events == event_limit) outcome_.status = Status::too_many_events;
+      if (outcome_.status != Status::ok) return outcome_;
     }
-    return outcome_;
   }
 
  private:
@@ -76,13 +76,8 @@ class Simulation {
   using Side = Touch<T, Surface>;
 
   static ContactState touch(const Surface& contact, T u) {
-    if (!contact.present()) return ContactState::absent;
-    return u > 0   ? ContactState::slip_forward
-           : u < 0 ? ContactState::slip_backward
-                   : ContactState::stick;
+    return contact.present() ? static_cast<ContactState>((u > 0) - (u < 0)) : ContactState::absent;
   }
-
-  // ---- which mode follows ------------------------------------------------------------------------
 
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
@@ -92,8 +87,6 @@ class Simulation {
     const T damper = drive_.damping * state_.v;
     plate_.ask(before.plate, before.plate_branch, reached.plate, state_);
     finger_.ask(before.finger, before.finger_branch, reached.finger, state_);
-    plate_.does = plate_.options[0];
-    finger_.does = finger_.options[0];
     inertia_ = drive_.mass * plate_.surface.rate;
     pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
@@ -121,7 +114,7 @@ class Simulation {
     return limit != 0 && plate_.continues(limit) && finger_.continues(limit);
   }
 
-  /// The force that would keep the pin on the surface of a contact, beside what the other does, N, …
+  /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
   T demand(const Side& on, T of_other) const {
     return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
   }
@@ -198,8 +191,6 @@ class Simulation {
     return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
   }
 
-  // ---- one mode ----------------------------------------------------------------------------------
-
   Mode mode() const {
     return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
   }
@@ -221,18 +212,19 @@ class Simulation {
     const State<T>& s = state_;
     if (plate_.stuck() || finger_.stuck())
       return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
-    Equation<T> sum{drive_.damping, drive_.stiffness, {inertia_ - drive_.stiffness * s.x, T(0)}};
-    plate_.add_to(sum, s);
-    finger_.add_to(sum, s);
+    T damping = drive_.damping, stiffness = drive_.stiffness;
+    Line<T> pull{inertia_ - stiffness * s.x, T(0)};
+    plate_.add_to(damping, stiffness, pull, s);
+    finger_.add_to(damping, stiffness, pull, s);
     const Oscillator<T> oscillator =
-        linear() ? plain_ : Oscillator<T>(drive_.mass, sum.damping, sum.stiffness);
+        linear() ? plain_ : Oscillator<T>(drive_.mass, damping, stiffness);
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (s.v == 0 && sum.pull.rate == 0 && abs(sum.pull.value) <= s.roundoff)
+    if (s.v == 0 && pull.rate == 0 && abs(pull.value) <= s.roundoff)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
-    const T drift = sum.pull.rate / sum.stiffness;
-    const T pull = tangential_ ? drive_.mass * acceleration_ + sum.damping * (s.v - drift)
-                               : sum.pull.value - sum.damping * drift;
-    return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -pull / sum.stiffness, drift);
+    const T drift = pull.rate / stiffness;
+    const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
+                                    : pull.value - damping * drift;
+    return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
   /// Whether no contact damps or stiffens.
@@ -242,12 +234,10 @@ class Simulation {
   }
 
   void add_guards(const Side& side, const Segment<T>& segment, bool plate) {
-    const auto add = [&](const Path<T>& path, Bound bound, int to) {
-      guards_.add({path, bound, plate, !plate, to});
-    };
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
-      for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, to);
+      for (const int to : {1, -1})
+        guards_.add({most + T(to) * segment.finger_force, Bound::none, plate, !plate, to});
     }
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();
@@ -256,20 +246,17 @@ class Simulation {
     Path<T> below = T(-1) * above;
     above.start = side.does.at == Bound::lower ? T(0) : above.start - range.from;
     below.start = side.does.at == Bound::upper ? T(0) : below.start + range.to;
-    add(above, Bound::lower, 0);
-    if (range.to < never) add(below, Bound::upper, 0);
+    guards_.add({above, Bound::lower, plate, !plate, 0});
+    if (range.to < never) guards_.add({below, Bound::upper, plate, !plate, 0});
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
-    const T row = row_ - time_;
-    const bool restarts = flow.velocity.oscillates();
-    const T limit = restarts ? std::min(row, flow.oscillator.serves_for()) : row;
+    const T row = row_ - time_, serves = flow.oscillator.serves_for();
+    const T limit = flow.velocity.oscillates() ? std::min(row, serves) : row;
     const T first = guards_.earliest(flow.oscillator, state_.v, time_, limit);
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
   }
-
-  // ---- to the event ------------------------------------------------------------------------------
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
   Reached jump(Segment<T>& segment, T tau) {
@@ -286,12 +273,9 @@ class Simulation {
     if (finger_.sliding()) state_.skin = along(finger_.does.state, drive_.finger.kinetic);
     const bool row = tau == row_ - time_;
     segment.end = time_ = row ? row_ : time_ + tau;
-    if (row) {
-      look_ahead();
-    } else {
-      plate_.surface.value = plate_.surface.at(tau);
-      plate_.load.value = plate_.load.at(tau);
-    }
+    plate_.surface.value = plate_.surface.at(tau);
+    plate_.load.value = plate_.load.at(tau);
+    if (row) look_ahead();
     Reached reached;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
@@ -326,9 +310,8 @@ class Simulation {
   T half_period_;            ///< from one zero of its velocity to the next,
   Transition<T> half_turn_;  ///< and how it has moved on there
 
-  T time_{0};
+  T time_{0}, row_{never};  ///< now, and of the next row of an input, s
   State<T> state_;
-  T row_{never};          ///< time of the next row of an input, s
   Side plate_, finger_;   ///< in the mode that was selected
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
