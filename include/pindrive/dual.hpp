@@ -45,10 +45,11 @@ struct Dual {
   friend constexpr bool operator<=(Dual a, Dual b) { return a.value <= b.value; }
   friend constexpr bool operator>=(Dual a, Dual b) { return a.value >= b.value; }
 
+  friend constexpr T plain(Dual a) { return a.value; }
   friend bool isfinite(Dual a) { return std::isfinite(a.value); }
   friend bool isnan(Dual a) { return std::isnan(a.value); }
   friend Dual floor(Dual a) { return std::floor(a.value); }
-  friend Dual abs(Dual a) { return std::signbit(a.value) ? -a : a; }  // of −0 too
+  friend Dual abs(Dual a) { return std::signbit(a.value) ? -a : a; }
 
   friend Dual sqrt(Dual a) {
     const T root = std::sqrt(a.value);

@@ -136,8 +136,8 @@ struct Touch {
     if (range.slope == 0) return {force * load.value, force * load.rate};
     return {force * load.value + drag * surface.value, force * load.rate + drag * surface.rate};
   }
-  /// Adds its force to the equation m x'' + c x' + κ (x − x₀) = pull of a pin that sets out from x₀.
-  void add_to(T& damping, T& stiffness, Line<T>& pull, const State<T>& s) const {
+  /// Adds its force to m x'' + c x' + κ (x − x₀) = pull, and what is rounding of c to `known`.
+  void add_to(T& damping, T& known, T& stiffness, Line<T>& pull, const State<T>& s) const {
     if (elastic()) {
       stiffness += contact.stiffness;
       pull.value -= s.skin;
@@ -146,6 +146,7 @@ struct Touch {
       const Line<T> force = constant_force(drag);
       pull = {pull.value + force.value, pull.rate + force.rate};
       damping += drag;
+      known += branch().rounding * load.value;
     }
   }
   /// Its force along a flow, unless it sticks, N.

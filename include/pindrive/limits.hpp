@@ -17,8 +17,9 @@ inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 inline constexpr int standstill_limit = 100;
 
 /// How closely a state returns in a cycle, as a part of its size: a hundred roundings, which is what
-/// the events of one round leave.
-inline constexpr double return_tolerance = 1e-14;
+/// the events of one round leave; and by how much more for each round before, since without damping the
+/// rounding of the rounds adds up.
+inline constexpr double return_tolerance = 1e-14, return_tolerance_per_round = 1e-15;
 
 }  // namespace detail
 

@@ -13,38 +13,51 @@ namespace pindrive {
 /// Default band of the settling time, as a part of |x(0) − x_end|.
 inline constexpr double settling_band = 0.05;
 
+/// A number without what else it carries, such as a derivative.
+inline float plain(float x) { return x; }
+inline double plain(double x) { return x; }
+inline long double plain(long double x) { return x; }
+
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
 struct Branch {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
+  T rounding;  ///< how well the slope is known from rounded rows, N s/m
 
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
 /// The branches between the rows (speed, force) of a friction curve, at most count + 1; none for the
-/// one row of Coulomb friction. The last slope goes on; where it falls, until the force is zero:
-/// friction never pushes.
+/// one row of Coulomb friction. Rows on one line, to rounding, make one branch. The last slope goes
+/// on; where it falls, until the force is zero: friction never pushes.
 template <class T>
 int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches) {
+  using std::abs;
   if (count < 2) return 0;
   constexpr T never = std::numeric_limits<T>::infinity();
-  const int last = count - 1;
-  for (int i = 0; i < last; ++i) {
-    const T slope = (forces[i + 1] - forces[i]) / (speeds[i + 1] - speeds[i]);
-    branches[i] = {speeds[i], speeds[i + 1], forces[i], slope};
+  constexpr T unit = 2 * std::numeric_limits<T>::epsilon();
+  int made = 0;
+  for (int i = 0; i + 1 < count; ++i) {
+    const T width = speeds[i + 1] - speeds[i];
+    const T slope = (forces[i + 1] - forces[i]) / width;
+    const T rounding =
+        unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
+    const bool bends =
+        made == 0 || abs(slope - branches[made - 1].slope) > rounding + branches[made - 1].rounding;
+    if (bends) branches[made++] = {speeds[i], never, forces[i], slope, rounding};
+    branches[made - 1].to = speeds[i + 1];
   }
-  const T slope = branches[last - 1].slope;
-  branches[last] = {speeds[last], never, forces[last], slope};
-  if (!(slope < 0)) return count;
-  if (!(forces[last] > 0)) {
-    branches[last] = {speeds[last], never, T(0), T(0)};
-    return count;
+  const T force = forces[count - 1];
+  Branch<T>& last = branches[made - 1];
+  if (last.slope < 0) {
+    if (force > 0) last.to -= force / last.slope;
+    branches[made] = {last.to, never, T(0), T(0), T(0)};
+    return made + 1;
   }
-  branches[last].to = speeds[last] - forces[last] / slope;
-  branches[count] = {branches[last].to, never, T(0), T(0)};
-  return count + 1;
+  last.to = never;
+  return made;
 }
 
 /// Dry friction at one surface. Without friction the contact is absent.
@@ -61,7 +74,7 @@ struct Contact {
   static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
   Branch<T> branch(int index) const {
-    if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0)};
+    if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
   }
   int branch_of(T speed) const {
@@ -82,7 +95,7 @@ struct Coulomb {
   static constexpr int branches = 0;
   static constexpr T stiffness = std::numeric_limits<T>::infinity();
   static constexpr bool rigid() { return true; }
-  Branch<T> branch(int) const { return {T(0), stiffness, kinetic, T(0)}; }
+  Branch<T> branch(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
   static constexpr int branch_of(T) { return 0; }
   bool present() const { return static_limit > 0; }
 };

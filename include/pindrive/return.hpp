@@ -1,5 +1,5 @@
 /// How a motion ends: in a mode that lasts for ever, or in a cycle, which an observer of the events
-/// finds by Brent's way to find a cycle of any length.
+/// finds by keeping one state ever longer (Brent).
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class Return {
     kept_.released = kept_.released || release;
     if (visits_ == next_) {
       kept_ = now;
-      next_ = 2 * next_ + 1;
+      next_ += next_ / 4 + 1;
     }
     ++visits_;
   }
@@ -73,9 +73,8 @@ class Return {
   bool same(const Drive& drive, const Visit& now) const {
     using std::abs;
     using std::sqrt;
-    const auto alike = [](T one, T other, T scale) {
-      return abs(one - other) <= T(return_tolerance) * scale;
-    };
+    const T close = T(return_tolerance) + T(return_tolerance_per_round) * T(visits_);
+    const auto alike = [&](T one, T other, T scale) { return abs(one - other) <= close * scale; };
     const T omega0 = sqrt(drive.stiffness / drive.mass);
     const T size = abs(now.state.x) + abs(now.state.v) / omega0;
     return kept_.mode.plate == now.mode.plate && kept_.mode.finger == now.mode.finger &&

@@ -234,16 +234,20 @@ class Roots<T, 0> {
   T count_{0};
 };
 
-/// How long a decaying oscillation cannot bring a path, whose line is on its side, to zero.
+/// How long an oscillation cannot bring a path, whose line is on its side, to zero. A growing one is
+/// given half of the way between them, the line the other half.
 template <class T>
 T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
   using std::hypot;
-  const T reach =
-      hypot(path.value, (path.slope - oscillator.alpha() * path.value) / oscillator.omega());
-  const T distance = side * path.centre() - reach;
+  using std::log1p;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  const T alpha = oscillator.alpha();
+  const T reach = hypot(path.value, (path.slope - alpha * path.value) / oscillator.omega());
+  const T distance = side * path.centre() - reach, approach = -side * path.drift;
   if (!(distance > 0)) return T(0);
-  const T approach = -side * path.drift;
-  return approach > 0 ? distance / approach : std::numeric_limits<T>::infinity();
+  if (!(alpha > 0)) return approach > 0 ? distance / approach : never;
+  const T grown = log1p(distance / (2 * reach)) / alpha;
+  return approach > 0 ? std::min(grown, distance / (2 * approach)) : grown;
 }
 
 /// Whether a decaying oscillation about a constant on its side is too small to bring it to zero.
@@ -293,11 +297,13 @@ T first_root(const Oscillator<T>& oscillator, const Path<T>& path, int side, T h
     });
     return first;
   };
-  const bool fading = oscillator.oscillates() && oscillator.alpha() <= 0 && path.oscillates();
-  if (!fading) return earliest(path, horizon);
-  if (path.drift == 0) return too_small(oscillator, path, side) ? never : earliest(path, horizon);
-  // While the line is out of the reach of a decaying oscillation, nothing need be looked at; else
-  // a few of its periods are, before the reach is measured again.
+  if (!oscillator.oscillates() || !path.oscillates()) return earliest(path, horizon);
+  if (path.drift == 0) {
+    const bool never_reaches = oscillator.alpha() <= 0 && too_small(oscillator, path, side);
+    return never_reaches ? never : earliest(path, horizon);
+  }
+  // While the line is out of the oscillation's reach, nothing need be looked at; else a few periods
+  // are, before the reach is measured again.
   Path<T> rest = path;
   T passed{0};
   for (;;) {

@@ -213,9 +213,12 @@ class Simulation {
     if (plate_.stuck() || finger_.stuck())
       return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
     T damping = drive_.damping, stiffness = drive_.stiffness;
+    T known = 2 * std::numeric_limits<T>::epsilon() * damping;  // how well the damping is
     Line<T> pull{inertia_ - stiffness * s.x, T(0)};
-    plate_.add_to(damping, stiffness, pull, s);
-    finger_.add_to(damping, stiffness, pull, s);
+    plate_.add_to(damping, known, stiffness, pull, s);
+    finger_.add_to(damping, known, stiffness, pull, s);
+    // A damper that falling friction cancels to rounding neither damps nor drives.
+    if (abs(damping) <= known) damping -= plain(damping);
     const Oscillator<T> oscillator =
         linear() ? plain_ : Oscillator<T>(drive_.mass, damping, stiffness);
     // A pin without speed on which forces act that cancel to rounding is at rest.
@@ -227,8 +230,7 @@ class Simulation {
     return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
-  /// Whether no contact damps or stiffens.
-  bool linear() const {
+  bool linear() const {  // no contact damps or stiffens
     return Surface::plain ||
            (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
   }
@@ -315,10 +317,9 @@ class Simulation {
   Side plate_, finger_;   ///< in the mode that was selected
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
-  // How the pin sets out: with this acceleration, which may be that of a surface, or carried.
-  T acceleration_{};
+  T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
   bool tangential_{false};
-  Path<T> stick_force_{};
+  Path<T> stick_force_{};  ///< … or what carries it
   Guards<T> guards_;
 
   Return<T> returns_;

@@ -17,25 +17,11 @@ namespace pd = pindrive;
 
 inline constexpr double largest_residual = 1e-9;
 
-/// The rows of a curve as branches; the last slope goes on until the force is zero.
+/// The rows of a curve as branches, as the core makes them.
 inline std::vector<pd::Branch<double>> branches(const Rows& rows) {
-  std::vector<pd::Branch<double>> all;
-  if (rows.at.size() == 1) return all;
-  double slope = 0;
-  for (std::size_t i = 0; i + 1 < rows.at.size(); ++i) {
-    slope = (rows.value[i + 1] - rows.value[i]) / (rows.at[i + 1] - rows.at[i]);
-    all.push_back({rows.at[i], rows.at[i + 1], rows.value[i], slope});
-  }
-  double from = rows.at.back(), force = rows.value.back();
-  if (slope < 0) {
-    if (force > 0) {
-      const double zero = from - force / slope;
-      all.push_back({from, zero, force, slope});
-      from = zero;
-    }
-    force = slope = 0;
-  }
-  all.push_back({from, never, force, slope});
+  std::vector<pd::Branch<double>> all(rows.at.size() + 1);
+  const int count = static_cast<int>(rows.at.size());
+  all.resize(pd::branches_of(rows.at.data(), rows.value.data(), count, all.data()));
   return all;
 }
 
