@@ -90,7 +90,7 @@ struct OwnedContact {
     const Columns<T> rows(std::get<3>(at), std::get<3>(along));
     branches.resize(rows.first.size() + 1);
     contact.branches = pd::branches_of(rows.first.data(), rows.second.data(),
-                                     static_cast<int>(rows.first.size()), branches.data());
+                                       static_cast<int>(rows.first.size()), branches.data());
     contact.curve = branches.data();
   }
 };

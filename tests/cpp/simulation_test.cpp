@@ -14,6 +14,10 @@
 #include "../fuzz/draw.hpp"
 #include "../fuzz/judge.hpp"
 
+#ifndef PINDRIVE_HARD
+#define PINDRIVE_HARD "tests/hard"  // from the root
+#endif
+
 namespace pd = pindrive;
 
 namespace {

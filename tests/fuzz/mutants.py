@@ -149,8 +149,8 @@ MUTANTS = (
     Mutant(
         "a cycle is closed a thousandth too soon",
         "limits.hpp",
-        "return_tolerance = 1e-14;",
-        "return_tolerance = 1e-3;",
+        "return_tolerance = 1e-14,",
+        "return_tolerance = 1e-3,",
     ),
     Mutant(
         "every second zero of an oscillation is missed",

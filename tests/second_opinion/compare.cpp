@@ -70,6 +70,7 @@ Course new_course(const fuzz::Given& given, double rounding) {
 Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding) {
   const auto branches = [](const auto& rows) {
     std::vector<so::Region<double>> branches;
+    branches.reserve(rows.size());
     for (const auto& row : rows) branches.push_back({row.from, row.to, row.force, row.slope});
     return branches;
   };
@@ -125,8 +126,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: compare COUNT SEED [FROM]\n");
     return 2;
   }
-  const long long count = std::atoll(argv[1]), from = argc > 3 ? std::atoll(argv[3]) : 0;
-  const auto seed = static_cast<std::uint64_t>(std::atoll(argv[2]));
+  const auto number_of = [&](int i) { return std::strtoll(argv[i], nullptr, 10); };
+  const long long count = number_of(1), from = argc > 3 ? number_of(3) : 0;
+  const auto seed = static_cast<std::uint64_t>(number_of(2));
   long long different = 0;
   for (long long number = from; number < from + count; ++number) {
     const fuzz::Case c = fuzz::Draw(seed, static_cast<std::uint64_t>(number)).next();
@@ -138,6 +140,6 @@ int main(int argc, char** argv) {
                      ? 1
                      : 0;
   }
-  std::printf("%lld drives of seed %lld, %lld differ\n", count, std::atoll(argv[2]), different);
+  std::printf("%lld drives of seed %lld, %lld differ\n", count, number_of(2), different);
   return different == 0 ? 0 : 1;
 }
