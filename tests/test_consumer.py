@@ -61,8 +61,11 @@ def test_the_umbrella_header_shows_what_the_consumer_does() -> None:
     head = (ROOT / "include" / "pindrive.hpp").read_text("utf-8")
     shown = re.findall(r"^///     (.*)$", head, re.MULTILINE)
     assert 0 < len(shown) <= 10
-    program = (CONSUMER / "main.cpp").read_text("utf-8")
-    assert [line.strip() for line in shown if line.strip() not in program] == []
+
+    def unbroken(text: str) -> str:
+        return "".join(text.split())
+
+    assert unbroken("".join(shown[1:])) in unbroken((CONSUMER / "main.cpp").read_text("utf-8"))
 
 
 def test_the_core_stands_alone() -> None:
