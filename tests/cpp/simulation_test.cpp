@@ -90,6 +90,33 @@ void no_mode_without_time() {
   expect(instants <= 3, "... and " + std::to_string(instants) + " modes last no time");
 }
 
+/// At rest on the finger while the plate passes at the speed of a breakpoint of its curve, with next to
+/// no force: every mode is tied.
+void tied_at_rest() {
+  const double speeds[] = {0, 0.05, 0.1}, at_plate[] = {0.1, 0.2, 0.05},
+               at_finger[] = {0, 0.01, 0.02};
+  pd::Branch<double> plate[4], finger[4];
+  const int in_plate = pd::branches_of(speeds, at_plate, 3, plate);
+  const int in_finger = pd::branches_of(speeds, at_finger, 3, finger);
+  int stopped = 0, instants = 0;
+  for (const double limit : {0.0, 1e-23, 1e-17, 0.01})
+    for (const double force : {0.0, 1e-23, -1e-23, 1e-18, -1e-18, 3e-17, -3e-17, 1e-15, -1e-15})
+      for (const double v_p : {0.05, -0.05}) {
+        const pd::Drive<double> drive{0.01, 1.0, 0.1, {0.1, 0.1}, {limit, limit}};
+        pd::Drive<double> curved = drive;
+        curved.plate.curve = plate;
+        curved.plate.branches = in_plate;
+        if (limit == 0) curved.finger.curve = finger, curved.finger.branches = in_finger;
+        const pd::Inputs<double> inputs{v_p, (v_p > 0 ? 0.2 : -0.2) + force, 0.0, 1.0};
+        const auto outcome = pd::simulate(curved, inputs, [&](const auto& segment) {
+          instants += segment.end > segment.begin ? 0 : 1;
+        });
+        stopped += outcome.status == pd::Status::ok ? 0 : 1;
+      }
+  expect(stopped == 0, "at rest with every mode tied and forces down to 1e-23: one is consistent");
+  expect(instants == 0, "... and lasts");
+}
+
 Segments hard(const std::string& name) {
   std::ifstream file(std::string(PINDRIVE_HARD) + "/" + name + ".txt");
   fuzz::Case c;
@@ -134,6 +161,7 @@ void hard_drives() {
 int main() {
   parting_surfaces();
   no_mode_without_time();
+  tied_at_rest();
   hard_drives();
   return failures == 0 ? 0 : 1;
 }
