@@ -7,7 +7,7 @@
 
 namespace pindrive {
 
-/// Everything asked of a motion (MODEL.md §6), over [0, duration].
+/// Everything asked of a motion (docs/theory.md, 6), over [0, duration].
 template <class T>
 struct Summary {
   Transient<T> transient;
@@ -37,11 +37,7 @@ Summary<T> summarise(const Drive<T>& drive, const Inputs<T>& inputs, T band, Seg
     return go_on();
   });
   const Motion<T> motion(drive, inputs, segments.data(), segments.size(), summary.outcome);
-  summary.duration = duration_of(motion, go_on);
-  constexpr T never = std::numeric_limits<T>::infinity();
-  if (band < T(settling_band) && summary.outcome.end == End::decaying && !(inputs.duration < never))
-    summary.duration = std::max(
-        summary.duration, T(1.25) * Measurement<T, GoOn>(motion, never, go_on).settling_time(band));
+  summary.duration = duration_of(motion, band, go_on);
   summary.transient = Measurement<T, GoOn>(motion, summary.duration, go_on).transient(band);
   return summary;
 }

@@ -1,5 +1,5 @@
 /// Checks a finished motion against the laws it must obey, without using the solver: no mode is
-/// chosen here and no event looked for; the motion is evaluated and held against MODEL.md §2–§4.
+/// chosen here and no event looked for; the motion is evaluated and held against docs/theory.md, 1 and 4.
 ///
 /// Each segment is walked once. At Gauss nodes the laws are held against the state, and sums over
 /// the nodes give the integrals; between the nodes a bound proves that no guard dips unseen.

@@ -32,7 +32,7 @@ struct Equation {
 };
 
 /// Set-valued friction of a pin between the plate (surface velocity v_p) and the finger (surface
-/// velocity 0), as MODEL.md §2–§4 states it. A force in the skin counts like its stretch.
+/// velocity 0), as docs/theory.md, 1 and 4, states it. A force in the skin counts like its stretch.
 template <class T, class Surface = Contact<T>>
 class Friction {
  public:
@@ -56,7 +56,7 @@ class Friction {
       add_sliding(sum, drive_.finger, mode.finger, mode.finger_region, {}, {T(1), T(0)});
     }
     // A damper that falling friction cancels to rounding neither damps nor drives.
-    if (abs(sum.damping) <= sum.rounding && sum.rounding > 0) sum.damping -= plain(sum.damping);
+    if (abs(sum.damping) <= sum.rounding) sum.damping -= plain(sum.damping);
     return sum;
   }
 

@@ -1,4 +1,4 @@
-/// The numbers asked of a motion (MODEL.md §6), from its segments, exactly; never from samples.
+/// The numbers asked of a motion (docs/theory.md, 6), from its segments, exactly; never from samples.
 #pragma once
 
 #include <algorithm>
@@ -505,9 +505,9 @@ class Measurement {
 };
 
 /// The duration that was asked for or, without one, long enough to see the ending: a decay to a
-/// thousandth and until settled, or a few periods of what lasts.
+/// thousandth and until settled within the band or the usual one, or a few periods of what lasts.
 template <class T, class GoOn = Unattended>
-T duration_of(const Motion<T>& motion, GoOn go_on = {}) {
+T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
   using std::isfinite;
   using std::sqrt;
   if (isfinite(motion.inputs().duration)) return motion.inputs().duration;
@@ -520,7 +520,7 @@ T duration_of(const Motion<T>& motion, GoOn go_on = {}) {
       return std::max(last_begin * T(1.25), period);
     case End::decaying: {
       const Measurement<T, GoOn> measured(motion, never, go_on);
-      const T settled = measured.settling_time(T(settling_band));
+      const T settled = measured.settling_time(std::min(band, T(settling_band)));
       const T decayed = measured.decayed() + period;  // infinite where there is nothing to decay
       if (!(decayed < never)) return last_begin + period;
       return settled * T(1.25) > decayed ? settled * T(1.25) : decayed;

@@ -284,9 +284,9 @@ nb::dict ledger(const CoreMotion<T>& motion, double duration) {
   return d;
 }
 
-double duration(const CoreMotion<double>& motion) {
+double duration(const CoreMotion<double>& motion, double band) {
   const auto view = motion.view();
-  return interruptible([&](auto go_on) { return pd::duration_of(view, go_on); });
+  return interruptible([&](auto go_on) { return pd::duration_of(view, band, go_on); });
 }
 
 nb::dict certificate(const CoreMotion<double>& motion, double duration) {
@@ -339,7 +339,7 @@ NB_MODULE(_core, m) {
   using Motion = CoreMotion<double>;
   bind<double>(m, "Motion", "A simulated motion and its segments.")
       .def("certificate", &certificate, "duration"_a)
-      .def_prop_ro("duration", &duration)
+      .def("duration", &duration, "band"_a)
       .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })

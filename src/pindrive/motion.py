@@ -23,7 +23,7 @@ from pindrive.events import Event, Segment, Table, events_of, segments_of
 from pindrive.plausible import warn_of
 from pindrive.quantities import INPUTS, QUANTITIES, check, refusal
 from pindrive.quantity import brief, counted
-from pindrive.transient import DECAYING, Certificate, ContactUse, Ending, Ledger, Transient
+from pindrive.transient import Certificate, ContactUse, Ending, Ledger, Transient
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -95,20 +95,13 @@ class Motion:
         self.skin_stretch = skin_stretch
         self.starts_with_plate = starts_with_plate
         self.settling_band = settling_band
-        self.duration: float = core.duration
-        if settling_band < _core.settling_band and self._decays_unasked():
-            settled = core.transient(inf, settling_band)["settling_time"]
-            self.duration = max(self.duration, 1.25 * settled)
+        self.duration: float = core.duration(settling_band)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what was simulated: the rest follows from it."""
         given = (self.mouse_velocity, self.displacement, self.initial_velocity, self.plate_load)
         start = (self.skin_stretch, self.starts_with_plate, self.settling_band)
         return Motion, (self.core_numbers, self.drive, *given, *start)
-
-    def _decays_unasked(self) -> bool:
-        """Whether it decays for ever and no duration was asked for."""
-        return self.core_numbers[-1] == inf and self._core.end == DECAYING
 
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""

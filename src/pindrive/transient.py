@@ -25,7 +25,6 @@ _ENDS: tuple[tuple[EndKind, Cycle | None], ...] = (
     ("steady", "limit cycle"),
 )
 """In the order of `End` in model.hpp."""
-DECAYING = _ENDS.index(("decaying", None))
 
 
 @dataclass(frozen=True, slots=True)

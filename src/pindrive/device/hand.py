@@ -121,7 +121,7 @@ class HandPath:
 
         Returns:
             The hand's velocity along that axis. Its sign is that of the hand: x, the pin's
-            deflection, is positive against the mouse's own motion along the axis (MODEL.md, 2).
+            deflection, is positive against the mouse's own motion along the axis (docs/theory.md).
         """
         along = self.vx * cos(axis) + self.vy * sin(axis)
         return Profile((self.times - self.times[0]).tolist(), along.tolist())

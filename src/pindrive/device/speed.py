@@ -43,7 +43,7 @@ from pindrive.quantities import check, refusal
 PART: Final = 0.5
 SLOWEST: Final = 0.005
 FASTEST: Final = 1.0
-"""What is tried, m/s: beyond both ends of what hands do (MODEL.md, 9)."""
+"""What is tried, m/s: beyond both ends of what hands do (20-100 mm/s, arXiv 2505.11162)."""
 PHASES: Final = 4
 TRIED: Final = 32
 """Speeds in the grid."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.batch import batched
 from pindrive.paper import formulas, population
 
 if TYPE_CHECKING:
@@ -33,19 +32,7 @@ class Facts:
     @cached_property
     def batch(self) -> xr.Dataset:
         """The numbers of every release, the finger frictionless."""
-        r = self.r
-        return batched(
-            dict(
-                mass=r.mass,
-                stiffness=r.stiffness,
-                damping=r.damping,
-                plate_kinetic=r.friction,
-                finger_kinetic=0.0,
-                mouse_velocity=r.mouse_velocity,
-                displacement=r.displacement,
-                duration=1.01 * formulas.limit_reversal_time(r),
-            )
-        )
+        return self.r.batch(duration=1.01 * formulas.limit_reversal_time(self.r))
 
     def number(self, name: str) -> Array:
         """One of the transient's."""
@@ -85,20 +72,8 @@ class Facts:
         Found by releasing the pin anew from the trough; NaN where friction reverses before.
         """
         trough, t_c = self.number("trough_displacement"), self.number("trough_time")
-        r = self.r
         chosen = np.isnan(self.number("first_reversal_time")) & (trough < 0.0)
-        found = batched(
-            dict(
-                mass=r.mass,
-                stiffness=r.stiffness,
-                damping=r.damping,
-                plate_kinetic=r.friction,
-                finger_kinetic=0.0,
-                mouse_velocity=r.mouse_velocity,
-                displacement=np.where(chosen, trough, -1.0),
-                velocity=0.0,
-            )
-        )
+        found = self.r.batch(displacement=np.where(chosen, trough, -1.0), velocity=0.0)
         time = t_c + found["transient_return_velocity_time"].to_numpy()
         speed = found["transient_return_velocity"].to_numpy()
         return np.where(chosen, time, np.nan), np.where(chosen, speed, np.nan)

@@ -217,21 +217,8 @@ def first_reversal_time(r: Release) -> Array:
     every case. NaN where friction does not reverse: the velocity does not come up to v_p again, or
     there is no friction.
     """
-    from pindrive.batch import batched
-
     late = limit_reversal_time(r) * (1 + 1e-9)
-    found = batched(
-        dict(
-            mass=r.mass,
-            stiffness=r.stiffness,
-            damping=r.damping,
-            plate_kinetic=r.friction,
-            finger_kinetic=0.0,
-            mouse_velocity=r.mouse_velocity,
-            displacement=r.displacement,
-            duration=np.where(late > 0.0, late, 1.0),
-        )
-    )
+    found = r.batch(duration=np.where(late > 0.0, late, 1.0))
     times = found["transient_first_reversal_time"].to_numpy()
     return np.where(late > 0.0, times, np.nan)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from pindrive.quantities import QUANTITIES, refusal
 from pindrive.quantity import NON_NEGATIVE
 
 if TYPE_CHECKING:
+    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.motion import Motion
@@ -113,6 +114,25 @@ class Release:
             displacement=float(self.displacement[index]),
             duration=duration,
         )
+
+    def batch(self, **others: ArrayLike) -> xr.Dataset:
+        """The exact numbers of every release, the finger frictionless.
+
+        Args:
+            others: what stands for, or beside, the arrays of the releases.
+        """
+        from pindrive.batch import batched
+
+        given: dict[str, Any] = {
+            "mass": self.mass,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "plate_kinetic": self.friction,
+            "finger_kinetic": 0.0,
+            "mouse_velocity": self.mouse_velocity,
+            "displacement": self.displacement,
+        }
+        return batched(given | others)
 
 
 def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -50,9 +50,8 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
     found = plan.values | with_links(plan.device, spread, links)
     pressing = found.get(_PRESSING)
     force = found[_MASS] * GRAVITY if pressing is None else pressing
-    with np.errstate(
-        divide="ignore", invalid="ignore"
-    ):  # a spread that goes down to no mass has no upper end
+    # A spread that goes down to no mass has no upper end.
+    with np.errstate(divide="ignore", invalid="ignore"):
         coefficient = np.asarray(found[_KINETIC] / np.maximum(force, 0.0))
     low, high = float(coefficient.min()), float(coefficient.max())
     return (low, high) if high > low * (1.0 + 1e-9) else None
