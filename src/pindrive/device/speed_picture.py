@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MM: Final = 1e3
 HANDS: Final = (20.0, 100.0)
-"""Hand speeds in finger studies, mm/s (MODEL.md, 9)."""
+"""Hand speeds in finger studies, mm/s (arXiv 2505.11162)."""
 
 
 def plot_speeds(

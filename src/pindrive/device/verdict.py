@@ -27,7 +27,7 @@ def usual(name: str) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criteria:
-    """What counts as felt (MODEL.md, 9); a user who measures replaces it.
+    """What counts as felt, by the sources in `quantities_judge`; a user who measures replaces it.
 
     Args:
         felt: motion that is felt as a pulse, m, greater than 0.
