@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from drives import Release, releases
 from pindrive import Contact, Drive, Motion, _core, simulate, simulate_batch
-from pindrive.quantities import ENDING, ENERGY, TRANSIENT
+from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 
 ENDINGS = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
 NUMBERS = {q.name: q.name.replace(".", "_") for q in (*TRANSIENT, *ENDING)}

@@ -14,13 +14,14 @@ import pytest
 from PIL import Image
 
 from command import run
-from pindrive import Contact, Drive, Profile, budgets, simulate
-from pindrive.budgets import Budget
+from pindrive import Contact, Drive, Profile, simulate
 from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, strokes
-from pindrive.device.course import Course
-from pindrive.device.judging import judge
-from pindrive.device.speed import largest_speeds
-from pindrive.template import template
+from pindrive.device.trajectory import Course
+from pindrive.evaluation.perception import judge
+from pindrive.evaluation.resolution import largest_speeds
+from pindrive.files.template import template
+from pindrive.quantities import budgets
+from pindrive.quantities.budgets import Budget
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -13,7 +13,7 @@ import xarray as xr
 
 import pindrive
 from command import EXAMPLE, SKIN, refused, run
-from pindrive.config import load
+from pindrive.files.device import load
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -131,7 +131,7 @@ def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         path.write_text("half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pindrive.export.write_csv", write_csv)
+    monkeypatch.setattr("pindrive.files.export.write_csv", write_csv)
     Path("a.csv").write_text("time_s,position_m,old")
     line = refused("simulate", EXAMPLE, "--json", "a.json", "--csv", "a.csv")
     assert line == "a.csv: cannot be written: No space left on device"
@@ -176,7 +176,7 @@ def test_interruption_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         path.write_text("half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pindrive.export.write_csv", write_csv)
+    monkeypatch.setattr("pindrive.files.export.write_csv", write_csv)
     result = run("simulate", EXAMPLE, "--csv", "a.csv")
     assert result.exit_code in (1, 130)
     assert list(Path().iterdir()) == []

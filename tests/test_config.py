@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pindrive.config import KEYS, ConfigError, load
-from pindrive.quantities import INPUTS
-from pindrive.template import NUMBERS, template
-from pindrive.units import UnitError, to_si
+from pindrive.files.device import KEYS, ConfigError, load
+from pindrive.files.template import NUMBERS, template
+from pindrive.quantities.drive import INPUTS
+from pindrive.quantities.units import UnitError, to_si
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "tactile-mouse.toml"
 GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pindrive import Profile
-from pindrive.config import ConfigError, DeviceFile, load
+from pindrive.files.device import ConfigError, DeviceFile, load
 
 GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
 PLATE, FINGER, SPEED = '"20 mN"', '"5 mN"', '"100 mm/s"'

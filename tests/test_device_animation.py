@@ -12,10 +12,11 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from pindrive import Contact, Drive
-from pindrive.cli import app
-from pindrive.device import Device, Judgement, PinArray, Scene, judge, lines, scan
-from pindrive.device import animation as film
-from pindrive.device.animation import FRAMES, SIZE, animate, animation_format, frame_times
+from pindrive.cli.app import app
+from pindrive.device import Device, PinArray, Scene, lines, scan
+from pindrive.evaluation import Judgement, judge
+from pindrive.plot import animation as film
+from pindrive.plot.animation import FRAMES, SIZE, animate, animation_format, frame_times
 
 MINIMAL = Path(__file__).parent / "minimal.toml"
 DRIVE = Drive(

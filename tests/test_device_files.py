@@ -13,13 +13,13 @@ import xarray as xr
 from PIL import Image
 
 from command import GOOD, refused, run
-from pindrive.config import ConfigError, load
 from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
 from pindrive.device.coil import Coil
 from pindrive.device.reading import Reading
-from pindrive.quantities import QUANTITIES
-from pindrive.template import WHOLE, template, usual
-from pindrive.units import to_si
+from pindrive.files.device import ConfigError, load
+from pindrive.files.template import WHOLE, template, usual
+from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.units import to_si
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -17,13 +17,13 @@ from scipy.optimize import minimize_scalar
 
 from command import GOOD, run
 from pindrive import Contact, Drive, Motion, Profile, simulate
-from pindrive.config import load
-from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, judge, scan
-from pindrive.device.array import Neighbours
+from pindrive.cli.tables import console, meeting_words, scan_report
+from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.device.gaps import smallest_gaps
-from pindrive.device.picture import plot_reliefs, plot_scan
-from pindrive.device.report import meeting_words, scan_report
-from pindrive.report import console
+from pindrive.device.pin_array import Neighbours
+from pindrive.evaluation import judge
+from pindrive.files.device import load
+from pindrive.plot.scan import plot_reliefs, plot_scan
 from random_scans import RandomScan
 
 NOTHING = Contact(0.0)

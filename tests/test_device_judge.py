@@ -13,22 +13,19 @@ from scipy.optimize import brentq
 from pindrive import Contact, Drive, Profile, simulate
 from pindrive.device import (
     ControlBlock,
-    Criteria,
     Device,
     Electromagnet,
     HandPath,
-    Judgement,
-    Line,
     PinArray,
     PinScan,
     Scan,
     Scene,
-    judge,
     scan,
     strokes,
 )
-from pindrive.device.printed import printed, turnings
-from pindrive.device.verdict import FATES
+from pindrive.evaluation import Criteria, Judgement, Line, judge
+from pindrive.evaluation.line_crossings import printed, turnings
+from pindrive.evaluation.results import FATES
 from random_scans import RandomScan
 
 PLATE = Contact(0.022, 0.0265)

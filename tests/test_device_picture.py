@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 from pindrive import Contact, Drive
-from pindrive.cli import app
-from pindrive.device import Device, HandPath, Judgement, PinArray, Scene, judge, lines, scan
-from pindrive.device.history import moment
-from pindrive.device.painting import paint
-from pindrive.device.picture import plot_scan
-from pindrive.style import save
+from pindrive.cli.app import app
+from pindrive.device import Device, HandPath, PinArray, Scene, lines, scan
+from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation.tactile_image import paint
+from pindrive.plot.pin import moment
+from pindrive.plot.scan import plot_scan
+from pindrive.plot.style import save
 
 MINIMAL = Path(__file__).parent / "minimal.toml"
 DRIVE = Drive(

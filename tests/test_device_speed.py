@@ -11,13 +11,14 @@ import pytest
 from typer.testing import CliRunner
 
 from pindrive import Contact, Drive
-from pindrive.cli import app
-from pindrive.device import Criteria, Device, Electromagnet, HandPath, Scene, judge, scan
-from pindrive.device.judged import beyond, speed_report
-from pindrive.device.speed import SpeedLimit, largest_speeds, steady, two_lines
-from pindrive.device.speed_picture import plot_speeds
-from pindrive.quantities import QUANTITIES
-from pindrive.report import console
+from pindrive.cli.app import app
+from pindrive.cli.evaluation_tables import beyond, speed_report
+from pindrive.cli.tables import console
+from pindrive.device import Device, Electromagnet, HandPath, Scene, scan
+from pindrive.evaluation import Criteria, judge
+from pindrive.evaluation.resolution import SpeedLimit, largest_speeds, steady, two_lines
+from pindrive.plot.resolution import plot_speeds
+from pindrive.quantities.table import QUANTITIES
 
 PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)

@@ -10,9 +10,9 @@ import pytest
 from command import GOOD, run
 from pindrive import Contact, Drive
 from pindrive.device import Device, Electromagnet
-from pindrive.friction import Coefficients
-from pindrive.study.coefficient import coefficient_range
-from pindrive.study.studyfile import load_study
+from pindrive.motion.friction import Coefficients
+from pindrive.study.spec import load_study
+from pindrive.study.validation import coefficient_range
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from PIL import features
 
 from command import run
-from pindrive import budgets
-from pindrive.device.lettering import draw
-from pindrive.template import template
+from pindrive.device.page import draw
+from pindrive.files.template import template
+from pindrive.quantities import budgets
 
 shaping = pytest.mark.skipif(
     not (features.check("raqm") and features.check("fribidi")), reason="no FriBiDi here"

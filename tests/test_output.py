@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pindrive.output import OutputError, atomic_write, check_folder, write_files
+from pindrive.files.output import OutputError, atomic_write, check_folder, write_files
 
 
 def test_who_reads_the_old_file_keeps_it_whole(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sympy import Expr
 
 from pindrive import paper
-from pindrive.paper import Release, population, printed
+from pindrive.paper import Release, as_printed, population
 
 Array = NDArray[np.float64]
 
@@ -331,7 +331,9 @@ def test_26_the_limit_case_is_where_reversing_ends() -> None:
         early = paper.limit_reversal_time(r) - paper.first_reversal_time(damped(1 - little))
         # Tangential: the time is off by the square root of what the velocity is off.
         assert (np.abs(early) * paper.natural_frequency(r) < 10 * little**0.5).all()
-    assert (paper.velocity(printed.limit_reversal_time(r), r) < 0.0).all()  # (26) as printed: t_b
+    assert (
+        paper.velocity(as_printed.limit_reversal_time(r), r) < 0.0
+    ).all()  # (26) as printed: t_b
 
 
 def test_steady_state_of_the_undamped_drive() -> None:
@@ -348,7 +350,7 @@ def test_steady_state_of_the_undamped_drive() -> None:
         )
     # The paper's "periods" are these reversals, and not the periods it takes.
     beyond = r.displacement > paper.friction_offset(r)
-    of_paper = printed.periods_to_steady(r)
+    of_paper = as_printed.periods_to_steady(r)
     assert (np.floor(of_paper) == count)[beyond].all()
     assert np.abs(of_paper - begins / period)[beyond].max() > 5.0
 
@@ -375,7 +377,7 @@ def test_rest_under_finger_friction() -> None:
     finger = np.random.default_rng(7).uniform(0.2e-3, 10e-3, 300)
     r = population.undamped(300)
     expected = paper.periods_to_rest(r, finger)
-    assert np.abs(expected - printed.periods_to_rest(r, finger)).max() <= 0.25 + 1e-12
+    assert np.abs(expected - as_printed.periods_to_rest(r, finger)).max() <= 0.25 + 1e-12
     carried = 0
     for i in range(300):
         motion = r.motion(i, finger=float(finger[i]))
@@ -405,7 +407,7 @@ def test_the_printed_forms_fail_by_this_much() -> None:
         ("initial_phase", 1.0, 3.0),  # (8): half a turn
         ("velocity_phase", 1.0, 0.5),  # (10)
     ):
-        off = np.abs(getattr(printed, name)(r) - getattr(paper, name)(r)) / scale
+        off = np.abs(getattr(as_printed, name)(r) - getattr(paper, name)(r)) / scale
         assert np.nanmax(off) > at_least, name
         right = np.abs(paper.velocity_phase(r)) < 1e-5
         assert right.any()
@@ -413,14 +415,14 @@ def test_the_printed_forms_fail_by_this_much() -> None:
             assert np.nanmax(off[right]) < 1e-9, f"{name} is right for small damping"
     # (8) is right where x_0 > x_d.
     beyond = r.displacement > paper.friction_offset(r)
-    off = np.abs(printed.initial_phase(r) - paper.initial_phase(r))
+    off = np.abs(as_printed.initial_phase(r) - paper.initial_phase(r))
     assert off[beyond].max() < 1e-12
     assert off[~beyond].min() == pytest.approx(pi, abs=1e-12)
     # (25), (26): half a period early. (23) is not v_p where it should be.
-    half = (paper.limit_reversal_time(r) - printed.limit_reversal_time(r)) * w
+    half = (paper.limit_reversal_time(r) - as_printed.limit_reversal_time(r)) * w
     assert (half > pi - 1e-12).all()
     limit = population.limit_cases()
-    assert np.abs(printed.forward_velocity(limit) / limit.mouse_velocity - 1).max() > 0.5
+    assert np.abs(as_printed.forward_velocity(limit) / limit.mouse_velocity - 1).max() > 0.5
 
 
 def test_atan2_alone_misses_a_turn() -> None:

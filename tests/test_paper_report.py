@@ -16,15 +16,14 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, simulate
-from pindrive.cli import app
-from pindrive.paper import formulas, maps, markdown, population, report
+from pindrive.cli.app import app
+from pindrive.paper import formulas, maps, population, report
 from pindrive.paper.claim import Claim
-from pindrive.paper.exhibit import Exhibit, summary
-from pindrive.paper.influence import PARAMETERS
-from pindrive.paper.notation import html as as_html
-from pindrive.paper.notation import markdown as as_markdown
-from pindrive.paper.reading import at_most, by_case, listed, share, trend
+from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
+from pindrive.paper.exhibit import html as as_html
+from pindrive.paper.exhibit import markdown as as_markdown
 from pindrive.paper.report import Report
+from pindrive.paper.sensitivity import PARAMETERS
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 REMAKE = "make them anew: pindrive paper --docs docs"
@@ -59,12 +58,12 @@ def exhibit(made: Report, name: str) -> Exhibit:
 
 
 def test_the_docs_say_what_the_command_says(made: Report) -> None:
-    assert (DOCS / markdown.NAME).read_text("utf-8") == markdown.text(made), REMAKE
+    assert (DOCS / report.NAME).read_text("utf-8") == report.text(made), REMAKE
 
 
 def test_the_docs_pictures_show_the_same_data(made: Report) -> None:
     """Each picture carries the summary of the data that it was drawn from; pixels may differ."""
-    folder = DOCS / markdown.IMAGES
+    folder = DOCS / report.IMAGES
     assert {p.name for p in folder.iterdir()} == {f"{e.name}.png" for e in made.exhibits}, REMAKE
     for e in made.exhibits:
         with Image.open(folder / f"{e.name}.png") as picture:
@@ -83,7 +82,7 @@ def test_a_change_of_data_shows_in_the_summary(made: Report) -> None:
 
 def test_the_docs_tables_are_whole() -> None:
     """No cell holds a bar: every row has as many as its headings."""
-    text = (DOCS / markdown.NAME).read_text("utf-8")
+    text = (DOCS / report.NAME).read_text("utf-8")
     tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
     assert len(tables) == 6
     for table in tables:
@@ -91,7 +90,7 @@ def test_the_docs_tables_are_whole() -> None:
 
 
 def test_what_the_docs_link_to_is_there() -> None:
-    text = (DOCS / markdown.NAME).read_text("utf-8")
+    text = (DOCS / report.NAME).read_text("utf-8")
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     plain = (re.sub(r"</?sub>", "", heading).lower() for heading in headings)
     anchors = {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in plain}
@@ -375,7 +374,7 @@ def quick(made: Report, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(report, "make", lambda step: made)
     monkeypatch.setattr(Report, "files", lambda self, step: files)
     pictures = {"images/paper/a.png": b"picture"}
-    monkeypatch.setattr(markdown, "files", lambda *_: {markdown.NAME: b"text", **pictures})
+    monkeypatch.setattr(report, "files", lambda *_: {report.NAME: b"text", **pictures})
     yield
 
 
@@ -388,7 +387,7 @@ def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) 
     written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert written == {str(Path(name)) for name in files}
     assert (out / report.PAGE).read_bytes() == files[report.PAGE]
-    assert (docs / markdown.NAME).read_bytes() == b"text"
+    assert (docs / report.NAME).read_bytes() == b"text"
     assert (docs / "images/paper/a.png").is_file()
 
 

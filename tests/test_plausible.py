@@ -20,6 +20,7 @@ from pindrive import (
     simulate,
     simulate_batch,
 )
+from pindrive.plot.style import Figure
 
 PIN = Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005))
 
@@ -159,6 +160,7 @@ def test_only_public_names_are_listed() -> None:
 def test_a_figure_shows_itself_in_a_notebook() -> None:
     """By the protocol of IPython, whatever backend matplotlib has."""
     figure = simulate(PIN, mouse_velocity=0.06, displacement=0.002).plot()
+    assert isinstance(figure, Figure)
     picture, size = figure._repr_png_()
     assert picture.startswith(b"\x89PNG\r\n\x1a\n")
     assert size == {"width": 680, "height": 472}

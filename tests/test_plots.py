@@ -18,7 +18,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from pindrive import Contact, Drive, Motion, Profile, simulate
-from pindrive.plots import PALETTE, plot_motion, save
+from pindrive.plot.motion import plot_motion
+from pindrive.plot.style import PALETTE, save
 
 Array = NDArray[np.float64]
 

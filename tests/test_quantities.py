@@ -7,16 +7,10 @@ import pytest
 
 from pindrive import Contact, Drive, simulate
 from pindrive._core import settling_band
-from pindrive.quantities import (
-    CERTIFICATE,
-    DEVICE,
-    INPUTS,
-    OUTPUTS,
-    PARTS,
-    QUANTITIES,
-    check,
-)
-from pindrive.quantity import Bounds, Quantity, significant
+from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.quantity import Bounds, Quantity, significant
+from pindrive.quantities.results import CERTIFICATE, OUTPUTS
+from pindrive.quantities.table import DEVICE, QUANTITIES, check
 
 
 def test_names_are_unique() -> None:

@@ -17,7 +17,7 @@ import test_oracle
 from drives import Release, releases
 from oracle import make_cases, mp_oracle
 from pindrive import Contact, Drive, Motion, Profile, simulate
-from pindrive.quantities import QUANTITIES
+from pindrive.quantities.table import QUANTITIES
 
 PIN = {"mass": 0.01, "stiffness": 100.0, "damping": 0.4}
 

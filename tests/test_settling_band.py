@@ -14,10 +14,10 @@ import xarray as xr
 
 from command import EXAMPLE, GOOD, refused, run
 from pindrive import Contact, Drive, simulate, simulate_batch
-from pindrive.config import load, motion_of
-from pindrive.study.influence import influence
-from pindrive.study.robust import robustness
-from pindrive.study.studyfile import load_study
+from pindrive.files.device import load, motion_of
+from pindrive.study.robustness import robustness
+from pindrive.study.sensitivity import influence
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

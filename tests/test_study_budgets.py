@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from command import GOOD, run
-from pindrive.config import ConfigError
-from pindrive.study.studyfile import load_study
+from pindrive.files.device import ConfigError
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

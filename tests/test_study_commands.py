@@ -15,11 +15,11 @@ import pytest
 
 from command import EXAMPLE, EXAMPLES, GOOD, refused, run
 from pindrive import simulate_batch
-from pindrive.quantities import check
-from pindrive.quantity import counted
-from pindrive.study.influence import influence
-from pindrive.study.robust import Share
-from pindrive.study.studyfile import load_study
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import check
+from pindrive.study.robustness import Share
+from pindrive.study.sensitivity import influence
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from scipy import stats
 from typer.testing import CliRunner
 
-from pindrive.cli import app
-from pindrive.config import load, motion_of
-from pindrive.study.axis import Distribution, Linked
-from pindrive.study.indices import sobol_indices
-from pindrive.study.influence import influence, ranges_of
-from pindrive.study.local import elasticities
-from pindrive.study.studyfile import load_study
-from pindrive.template import DRIVE
+from pindrive.cli.app import app
+from pindrive.files.device import load, motion_of
+from pindrive.files.template import DRIVE
+from pindrive.study.distributions import Distribution, Linked
+from pindrive.study.local_sensitivity import elasticities
+from pindrive.study.sensitivity import influence, ranges_of
+from pindrive.study.sobol import sobol_indices
+from pindrive.study.spec import load_study
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 STUDY = EXAMPLES / "tactile-mouse-study.toml"

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from pindrive.output import OutputError
-from pindrive.study import sweeping
+from pindrive.files.output import OutputError
+from pindrive.study import runner
 from studies import SAMPLED, files, plan, run, uninterrupted
 
 
@@ -51,7 +51,7 @@ def test_a_disk_too_small_is_refused_at_once(small_disk: Path) -> None:
 
 def test_a_disk_that_fills_up_keeps_finished_chunks(small_disk: Path) -> None:
     study = plan('outputs = ["swing"]\n' + SAMPLED.replace("2048", "16384"))
-    sweeping.sweep(study, Path("whole.nc"))
+    runner.sweep(study, Path("whole.nc"))
     ballast, target = small_disk / "ballast", small_disk / "study.nc"
 
     def fill(done: int, total: int) -> None:
@@ -62,9 +62,9 @@ def test_a_disk_that_fills_up_keeps_finished_chunks(small_disk: Path) -> None:
 
     words = r"study\.nc\.partial: cannot be written: No space left on device; \d+ finished chunks "
     with pytest.raises(OutputError, match=words + "are kept, --resume goes on with them"):
-        sweeping.sweep(study, target, tell=fill)
+        runner.sweep(study, target, tell=fill)
     ballast.unlink()
-    result = sweeping.sweep(study, target, resume=True)
+    result = runner.sweep(study, target, resume=True)
     assert 0 < result.worked_out < result.points
     assert target.read_bytes() == Path("whole.nc").read_bytes()
 
@@ -109,7 +109,7 @@ def test_memory_is_bounded_by_the_chunk() -> None:
 
 def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
     distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
-    from pindrive.study.cluster import on_cluster
+    from pindrive.study.runner import on_cluster
 
     whole = uninterrupted()
     killed: list[int] = []
@@ -122,7 +122,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
                 killed.append(cluster.workers[0].pid)
                 os.kill(killed[0], signal.SIGKILL)
 
-        result = sweeping.sweep(
+        result = runner.sweep(
             plan(), Path("study.nc"), work=on_cluster(cluster.scheduler_address), tell=kill
         )
     assert killed and result.complete
@@ -131,7 +131,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
 
 def test_a_cluster_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
-    monkeypatch.setattr("pindrive.study.cluster._PATIENCE", "0.2s")
+    monkeypatch.setattr("pindrive.study.runner._PATIENCE", "0.2s")
     plan()
     said = run("study.toml", "--cluster", "tcp://127.0.0.1:9")
     assert said.exit_code == 2
@@ -141,7 +141,7 @@ def test_a_cluster_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_workers_of_another_version_are_refused() -> None:
     from pindrive import __version__
-    from pindrive.study.cluster import _check_versions
+    from pindrive.study.runner import _check_versions
 
     _check_versions({"tcp://one": __version__, "tcp://two": __version__})
     with pytest.raises(ValueError, match=r"must be version .*, got 0\.0\.1 on tcp://two"):

@@ -11,17 +11,17 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, simulate
-from pindrive.cli import app
-from pindrive.config import ConfigError, load, motion_of
-from pindrive.quantities import INPUTS
-from pindrive.study.axis import Linked
+from pindrive.cli.app import app
+from pindrive.files.device import ConfigError, load, motion_of
+from pindrive.quantities.drive import INPUTS
+from pindrive.study.design import Plan
+from pindrive.study.distributions import Linked
 from pindrive.study.evaluate import evaluate
-from pindrive.study.influence import influence
-from pindrive.study.local import elasticities
+from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.outputs import MEASURED
-from pindrive.study.plan import Plan
-from pindrive.study.robust import robustness
-from pindrive.study.studyfile import load_study
+from pindrive.study.robustness import robustness
+from pindrive.study.sensitivity import influence
+from pindrive.study.spec import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from typer.testing import CliRunner, Result
 
-from pindrive.cli import app
-from pindrive.study.maps import plot_study
-from pindrive.study.studyfile import load_study
-from pindrive.study.sweeping import sweep
-from pindrive.study.view import View, quantiles
+from pindrive.cli.app import app
+from pindrive.plot.slices import plot_study
+from pindrive.study.runner import sweep
+from pindrive.study.slices import View, quantiles
+from pindrive.study.spec import load_study
 
 Values = NDArray[np.float64]
 BASE = f'base = "{(Path(__file__).parent / "minimal.toml").as_posix()}"\n'

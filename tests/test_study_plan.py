@@ -12,13 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from pindrive.config import ConfigError
-from pindrive.study.axis import Distribution, Even
+from pindrive.files.device import ConfigError
+from pindrive.study.design import Plan
+from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
 from pindrive.study.evaluate import evaluate
 from pindrive.study.outputs import MEASURED, OUTPUTS
-from pindrive.study.plan import Plan
-from pindrive.study.sample import BLOCK, Sample
-from pindrive.study.studyfile import load_study
+from pindrive.study.spec import load_study
 
 HERE = Path(__file__).parent
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'
@@ -194,7 +193,7 @@ def test_one_by_one_is_the_batch_bit_for_bit(tmp_path: Path) -> None:
 
 def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:
     from pindrive import simulate
-    from pindrive.config import load
+    from pindrive.files.device import load
 
     example = HERE.parent / "examples" / "stribeck-skin.toml"
     plan = study(

@@ -10,10 +10,10 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from pindrive import simulate_batch
-from pindrive.cli import app
-from pindrive.study.plan import Plan
-from pindrive.study.robust import Share, robustness
-from pindrive.study.studyfile import load_study
+from pindrive.cli.app import app
+from pindrive.study.design import Plan
+from pindrive.study.robustness import Share, robustness
+from pindrive.study.spec import load_study
 
 HERE = Path(__file__).parent
 STUDY = HERE.parent / "examples" / "tactile-mouse-study.toml"

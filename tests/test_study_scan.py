@@ -20,35 +20,25 @@ from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from pindrive import Contact, Drive
-from pindrive.cli import app
-from pindrive.device import (
-    Coil,
-    ControlBlock,
-    Criteria,
-    Device,
-    Electromagnet,
-    Judgement,
-    PinArray,
-    judge,
-    scan,
-)
+from pindrive.cli.app import app
+from pindrive.cli.study_tables import influence_report
+from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS
-from pindrive.device.page import Page
-from pindrive.device.reading import Reading
-from pindrive.output import OutputError
-from pindrive.study.charts import plot_influence
+from pindrive.device.reading import Page, Reading
+from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.files.output import OutputError
+from pindrive.files.template import NUMBERS
+from pindrive.plot.sensitivity import plot_influence
+from pindrive.plot.slices import plot_study
+from pindrive.study.design import flags
+from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate
-from pindrive.study.influence import influence
-from pindrive.study.maps import plot_study
 from pindrive.study.outputs import SCAN_OUTPUTS
-from pindrive.study.points import flags
-from pindrive.study.report import influence_report
-from pindrive.study.robust import robustness
-from pindrive.study.sample import Sample
-from pindrive.study.studyfile import load_study
-from pindrive.study.sweeping import on_threads, sweep
-from pindrive.study.view import View
-from pindrive.template import NUMBERS
+from pindrive.study.robustness import robustness
+from pindrive.study.runner import on_threads, sweep
+from pindrive.study.sensitivity import influence
+from pindrive.study.slices import View
+from pindrive.study.spec import load_study
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
 AROUND = ("control", "array", "scan", "judge")

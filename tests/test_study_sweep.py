@@ -15,12 +15,12 @@ import pytest
 import xarray as xr
 
 from pindrive import Contact, Drive, simulate
-from pindrive.output import OutputError
-from pindrive.study import sweeping
-from pindrive.study.journal import Journal
-from pindrive.study.plan import Plan
+from pindrive.files.output import OutputError
+from pindrive.study import runner
+from pindrive.study.checkpoint import Journal
+from pindrive.study.design import Plan
+from pindrive.study.spec import load_study
 from pindrive.study.store import Piece, Store
-from pindrive.study.studyfile import load_study
 from studies import HERE, SAMPLED, files, plan, run, uninterrupted
 
 
@@ -132,9 +132,9 @@ def test_points_without_numbers_are_marked_and_counted() -> None:
 
 def test_threads_and_chunks_change_nothing() -> None:
     one, other = plan(), plan(SAMPLED.replace("chunk = 500", "chunk = 77"), "other.toml")
-    sweeping.sweep(one, Path("a.nc"), work=sweeping.on_threads(1))
-    sweeping.sweep(one, Path("b.nc"), work=sweeping.on_threads(3))
-    sweeping.sweep(other, Path("c.nc"))
+    runner.sweep(one, Path("a.nc"), work=runner.on_threads(1))
+    runner.sweep(one, Path("b.nc"), work=runner.on_threads(3))
+    runner.sweep(other, Path("c.nc"))
     assert Path("a.nc").read_bytes() == Path("b.nc").read_bytes()
     with xr.open_dataset("a.nc") as a, xr.open_dataset("c.nc") as c:
         xr.testing.assert_identical(a.drop_attrs(), c.drop_attrs())
@@ -184,7 +184,7 @@ def test_killed_and_resumed_is_the_same_file(whole: bytes, moment: str) -> None:
     assert os.waitpid(child, 0)[1] == signal.SIGKILL
     kept = Path("study.nc.journal").read_bytes().count(b"\n") - 1
     assert kept == 4
-    result = sweeping.sweep(load_study("study.toml"), Path("study.nc"), resume=True)
+    result = runner.sweep(load_study("study.toml"), Path("study.nc"), resume=True)
     assert 0 < result.worked_out <= result.points - (kept - 1) * 500
     assert Path("study.nc").read_bytes() == whole
 
@@ -214,7 +214,7 @@ def die_in_a_sweep(moment: str) -> NoReturn:
 
     Store.put = put_some  # type: ignore[method-assign, assignment]
     Journal.note = note_and_die  # type: ignore[method-assign, assignment]
-    sweeping.sweep(load_study("study.toml"), Path("study.nc"))
+    runner.sweep(load_study("study.toml"), Path("study.nc"))
     os._exit(1)
 
 
@@ -226,8 +226,8 @@ def test_ctrl_c_keeps_what_is_done(whole: bytes) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        sweeping.sweep(study, Path("study.nc"), tell=interrupt)
-    result = sweeping.sweep(study, Path("study.nc"), resume=True)
+        runner.sweep(study, Path("study.nc"), tell=interrupt)
+    result = runner.sweep(study, Path("study.nc"), resume=True)
     assert 0 < result.worked_out <= result.points - 1500
     assert Path("study.nc").read_bytes() == whole
 
@@ -296,7 +296,7 @@ def test_a_failure_before_the_first_chunk_leaves_nothing() -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(OutputError, match="No space left on device; no chunk was finished yet"):
-        sweeping.sweep(plan(), Path("study.nc"), work=broken)
+        runner.sweep(plan(), Path("study.nc"), work=broken)
     assert files() == {"study.toml"}
 
 

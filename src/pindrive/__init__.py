@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from pindrive.lazy import attach
+
 if TYPE_CHECKING:
-    from pindrive.batch import simulate_batch
-    from pindrive.drive import Contact, Drive, Profile
-    from pindrive.motion import Motion, simulate
-    from pindrive.plausible import ImplausibleValueWarning
+    from pindrive.motion.batch import simulate_batch
+    from pindrive.motion.drive import Contact, Drive, Profile
+    from pindrive.motion.motion import Motion
+    from pindrive.motion.simulate import simulate
+    from pindrive.quantities.table import ImplausibleValueWarning
 
     __version__: str
 
@@ -23,33 +26,15 @@ __all__ = [
     "simulate_batch",
 ]
 
-_HOME = {
-    "Contact": "pindrive.drive",
-    "Drive": "pindrive.drive",
-    "Profile": "pindrive.drive",
-    "ImplausibleValueWarning": "pindrive.plausible",
-    "Motion": "pindrive.motion",
-    "simulate": "pindrive.motion",
-    "simulate_batch": "pindrive.batch",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a public name at its first use, so that the command line starts fast."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        value: object = version("pindrive")
-    elif name in _HOME:
-        from importlib import import_module
-
-        value = getattr(import_module(_HOME[name]), name)
-    else:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """The public names alone."""
-    return sorted(__all__)
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "Contact": "pindrive.motion.drive",
+        "Drive": "pindrive.motion.drive",
+        "ImplausibleValueWarning": "pindrive.quantities.table",
+        "Motion": "pindrive.motion.motion",
+        "Profile": "pindrive.motion.drive",
+        "simulate": "pindrive.motion.simulate",
+        "simulate_batch": "pindrive.motion.batch",
+    },
+)

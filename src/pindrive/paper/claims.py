@@ -9,13 +9,13 @@ import numpy as np
 from pindrive.paper import formulas, population
 from pindrive.paper.claim import TINY, Claim, batch, finger_friction, swing
 from pindrive.paper.conclusions import conclusions, steady_state
-from pindrive.paper.reading import at_most, share
+from pindrive.paper.exhibit import at_most, share
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from pindrive.paper.equations import Row
-    from pindrive.paper.facts import Facts
+    from pindrive.paper.population import Facts
 
 
 def claims(facts: Facts, equations: list[Row]) -> list[Claim]:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.paper import formulas, population, printed
+from pindrive.paper import as_printed, formulas, population
 from pindrive.paper.claim import TINY, Claim, batch, finger_friction
-from pindrive.paper.reading import share
+from pindrive.paper.exhibit import share
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from pindrive.paper.facts import Facts
+    from pindrive.paper.population import Facts
 
 # ---- Simulation: the last paragraph --------------------------------------------------------------
 
@@ -43,7 +43,7 @@ def steady_state() -> Iterator[Claim]:
     taken = formulas.time_to_steady(r) / period
     simulated = batch(r)
     agree = np.abs(simulated["ending_steady_since"].to_numpy() / period - taken) < TINY
-    of_paper = printed.periods_to_steady(r)
+    of_paper = as_printed.periods_to_steady(r)
     beyond = r.displacement > formulas.friction_offset(r)
     reversals = simulated["transient_plate_reversals"].to_numpy()
     counts = (np.floor(of_paper) == reversals)[beyond]
@@ -60,7 +60,7 @@ def steady_state() -> Iterator[Claim]:
     finger = draw.uniform(0.0005, 0.01, count)
     found = batch(r, finger)
     rest = formulas.periods_to_rest(r, finger)
-    of_paper = printed.periods_to_rest(r, finger)
+    of_paper = as_printed.periods_to_rest(r, finger)
     from_release = found["transient_rest_time"].to_numpy() / period
     let_go = np.full(count, np.nan)
     for i in range(count):

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.study.axis import Linked
-from pindrive.template import DRIVE
+from pindrive.files.template import DRIVE
+from pindrive.study.distributions import Linked
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from numpy.typing import NDArray
 
-    from pindrive.config import DeviceFile
+    from pindrive.files.device import DeviceFile
 
     Columns = dict[str, NDArray[np.float64]]
 

@@ -18,12 +18,11 @@ from zlib import crc32
 import numpy as np
 
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
-from pindrive.output import OutputError, naming
+from pindrive.files.output import OutputError, naming
+from pindrive.files.template import NUMBERS
 from pindrive.study import outputs
+from pindrive.study.design import flags, variable
 from pindrive.study.evaluate import evaluate
-from pindrive.study.plan import variable
-from pindrive.study.points import flags
-from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from pindrive.study.plan import Plan
+    from pindrive.study.design import Plan
 
 
 class Piece(NamedTuple):
