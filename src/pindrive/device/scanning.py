@@ -223,8 +223,8 @@ def scan(
 
     Raises:
         ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation had to be
-            given up.
+            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation
+            had to be given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"

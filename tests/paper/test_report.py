@@ -25,7 +25,7 @@ from pindrive.paper.exhibit import markdown as as_markdown
 from pindrive.paper.report import Report
 from pindrive.paper.sensitivity import PARAMETERS
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 REMAKE = "make them anew: pindrive paper --docs docs"
 
 

@@ -18,7 +18,7 @@ from pindrive.evaluation import Judgement, judge
 from pindrive.plot import animation as film
 from pindrive.plot.animation import FRAMES, SIZE, animate, animation_format, frame_times
 
-MINIMAL = Path(__file__).parent / "minimal.toml"
+MINIMAL = Path(__file__).parents[1] / "minimal.toml"
 DRIVE = Drive(
     mass=0.010,
     stiffness=100.0,

@@ -253,7 +253,7 @@ BAD = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore::pindrive.plausible.ImplausibleValueWarning")
+@pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
 @pytest.mark.parametrize(("name", "value", "told"), BAD)
 def test_a_bad_point_is_marked_and_the_others_go_on(name: str, value: float, told: str) -> None:
     good = {**PIN, "plate_static": 0.03, "finger_static": 0.03, "finger_stiffness": 1e3}

@@ -67,7 +67,7 @@ def test_friction_stays_within_its_bounds(release: Release) -> None:
         assert power.max() <= 1e-14 * contact.static_friction * speed
 
 
-@pytest.mark.filterwarnings("ignore::pindrive.plausible.ImplausibleValueWarning")
+@pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
 @given(releases(), st.integers(-3, 3), st.integers(-3, 3), st.integers(-3, 3))
 def test_other_units_give_the_same_motion(release: Release, i: int, j: int, k: int) -> None:
     """Powers of two rescale every number exactly, so the answers agree to the last bit."""

@@ -21,7 +21,7 @@ from pindrive.study.sensitivity import influence, ranges_of
 from pindrive.study.sobol import sobol_indices
 from pindrive.study.spec import load_study
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = EXAMPLES / "tactile-mouse-study.toml"
 DEVICE = EXAMPLES / "tactile-mouse.toml"
 CIRCLE = [Distribution("uniform", -pi, pi)] * 3
@@ -197,7 +197,7 @@ def test_elasticities_keep_the_dimensions(number: str) -> None:
 
 def test_a_key_that_is_zero_has_no_elasticity(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(
-        f'base = "{(Path(__file__).parent / "minimal.toml").as_posix()}"\n'
+        f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
         '[axes]\ndisplacement = ["1 mm"]\nmass = ["1 g"]\nduration = ["1 s"]\n'
     )
     keys = ("motion.displacement", "drive.mass", "motion.duration")

@@ -23,7 +23,7 @@ from pindrive.quantities.table import QUANTITIES
 PLATE = Contact(0.022, 0.0265)
 RIGID = Contact(0.005, 0.0075)
 SKIN = Contact(0.020, 0.030, stiffness=300.0)
-MINIMAL = Path(__file__).parent / "minimal.toml"
+MINIMAL = Path(__file__).parents[1] / "minimal.toml"
 
 
 def drive(finger: Contact = RIGID, damping: float = 0.32) -> Drive:

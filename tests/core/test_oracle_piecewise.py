@@ -27,7 +27,7 @@ STATES = ("x", "v", "a", "finger_force", "stretch")
 Case = dict[str, Any]
 Told = tuple[float, str, str, float, float]  # time, contact, kind, position, velocity
 
-DATA = make_piecewise.load(Path(__file__).parent / "oracle" / "piecewise_cases.json.gz")
+DATA = make_piecewise.load(Path(__file__).parents[1] / "oracle" / "piecewise_cases.json.gz")
 CASES: list[Case] = DATA["cases"]
 NUMBERS = {id(case): number for number, case in enumerate(CASES)}
 

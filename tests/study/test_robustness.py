@@ -15,7 +15,7 @@ from pindrive.study.design import Plan
 from pindrive.study.robustness import Share, robustness
 from pindrive.study.spec import load_study
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 STUDY = HERE.parent / "examples" / "tactile-mouse-study.toml"
 TOLERANCES = """
 [tolerances]

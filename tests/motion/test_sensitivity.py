@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-import test_oracle
+from core import test_oracle
 from drives import Release, releases
 from oracle import make_cases, mp_oracle
 from pindrive import Contact, Drive, Motion, Profile, simulate

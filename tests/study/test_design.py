@@ -19,7 +19,7 @@ from pindrive.study.evaluate import evaluate
 from pindrive.study.outputs import MEASURED, OUTPUTS
 from pindrive.study.spec import load_study
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'
 INLINE = (HERE / "minimal.toml").read_text()
 

@@ -13,8 +13,8 @@ from pindrive.files.template import NUMBERS, template
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.units import UnitError, to_si
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "tactile-mouse.toml"
-GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
+EXAMPLE = Path(__file__).parents[2] / "examples" / "tactile-mouse.toml"
+GOOD = Path(__file__).parents[1].joinpath("minimal.toml").read_text(encoding="utf-8")
 
 Write = Callable[..., Path]
 

@@ -22,7 +22,7 @@ from pindrive.study.slices import View, quantiles
 from pindrive.study.spec import load_study
 
 Values = NDArray[np.float64]
-BASE = f'base = "{(Path(__file__).parent / "minimal.toml").as_posix()}"\n'
+BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
 GRID = """
 [axes]
 mouse_velocity = { lin = ["20 mm/s", "300 mm/s"], count = 15 }

@@ -334,7 +334,7 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
     """Its magnets find room, its pins cannot meet; every line is shown and felt, none is false."""
     if what == "template":
         assert run("init", "device.toml", "--device").exit_code == 0
-    example = Path(__file__).parents[1] / "examples" / "tactile-reader.toml"
+    example = Path(__file__).parents[2] / "examples" / "tactile-reader.toml"
     file = load("device.toml" if what == "template" else example)
     assert file.whole
     device, reading = file.whole.device(file.drive), file.whole.reading()

@@ -22,7 +22,7 @@ from pindrive.plot.pin import moment
 from pindrive.plot.scan import plot_scan
 from pindrive.plot.style import save
 
-MINIMAL = Path(__file__).parent / "minimal.toml"
+MINIMAL = Path(__file__).parents[1] / "minimal.toml"
 DRIVE = Drive(
     mass=0.010,
     stiffness=100.0,

@@ -10,7 +10,7 @@ import pytest
 from pindrive import Profile
 from pindrive.files.device import ConfigError, DeviceFile, load
 
-GOOD = Path(__file__).with_name("minimal.toml").read_text(encoding="utf-8")
+GOOD = Path(__file__).parents[1].joinpath("minimal.toml").read_text(encoding="utf-8")
 PLATE, FINGER, SPEED = '"20 mN"', '"5 mN"', '"100 mm/s"'
 
 Write = Callable[..., Path]
