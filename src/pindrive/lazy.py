@@ -1,7 +1,9 @@
-"""Imports at first use: the one place where the import of a module of this package is postponed.
+"""Imports at first use: the one place where this package postpones an import.
 
-A package hands out its public names by `attach`; a result reaches what is built on it, such as its
-figure, by `call`. The targets are text, so that the graph of the import statements has no circle.
+Libraries that take long to load are names of this module, and are loaded when one of their own
+names is first asked for. A package hands out its public names by `attach`; a result reaches what is
+built on it, such as its figure, by `call`, whose target is text: the graph of the import statements
+then has no circle. The package lazy_loader does the first two, but its modules have no types.
 """
 
 from __future__ import annotations
@@ -9,7 +11,70 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+__all__ = [
+    "Image",
+    "ImageDraw",
+    "ImageFont",
+    "ImageOps",
+    "attach",
+    "call",
+    "features",
+    "ft2font",
+    "h5netcdf",
+    "h5py",
+    "matplotlib",
+    "optimize",
+    "pint",
+    "qmc",
+    "rich_console",
+    "rich_progress",
+    "special",
+    "stats",
+    "xr",
+]
+
+if TYPE_CHECKING:
+    import h5netcdf
+    import h5py
+    import matplotlib
+    import pint
+    import rich.console as rich_console
+    import rich.progress as rich_progress
+    import xarray as xr
+    from matplotlib import ft2font
+    from PIL import Image, ImageDraw, ImageFont, ImageOps, features
+    from scipy import optimize, special, stats
+    from scipy.stats import qmc
+else:
+
+    class _Module:
+        """A module that is loaded when a name in it is first asked for."""
+
+        def __init__(self, name: str) -> None:
+            self._name = name
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(import_module(self._name), name)
+
+    h5netcdf = _Module("h5netcdf")
+    h5py = _Module("h5py")
+    matplotlib = _Module("matplotlib")
+    pint = _Module("pint")
+    xr = _Module("xarray")
+    ft2font = _Module("matplotlib.ft2font")
+    Image = _Module("PIL.Image")
+    ImageDraw = _Module("PIL.ImageDraw")
+    ImageFont = _Module("PIL.ImageFont")
+    ImageOps = _Module("PIL.ImageOps")
+    features = _Module("PIL.features")
+    rich_console = _Module("rich.console")
+    rich_progress = _Module("rich.progress")
+    optimize = _Module("scipy.optimize")
+    special = _Module("scipy.special")
+    stats = _Module("scipy.stats")
+    qmc = _Module("scipy.stats.qmc")
 
 
 def attach(

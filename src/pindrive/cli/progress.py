@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from pindrive.lazy import rich_console, rich_progress
+
 
 @contextmanager
 def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
@@ -13,10 +15,7 @@ def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as shown:
+    with rich_progress.Progress(console=rich_console.Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what)
         yield lambda done, of: shown.update(task, completed=done, total=of)
 
@@ -24,12 +23,15 @@ def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
 @contextmanager
 def steps(count: int) -> Iterator[Callable[[str], None]]:
     """What to tell, as each of so many steps begins, what it is."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (BarColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    screen, looked_at = Console(stderr=True), sys.stderr.isatty()
-    with Progress(*columns, console=screen, transient=True, disable=not looked_at) as shown:
+    columns = (
+        rich_progress.BarColumn(),
+        rich_progress.TextColumn("{task.description}"),
+        rich_progress.TimeElapsedColumn(),
+    )
+    screen, looked_at = rich_console.Console(stderr=True), sys.stderr.isatty()
+    with rich_progress.Progress(
+        *columns, console=screen, transient=True, disable=not looked_at
+    ) as shown:
         task = shown.add_task("", total=count)
         begun = 0
 

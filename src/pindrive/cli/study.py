@@ -18,6 +18,7 @@ from pindrive.cli.errors import (
     picture_format,
     refusing,
 )
+from pindrive.lazy import rich_console, rich_progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -103,16 +104,15 @@ def _bar() -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
     columns = (
-        TextColumn("{task.percentage:>3.0f} %"),
-        BarColumn(),
-        TextColumn("{task.fields[speed]}"),
-        TimeRemainingColumn(),
+        rich_progress.TextColumn("{task.percentage:>3.0f} %"),
+        rich_progress.BarColumn(),
+        rich_progress.TextColumn("{task.fields[speed]}"),
+        rich_progress.TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with rich_progress.Progress(
+        *columns, console=rich_console.Console(stderr=True), transient=True
+    ) as bar:
         task = bar.add_task("", total=None, speed="")
 
         def tell(done: int, total: int) -> None:

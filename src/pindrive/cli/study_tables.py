@@ -8,9 +8,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.console import Group
+from rich.text import Text
 
+from pindrive.cli.tables import new_table
 from pindrive.files import template
 from pindrive.files.device import keys_meant
+from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.study.design import flags
 from pindrive.study.links import base_value
@@ -75,8 +79,6 @@ def _why_without(plan: Plan, done: Result, status: str, number: int, first: int)
 
 def _statuses(done: Result) -> list[tuple[str, int, int]]:
     """Each status but ok, at how many points it is, and the first of them; most first."""
-    import h5py
-
     found: dict[int, tuple[int, int]] = {}
     with h5py.File(done.path, "r") as file:
         status = file["status"]
@@ -94,8 +96,6 @@ def _statuses(done: Result) -> list[tuple[str, int, int]]:
 
 def influence_report(found: Influence) -> RenderableType:
     """Three tables: elasticities, and Sobol' indices of first order and in total."""
-    from rich.console import Group
-
     told = [name for name in found.over if found.over[name].spread > 0.0]
     tables: list[RenderableType] = [_near(found, found.near)] if found.near else []
     for title, order in (
@@ -121,8 +121,6 @@ def _by_key(
     title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
 ) -> Table:
     """A line for each number, a column for each key."""
-    from pindrive.cli.tables import new_table
-
     heads = [template.NUMBERS[key].symbol for key in keys]
     made = new_table(title, "number", *(f">{head}" for head in heads))
     for name in names:
@@ -187,9 +185,6 @@ def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
 
 def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
     """Spread of the watched numbers, yield, and the worst cases."""
-    from rich.console import Group
-    from rich.text import Text
-
     tables: list[RenderableType] = [_spread(found)]
     if found.all_met:
         tables.append(_yield(found, found.all_met))
@@ -200,8 +195,6 @@ def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
 
 def _spread(found: Robustness) -> Table:
     """Quantiles over all designs of which the number exists."""
-    from pindrive.cli.tables import new_table
-
     heads = ("number", ">design", *(f">{100 * q:g} %" for q in QUANTILES), "unit", ">exists in")
     made = new_table("How the designs scatter: quantiles", *heads)
     for name, values in found.values.items():
@@ -215,8 +208,6 @@ def _spread(found: Robustness) -> Table:
 
 
 def _yield(found: Robustness, all_met: Share) -> Table:
-    from pindrive.cli.tables import new_table
-
     title = f"Yield: of {counted(found.designs, 'design')}"
     made = new_table(title, "demand", ">met by", "95 % interval", ">without a number")
     for demand, share in found.shares:
@@ -233,8 +224,6 @@ def _share(share: Share) -> tuple[str, str]:
 
 def _worst_cases(plan: Plan, found: Robustness) -> Table:
     """The values at which each demand is missed by the most, beside the design's own."""
-    from pindrive.cli.tables import new_table
-
     heads = (f">{label(case.demand.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.device.trajectory import Course
+from pindrive.lazy import xr
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.hand import HandPath
@@ -38,8 +38,6 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     Raises:
         ValueError: too many samples.
     """
-    import xarray as xr
-
     from pindrive import __version__
 
     device, path, pins = scan.device, scan.path, scan.pins

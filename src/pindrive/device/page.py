@@ -13,6 +13,7 @@ from unicodedata import bidirectional, category, name, normalize
 
 import numpy as np
 
+from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, check_whole, refusal
 from pindrive.quantities.units import quoted
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
-    from PIL import Image, ImageFont
 
 LUMA: Final = (0.299, 0.587, 0.114)
 """Weights of red, green and blue (ITU-R BT.601-7)."""
@@ -122,8 +122,6 @@ class Scene:
         Raises:
             ValueError: the file cannot be read, or says nothing of its resolution.
         """
-        from PIL import Image, ImageOps
-
         file = fspath(path)
         try:
             with _opened(file) as image:
@@ -250,8 +248,6 @@ def _covered(
 
 def _opened(file: str) -> Image.Image:
     """An image file of which only the head is read; of its size we say ourselves what is wrong."""
-    from PIL import Image
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
         return Image.open(file)
@@ -265,8 +261,6 @@ def _check_size(across: float, down: float, where: str = "") -> None:
 
 def _luminance(image: Image.Image, file: str) -> NDArray[np.float64]:
     """The luminance of an image of any mode, on white."""
-    from PIL import Image
-
     if image.mode == "F" or image.mode.startswith("I"):
         values = np.asarray(image, np.float64)
         whole = 1.0 if image.mode == "F" else 65535.0
@@ -325,9 +319,7 @@ PLAIN_SCRIPTS: Final = (
 @cache
 def default_font() -> str:
     """DejaVu Sans, which comes with Matplotlib: Latin, Greek, Cyrillic, Arabic, Hebrew and more."""
-    from matplotlib import get_data_path
-
-    return str(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
+    return str(Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
 
 
 def draw(
@@ -349,8 +341,6 @@ def draw(
         ValueError: nothing to show, too much of it, letters too small, a character that the font
             lacks or that takes shaping where there is none, or no such font.
     """
-    from PIL import Image, ImageDraw, ImageFont
-
     file = default_font() if font is None else fspath(font)
     budgets.CHARACTERS.check(len(text))
     lines = normalize("NFC", text).splitlines()
@@ -400,8 +390,6 @@ def _engine(text: str) -> ImageFont.Layout:
     Raises:
         ValueError: it takes shaping, and this machine has none.
     """
-    from PIL import ImageFont, features
-
     taking = next((c for c in text if _takes_shaping(c)), None)
     if taking is None:
         return ImageFont.Layout.BASIC
@@ -434,9 +422,7 @@ def _check_text_size(width: float, depth: float) -> None:
 
 def _check_known(text: str, file: str) -> None:
     """Refuse characters that the font would show as empty boxes."""
-    from matplotlib.ft2font import FT2Font
-
-    face = FT2Font(file)
+    face = ft2font.FT2Font(file)
     lacking = [
         c for c in dict.fromkeys(text) if not c.isspace() and not face.get_char_index(ord(c))
     ]

@@ -24,6 +24,7 @@ from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.trajectory import Way, check_vibration
+from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.motion.motion import Motion
 from pindrive.motion.results import Event
@@ -33,7 +34,6 @@ from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
 ROUNDING: Final = 1e-9

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from pindrive.files.output import Kind
+from pindrive.lazy import h5py
 
 _HEAD: Final = 4096
 
@@ -27,8 +28,6 @@ def _titled(name: str, beginning: str) -> Kind:
 
 def _attribute(path: Path, name: str) -> str:
     """A text of a NetCDF file that pindrive wrote; empty where there is none."""
-    import h5py
-
     if not _head(path).startswith(b"\x89HDF\r\n\x1a\n"):
         return ""
     try:

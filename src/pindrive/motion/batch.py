@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive import _core
+from pindrive.lazy import xr
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
@@ -16,7 +17,6 @@ from pindrive.quantities.table import QUANTITIES, refusal, warn_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
     Values = ArrayLike | xr.DataArray
@@ -132,8 +132,6 @@ def batched(
     given: Mapping[str, Values | None], *, energy: bool = False, threads: int | None = None
 ) -> xr.Dataset:
     """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
-    import xarray as xr
-
     from pindrive import __version__
 
     workers = worker_count(threads)
@@ -169,8 +167,6 @@ Shared = tuple[dict[str, int], dict[str, "xr.Variable"], dict[str, Any]]
 
 def _shared_shape(given: Mapping[str, Values]) -> Shared:
     """The arguments as variables, whose dimensions are named or, as arrays have none, counted."""
-    import xarray as xr
-
     named = {k: v for k, v in given.items() if isinstance(v, xr.DataArray)}
     arrays = {k: _floats(k, v) for k, v in given.items() if k not in named}
     return _by_name(named, arrays) if named else _by_position(arrays)
@@ -179,8 +175,6 @@ def _shared_shape(given: Mapping[str, Values]) -> Shared:
 def _by_name(
     named: Mapping[str, xr.DataArray], arrays: Mapping[str, NDArray[np.float64]]
 ) -> Shared:
-    import xarray as xr
-
     for name, array in arrays.items():
         if array.ndim:
             required = "a number or a DataArray where another argument is a DataArray"
@@ -194,8 +188,6 @@ def _by_name(
 
 
 def _by_position(arrays: Mapping[str, NDArray[np.float64]]) -> Shared:
-    import xarray as xr
-
     shape = _common_shape(arrays)
     sizes = {f"dim_{axis}": length for axis, length in enumerate(shape)}
     variables = {}

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import NDArray
 
     from pindrive.motion.motion import Motion
@@ -53,8 +53,6 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, Column]:
 
 def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
     """The columns at the times t (s, shape (n,)), the events, the numbers and the inputs."""
-    import xarray as xr
-
     from pindrive import __version__
 
     data: dict[str, Any] = {

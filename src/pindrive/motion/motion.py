@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from pindrive import _core, lazy
+from pindrive.lazy import xr
 from pindrive.motion.drive import (
     Drive,
     Profile,
@@ -37,7 +38,6 @@ from pindrive.quantities.table import check, refusal
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import xarray as xr
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 

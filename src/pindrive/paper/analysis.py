@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
+from matplotlib.colors import ListedColormap
 
 from pindrive.motion.batch import batched
 from pindrive.paper import as_printed, formulas
@@ -201,8 +202,6 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
     left.legend(frameon=False, loc="lower right")
     reverses = np.where(data.first_reversal.notnull(), 1.0, np.nan)
     extent = (0.0, float(data.speed_of_map.max()), 0.0, float(data.ratio_of_map.max()))
-    from matplotlib.colors import ListedColormap
-
     right.imshow(
         reverses,
         origin="lower",

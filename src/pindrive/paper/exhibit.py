@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
+from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
 from pindrive.plot.style import SMALL, STYLE
@@ -152,7 +153,6 @@ _INDEX: Final = re.compile(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω]′?)_([a-z0-9]+(?:
 
 def html(text: str) -> str:
     """As HTML: MathML, code, and indices as such."""
-    from latex2mathml.converter import convert
 
     def math(tex: str) -> str:
         return convert(tex.replace(r"\mathrm", r"\text"), display="inline")

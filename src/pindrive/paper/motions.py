@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
-from matplotlib.patches import Circle, FancyBboxPatch
+from matplotlib.patches import Circle, FancyBboxPatch, Patch
 
 from pindrive import Contact, Drive, Profile, simulate
 from pindrive.paper import baseline
@@ -170,8 +170,6 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
 
 
 def _key(figure: Figure) -> None:
-    from matplotlib.patches import Patch
-
     handles = [
         Patch(color=PALETTE["carried"], alpha=0.55, lw=0.0, label="carried by the plate"),
         Patch(color=PALETTE["resting"], alpha=0.22, lw=0.0, label="at rest on the finger"),

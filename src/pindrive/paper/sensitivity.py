@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline
@@ -169,8 +170,6 @@ def _draw_settling(data: xr.Dataset) -> Figure:
     figure = _panels(95, draw, "time (ms)")
     for axes in figure.axes:
         axes.set_ylim(0.0, None)
-    from matplotlib.lines import Line2D
-
     handles = [
         Line2D([], [], color=PALETTE["curve"], label="settled within 5 %"),
         Line2D([], [], color=PALETTE["resting"], label="at rest"),

@@ -17,8 +17,10 @@ import matplotlib.style
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, FancyBboxPatch
+from PIL import Image
 
 from pindrive.evaluation.tactile_image import view
 from pindrive.plot.pin import moment
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
-    from PIL import Image
 
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import Scan
@@ -135,8 +136,6 @@ def _told(stage: _Stage, count: int, progress: Progress | None) -> Iterator[NDAr
 
 
 def _write_gif(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
-    from PIL import Image
-
     def quantized() -> Iterator[Image.Image]:
         palette: Image.Image | None = None
         for frame in frames:
@@ -160,9 +159,6 @@ def _write_gif(frames: Iterator[NDArray[np.uint8]], target: Path) -> None:
 
 def _palette(image: Image.Image) -> Image.Image:
     """A palette with the colours of what moves, beside those of the first frame."""
-    from matplotlib.colors import to_rgb
-    from PIL import Image
-
     tints = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
     rows = [
         np.round(255.0 * (tints * np.array(to_rgb(PALETTE[name])) + 1.0 - tints))

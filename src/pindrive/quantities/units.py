@@ -10,10 +10,8 @@ import json
 import re
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from pint import UnitRegistry
+from pindrive.lazy import pint
 
 DEFINITIONS = """
 kilo- = 1e3 = k-
@@ -106,9 +104,7 @@ def _factor(written: str, unit: str) -> Decimal:
 
 
 @cache
-def _registry() -> UnitRegistry[Decimal]:
-    from pint import UnitRegistry
-
-    registry: UnitRegistry[Decimal] = UnitRegistry(None, non_int_type=Decimal)
+def _registry() -> pint.UnitRegistry[Decimal]:
+    registry: pint.UnitRegistry[Decimal] = pint.UnitRegistry(None, non_int_type=Decimal)
     registry.load_definitions(DEFINITIONS.strip().splitlines())
     return registry

@@ -11,6 +11,8 @@ from zlib import crc32
 
 import numpy as np
 
+from pindrive.lazy import qmc, special
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -96,10 +98,8 @@ class Distribution:
         if self.kind == "loguniform":
             low, high = log(first), log(second)
             return np.clip(np.exp(low + (high - low) * part), *self.span)
-        from scipy.special import ndtri
-
         below, above = self._part_below(self.lower), self._part_below(self.upper)
-        deviations = ndtri(below + (above - below) * part)
+        deviations = special.ndtri(below + (above - below) * part)
         normal = self.kind == "normal"
         values = first + second * deviations if normal else first * np.exp(log(second) * deviations)
         found: Values = np.clip(values, self.lower, self.upper)
@@ -121,13 +121,13 @@ class Distribution:
 
     def _part_below(self, value: float) -> float:
         """The part of all draws below `value`, before anything is cut off."""
-        from scipy.special import ndtr
-
         if self.kind == "normal":
-            return float(ndtr((value - self.first) / self.second))
+            return float(special.ndtr((value - self.first) / self.second))
         if value <= 0.0:
             return 0.0
-        return float(ndtr(log(value / self.first) / log(self.second))) if value < inf else 1.0
+        return (
+            float(special.ndtr(log(value / self.first) / log(self.second))) if value < inf else 1.0
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,8 +190,6 @@ def _random(keys: tuple[str, ...], seed: int, block: int) -> NDArray[np.float64]
 
 @lru_cache(maxsize=8)
 def _sobol(keys: tuple[str, ...], seed: int, block: int) -> NDArray[np.float64]:
-    from scipy.stats import qmc
-
     sequence = qmc.Sobol(len(keys), scramble=True, rng=np.random.default_rng(seed))
     if block:
         sequence.fast_forward(block * BLOCK)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.files.device import motion_of
+from pindrive.lazy import optimize, stats
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.study.distributions import Sample
@@ -64,9 +65,7 @@ class Share:
     @classmethod
     def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
         """Of so many independent draws of designs that exist, at least 1."""
-        from scipy.stats import binomtest
-
-        interval = binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
+        interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
         return cls(met, of, float(interval.low), float(interval.high), without)
 
 
@@ -213,8 +212,6 @@ def _worst(
 
     A range ends where its distribution does, or three standard deviations off.
     """
-    from scipy.optimize import differential_evolution
-
     spans = np.array([scatter.span for scatter in ranges.scatter.values()])
     low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
 
@@ -236,7 +233,7 @@ def _worst(
     if len(started) < 5:
         rng = np.random.default_rng(seed)
         started = np.concatenate([started, rng.random((5 - len(started), len(spans)))])
-    search = differential_evolution(
+    search = optimize.differential_evolution(
         at,
         [(0.0, 1.0)] * len(spans),
         init=np.clip(started, 0.0, 1.0),

@@ -18,6 +18,7 @@ import numpy as np
 
 from pindrive.files.kinds import STUDY_NETCDF
 from pindrive.files.output import Output, OutputError, check_outputs, check_unread, naming
+from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import refusal
@@ -239,8 +240,6 @@ def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
 
 def _is_complete(target: Path, plan: Plan) -> bool:
     """Whether the file is the whole of this study; one of another study is refused."""
-    import h5py
-
     if not target.is_file():
         return False
     try:

@@ -14,6 +14,7 @@ import numpy as np
 from pindrive.files import template
 from pindrive.files.device import keys_meant
 from pindrive.files.template import WHOLE, usual
+from pindrive.lazy import xr
 from pindrive.quantities.table import short
 from pindrive.quantities.units import UnitError, quoted, to_si
 from pindrive.study.design import variable
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from os import PathLike
 
-    import xarray as xr
     from numpy.typing import NDArray
 
     from pindrive.quantities.quantity import Quantity
@@ -150,8 +150,6 @@ class View:
         Raises:
             ValueError: it cannot be read, or is no study.
         """
-        import xarray as xr
-
         self.path = str(path)
         try:
             with open(path, "rb") as file:  # says more of what is wrong than HDF5 does

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.lazy import qmc
 from pindrive.quantities.table import refusal
 
 if TYPE_CHECKING:
@@ -67,8 +68,6 @@ def sobol_indices(
     Raises:
         ValueError: `rows` is no power of 2, or below 128.
     """
-    from scipy.stats import qmc
-
     if rows < FEWEST_ROWS or rows & (rows - 1):
         required = f"a power of 2 of at least {FEWEST_ROWS}"
         raise ValueError(refusal("rows", required, repr(rows)))
