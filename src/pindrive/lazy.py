@@ -9,8 +9,6 @@ then has no circle. The package lazy_loader does the first two, but its modules 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 __all__ = [
@@ -36,6 +34,9 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from types import ModuleType
+
     import h5netcdf
     import h5py
     import matplotlib
@@ -56,7 +57,7 @@ else:
             self._name = name
 
         def __getattr__(self, name: str) -> object:
-            return getattr(import_module(self._name), name)
+            return getattr(_loaded(self._name), name)
 
     h5netcdf = _Module("h5netcdf")
     h5py = _Module("h5py")
@@ -77,6 +78,12 @@ else:
     qmc = _Module("scipy.stats.qmc")
 
 
+def _loaded(name: str) -> ModuleType:
+    """A module by its full name, without importlib: that is not loaded yet when Python starts."""
+    __import__(name)
+    return sys.modules[name]
+
+
 def attach(
     package: str, homes: Mapping[str, str]
 ) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
@@ -93,7 +100,7 @@ def attach(
 
             value: object = version(package)
         elif name in homes:
-            value = getattr(import_module(homes[name]), name)
+            value = getattr(_loaded(homes[name]), name)
         else:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         vars(sys.modules[package])[name] = value
@@ -105,4 +112,4 @@ def attach(
 def call(target: str, *arguments: Any) -> Any:
     """The result of a function or class that is named as "module:name"."""
     module, _, name = target.partition(":")
-    return getattr(import_module(module), name)(*arguments)
+    return getattr(_loaded(module), name)(*arguments)

@@ -10,8 +10,16 @@ import xarray as xr
 from PIL import Image
 
 from command import EXAMPLE, EXAMPLES, GOOD, refused, run
-from pindrive.files.kinds import DEVICE_FILE, MOTION_CSV, PICTURES, STUDY_NETCDF
-from pindrive.files.output import Output, OutputError, check_outputs, write_files
+from pindrive.files.output import (
+    DEVICE_FILE,
+    MOTION_CSV,
+    PICTURES,
+    STUDY_NETCDF,
+    Output,
+    OutputError,
+    check_outputs,
+    write_files,
+)
 from scan_studies import DEVICE
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -235,6 +243,6 @@ def test_a_file_that_cannot_be_read_is_not_replaced(monkeypatch: pytest.MonkeyPa
         raise PermissionError(13, "Permission denied")
 
     Path("a.csv").write_text("time_s,position_m,\n")
-    monkeypatch.setattr("pindrive.files.kinds._head", unreadable)
+    monkeypatch.setattr("pindrive.files.output._head", unreadable)
     with pytest.raises(OutputError, match=r"a\.csv: is there, and cannot be read: Permission"):
         check_outputs([Output(Path("a.csv"), MOTION_CSV, "--csv")])

@@ -111,8 +111,7 @@ def init(
     ] = False,
 ) -> None:
     """Write a commented device file to start from."""
-    from pindrive.files.kinds import DEVICE_FILE
-    from pindrive.files.output import Output, naming, writing
+    from pindrive.files.output import DEVICE_FILE, Output, naming, writing
     from pindrive.files.template import template
 
     with refusing(), writing([Output(file, DEVICE_FILE)], consent=force) as parts, naming(file):
@@ -159,15 +158,22 @@ def simulate(
     """Release the pin of a device file and say how it moves."""
     from pindrive.files import export
     from pindrive.files.device import load, motion_of
-    from pindrive.files.kinds import MOTION_CSV, MOTION_JSON, MOTION_NETCDF
-    from pindrive.files.output import Output, naming, writing
-    from pindrive.plot.motion import write_figure
+    from pindrive.files.output import (
+        MOTION_CSV,
+        MOTION_JSON,
+        MOTION_NETCDF,
+        Output,
+        naming,
+        writing,
+    )
     from pindrive.quantities import budgets
 
     with refusing():
         device = load(file, overrides or ())
         wanted: list[tuple[Output, Callable[[Motion, Path], None]]] = []
         if plot:
+            from pindrive.plot.motion import write_figure
+
             kind = picture_format(plot)
             wanted.append((picture(plot), lambda m, part: write_figure(m, part, kind)))
         if csv:

@@ -99,8 +99,7 @@ def picture(path: Path, option: str = "--plot") -> Output:
     Raises:
         ValueError: it asks for none.
     """
-    from pindrive.files.kinds import PICTURES
-    from pindrive.files.output import Output
+    from pindrive.files.output import PICTURES, Output
 
     suffix = path.suffix.lower()
     if suffix not in PICTURES:

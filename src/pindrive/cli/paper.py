@@ -19,8 +19,7 @@ def paper(
     ] = None,
 ) -> None:
     """Recompute the paper, mend it, and judge what it says."""
-    from pindrive.files.kinds import REPORT
-    from pindrive.files.output import Output, check_folder, check_outputs, write_files
+    from pindrive.files.output import REPORT, Output, check_folder, check_outputs, write_files
     from pindrive.quantities.quantity import counted
 
     with refusing():

@@ -64,8 +64,7 @@ def scan(
         device_file = load(file, overrides or (), whole=True)
         assert device_file.whole
         device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
-        from pindrive.files.kinds import FILMS, LINES_CSV, SCAN_NETCDF
-        from pindrive.files.output import Output, naming, writing
+        from pindrive.files.output import FILMS, LINES_CSV, SCAN_NETCDF, Output, naming, writing
 
         outputs = [picture(plot)] if plot else []
         if film:

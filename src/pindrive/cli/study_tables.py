@@ -17,7 +17,7 @@ from pindrive.files.device import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.study.design import flags
-from pindrive.study.links import base_value
+from pindrive.study.distributions import base_value
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.refusals import why
 from pindrive.study.runner import human_bytes

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from pydantic import ValidationError
 
-from pindrive.files.schema import Place, Schema, over_time
+from pindrive.files.ratios import keep_ratios
+from pindrive.files.schema import Place, Schema, Whole, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
 from pindrive.quantities.quantity import Rows
@@ -25,7 +26,6 @@ from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pindrive.files.schema import Whole
     from pindrive.motion.motion import Motion
 
 STUDY_KEYS: Final = (
@@ -295,8 +295,6 @@ def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str,
         if f"drive.{one}" in places and f"drive.{other}" not in places:
             tables["drive"].pop(other, None)
     if places:
-        from pindrive.files.ratios import keep_ratios
-
         keep_ratios(tables, before, places)
     return places, problems
 
@@ -385,9 +383,7 @@ def _warn(device: DeviceFile, place: Place) -> None:
 
 
 def _around(tables: Mapping[str, Any], place: Place) -> Whole:
-    """The tables of the whole device; a plain drive does without what reading them takes."""
-    from pindrive.files.schema import Whole
-
+    """The tables of the whole device."""
     return Whole.model_validate(tables, context=place)
 
 

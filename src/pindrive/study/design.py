@@ -14,8 +14,7 @@ from pindrive.files.device import Setting, device_of
 from pindrive.files.ratios import written
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.motion.batch import batched
-from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample
-from pindrive.study.links import with_links
+from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

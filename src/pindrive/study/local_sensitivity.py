@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from pindrive.files.device import motion_of
 from pindrive.study.design import variable
-from pindrive.study.links import base_value, exponents
+from pindrive.study.distributions import base_value, exponents
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -16,8 +16,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pindrive.files.kinds import STUDY_NETCDF
-from pindrive.files.output import Output, OutputError, check_outputs, check_unread, naming
+from pindrive.files.output import (
+    STUDY_NETCDF,
+    Output,
+    OutputError,
+    check_outputs,
+    check_unread,
+    naming,
+)
 from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted

@@ -9,9 +9,8 @@ import numpy as np
 
 from pindrive.quantities import budgets
 from pindrive.study.design import COUNTS
-from pindrive.study.distributions import Distribution, Linked, as_distribution
+from pindrive.study.distributions import Distribution, Linked, as_distribution, with_links
 from pindrive.study.evaluate import evaluate
-from pindrive.study.links import with_links
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED
 from pindrive.study.refusals import Refusal, exist, refusals

@@ -23,8 +23,16 @@ from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import AxisReader, sweepable, written_axes
 from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, variable
-from pindrive.study.distributions import MOST_SOBOL, Axis, Distribution, Grid, Linked, Sample
-from pindrive.study.links import base_value, implied_links
+from pindrive.study.distributions import (
+    MOST_SOBOL,
+    Axis,
+    Distribution,
+    Grid,
+    Linked,
+    Sample,
+    base_value,
+    implied_links,
+)
 from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, demands, known_output, usual_outputs
 from pindrive.study.page import StudyPage, read_page
 from pindrive.study.validation import conflicts

@@ -12,8 +12,15 @@ from pindrive.files.template import NUMBERS
 from pindrive.motion.friction import GRAVITY, KINETIC, within
 from pindrive.quantities import budgets
 from pindrive.study.design import COUNTS
-from pindrive.study.distributions import Axis, Distribution, Linked, Listed
-from pindrive.study.links import base_value, circle, with_links
+from pindrive.study.distributions import (
+    Axis,
+    Distribution,
+    Linked,
+    Listed,
+    base_value,
+    circle,
+    with_links,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
