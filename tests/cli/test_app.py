@@ -317,7 +317,7 @@ def test_what_no_closed_form_solves_is_refused(override: str, problem: str) -> N
 def test_help_loads_nothing_heavy() -> None:
     code = (
         "import sys; sys.argv = ['pindrive', '--help']\n"
-        "from pindrive.cli import main\n"
+        "from pindrive.cli.app import main\n"
         "try: main()\n"
         "except SystemExit as end: assert not end.code\n"
         "heavy = {'numpy', 'pydantic', 'pint', 'rich', 'xarray', 'matplotlib', 'pindrive._core'}\n"

@@ -374,5 +374,5 @@ def test_a_readers_settings_neither_matter_nor_change() -> None:
 
 
 def test_pyplot_is_not_imported() -> None:
-    code = "import pindrive.plots, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import pindrive.plot.motion, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert run([sys.executable, "-c", code], check=False).returncode == 0

@@ -73,7 +73,7 @@ def test_a_disk_that_fills_up_keeps_finished_chunks(small_disk: Path) -> None:
 
 PEAK = """
 import resource, sys
-from pindrive.cli import app
+from pindrive.cli.app import app
 app(sys.argv[1:], standalone_mode=False)
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
