@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pindrive.lazy import attach
-
 if TYPE_CHECKING:
     from pindrive.motion.batch import simulate_batch
     from pindrive.motion.drive import Contact, Drive, Profile
@@ -26,15 +24,25 @@ __all__ = [
     "simulate_batch",
 ]
 
-__getattr__, __dir__ = attach(
-    __name__,
-    {
-        "Contact": "pindrive.motion.drive",
-        "Drive": "pindrive.motion.drive",
-        "ImplausibleValueWarning": "pindrive.quantities.table",
-        "Motion": "pindrive.motion.motion",
-        "Profile": "pindrive.motion.drive",
-        "simulate": "pindrive.motion.simulate",
-        "simulate_batch": "pindrive.motion.batch",
-    },
-)
+_HOME = {
+    "Contact": "pindrive.motion.drive",
+    "Drive": "pindrive.motion.drive",
+    "ImplausibleValueWarning": "pindrive.quantities.table",
+    "Motion": "pindrive.motion.motion",
+    "Profile": "pindrive.motion.drive",
+    "simulate": "pindrive.motion.simulate",
+    "simulate_batch": "pindrive.motion.batch",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name at its first use; `import pindrive` itself loads no other module."""
+    from pindrive.lazy import attach
+
+    get, _ = attach(__name__, _HOME)
+    return get(name)
+
+
+def __dir__() -> list[str]:
+    """The public names alone."""
+    return sorted(__all__)

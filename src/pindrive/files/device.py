@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from pydantic import ValidationError
 
 from pindrive.files.ratios import keep_ratios
-from pindrive.files.schema import Place, Schema, Whole, over_time
+from pindrive.files.schema import Place, Schema, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
 from pindrive.quantities.quantity import Rows
@@ -26,6 +26,7 @@ from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
+    from pindrive.files.schema_device import Whole
     from pindrive.motion.motion import Motion
 
 STUDY_KEYS: Final = (
@@ -383,7 +384,9 @@ def _warn(device: DeviceFile, place: Place) -> None:
 
 
 def _around(tables: Mapping[str, Any], place: Place) -> Whole:
-    """The tables of the whole device."""
+    """The tables of the whole device; a plain drive does without what reading them takes."""
+    from pindrive.files.schema_device import Whole
+
     return Whole.model_validate(tables, context=place)
 
 
