@@ -1,4 +1,9 @@
-"""The hand's path over the page: strokes of minimum jerk, or a recorded CSV."""
+"""The hand's path over the page: strokes of minimum jerk, or a recorded CSV.
+
+Its velocity is piecewise linear and continuous, its place the exact integral of that, so that the
+page under the pins and the plate under the mouse move as one. Page coordinates: x to the right, y
+down, both from where the scene has its origin.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,14 @@
-"""The page: what is printed, dark on light, with a scale; images, lines, and text set in a font."""
+"""The page: what is printed, dark on light, with a scale; images, lines, and text set in a font.
+
+Page coordinates: x to the right, y down, in metres. The luminance is that of the image as stored
+(gamma-encoded): 0 black, 1 white. Whatever an image leaves transparent is white.
+
+Text is set by Pillow's FreeType. Letters of scripts that are written one after the other, from left
+to right, are set as they come. Those that join, reorder or run from right to left (Arabic, Hebrew,
+Indic scripts), and combining marks that no single character stands for, are shaped by Raqm, which
+Pillow has where FriBiDi is installed; without it they are refused. Lines begin at the left in any
+script.
+"""
 
 from __future__ import annotations
 

@@ -6,13 +6,7 @@ from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any, ClassVar, cast
 
-from pydantic import (
-    BaseModel,
-    StrictStr,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+from pydantic import BaseModel, StrictStr, ValidationInfo, field_validator, model_validator
 
 from pindrive.files.template import NUMBERS, usual, usual_rows
 from pindrive.motion.drive import (

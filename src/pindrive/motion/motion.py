@@ -12,10 +12,7 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
-from pindrive.motion.drive import (
-    Drive,
-    Profile,
-)
+from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.results import (
     Certificate,
     ContactName,

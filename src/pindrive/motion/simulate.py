@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,16 +16,10 @@ from pindrive.motion.drive import (
     check_stretch,
 )
 from pindrive.motion.motion import Motion
-from pindrive.motion.results import (
-    CoreNumbers,
-    Rows,
-)
+from pindrive.motion.results import CoreNumbers, Rows
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
-
-if TYPE_CHECKING:
-    pass
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (

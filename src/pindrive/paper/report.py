@@ -1,4 +1,7 @@
-"""The whole report: made once, then laid out as a page of HTML or as Markdown for the docs."""
+"""The whole report: made once, then laid out as a page of HTML or as Markdown for the docs.
+
+Every number in it is computed from stated seeds, so that it comes out the same each time.
+"""
 
 from __future__ import annotations
 

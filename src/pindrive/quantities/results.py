@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from pindrive.quantities.drive import PAPER
-from pindrive.quantities.quantity import (
-    Quantity,
-)
+from pindrive.quantities.quantity import Quantity
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),

@@ -8,19 +8,13 @@ from __future__ import annotations
 
 import warnings
 from operator import index
-from typing import TYPE_CHECKING, Final, SupportsFloat, SupportsIndex, cast
+from typing import Final, SupportsFloat, SupportsIndex, cast
 
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.evaluation import JUDGE
-from pindrive.quantities.quantity import (
-    Quantity,
-    Rows,
-)
+from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.results import OUTPUTS
-
-if TYPE_CHECKING:
-    pass
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""

@@ -53,7 +53,8 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
 
     Args:
         path: a TOML file that names a device, or holds one, and says what to vary.
-        overrides: "key=value" each, as for `pindrive.files.device.load`; after those in its table [set].
+        overrides: "key=value" each, as for `pindrive.files.device.load`; after those in its table
+            [set].
 
     Raises:
         ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
