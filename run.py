@@ -333,7 +333,7 @@ def explore(arguments: list[str]) -> int:
     install({"test"})
     files = [
         p
-        for p in sorted((ROOT / "tests").glob("test_*.py"))
+        for p in sorted((ROOT / "tests").rglob("test_*.py"))
         if "hypothesis" in p.read_text("utf-8")
     ]
     failed = []

@@ -24,7 +24,7 @@ from rich.console import Console
 from rich.table import Table
 
 from pindrive import Contact, Drive, Motion, Profile, simulate, simulate_batch
-from pindrive.plots import PALETTE
+from pindrive.plot.style import PALETTE
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 

@@ -21,7 +21,7 @@ from timeit import Timer
 import numpy as np
 
 from pindrive import Drive, Motion, simulate
-from pindrive.config import load
+from pindrive.files.device import load
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 

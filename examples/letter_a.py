@@ -8,10 +8,11 @@ python examples/letter_a.py [PICTURE]
 import sys
 from pathlib import Path
 
-from pindrive.config import load
-from pindrive.device import judge, scan
-from pindrive.device.picture import plot_reliefs
-from pindrive.style import save
+from pindrive.device import scan
+from pindrive.evaluation import judge
+from pindrive.files.device import load
+from pindrive.plot.scan import plot_reliefs
+from pindrive.plot.style import save
 
 SPEEDS = (30, 60, 120)  # mm/s
 DEVICE = Path(__file__).with_name("tactile-reader.toml")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner, Result
 
-from pindrive.cli import app
+from pindrive.cli.app import app
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 EXAMPLE, SKIN = EXAMPLES / "tactile-mouse.toml", EXAMPLES / "stribeck-skin.toml"

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
-from pindrive.quantities import COLUMNS, QUANTITIES
-from pindrive.quantity import Quantity
-from pindrive.template import DRIVE, NUMBERS
+from pindrive.files.template import DRIVE, NUMBERS
+from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.quantity import Quantity
+from pindrive.quantities.table import QUANTITIES
 
 KEYS = tuple(NUMBERS)
 COMMANDS = ("check", "simulate", "scan", "speed", "sweep", "sensitivity", "robustness")
@@ -81,9 +82,9 @@ def warm_up() -> None:
 
     from typer.testing import CliRunner
 
-    from pindrive.cli import app
+    from pindrive.cli.app import app
 
-    for name in ("h5netcdf", "pindrive.study.histograms", "pindrive.study.maps"):
+    for name in ("h5netcdf", "pindrive.plot.robustness", "pindrive.plot.slices"):
         import_module(name)
 
     files = {

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import xarray as xr
 
-from pindrive.study.plan import Plan
-from pindrive.study.studyfile import load_study
-from pindrive.study.sweeping import on_threads, sweep
+from pindrive.study.design import Plan
+from pindrive.study.runner import on_threads, sweep
+from pindrive.study.spec import load_study
 
 DEVICE = """
 [drive]

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from typer.testing import CliRunner, Result
 
-from pindrive.cli import app
-from pindrive.study.plan import Plan
-from pindrive.study.studyfile import load_study
-from pindrive.study.sweeping import sweep
+from pindrive.cli.app import app
+from pindrive.study.design import Plan
+from pindrive.study.runner import sweep
+from pindrive.study.spec import load_study
 
 HERE = Path(__file__).parent
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from pindrive.cli import app
+from pindrive.cli.app import app
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = re.findall(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fuzz_cases import KEYS, Case, device
-from pindrive.template import NUMBERS
+from pindrive.files.template import NUMBERS
 
 FUZZ = Path(__file__).parent / "fuzz" / "files.py"
 
@@ -39,7 +39,7 @@ def test_what_is_wrong_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     """A library that warns: the same cases fail, and say so."""
     (tmp_path / "sitecustomize.py").write_text(
         "import sys, os\n"
-        "import pindrive.device.scene as scene\n"
+        "import pindrive.device.page as scene\n"
         "old = scene.Scene.from_text.__func__\n"
         "def new(*args, **named):\n"
         "    sys.stderr.write('RuntimeWarning: so it is\\n')\n"

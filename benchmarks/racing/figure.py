@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from benchmarks.racing.race import Result
-from pindrive.style import GREY, PALETTE, SMALL, STYLE, save
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, save
 
 # Peer and way: colour, marker, and where the name stands: at the first or last point, and how.
 LOOKS: dict[tuple[str, str], tuple[str, str, int, tuple[float, float], str]] = {

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pindrive.batch import simulate_batch
-    from pindrive.drive import Contact, Drive, Profile
-    from pindrive.motion import Motion, simulate
-    from pindrive.plausible import ImplausibleValueWarning
+    from pindrive.motion.batch import simulate_batch
+    from pindrive.motion.drive import Contact, Drive, Profile
+    from pindrive.motion.motion import Motion
+    from pindrive.motion.simulate import simulate
+    from pindrive.quantities.table import ImplausibleValueWarning
 
     __version__: str
 
@@ -24,30 +25,22 @@ __all__ = [
 ]
 
 _HOME = {
-    "Contact": "pindrive.drive",
-    "Drive": "pindrive.drive",
-    "Profile": "pindrive.drive",
-    "ImplausibleValueWarning": "pindrive.plausible",
-    "Motion": "pindrive.motion",
-    "simulate": "pindrive.motion",
-    "simulate_batch": "pindrive.batch",
+    "Contact": "pindrive.motion.drive",
+    "Drive": "pindrive.motion.drive",
+    "ImplausibleValueWarning": "pindrive.quantities.table",
+    "Motion": "pindrive.motion.motion",
+    "Profile": "pindrive.motion.drive",
+    "simulate": "pindrive.motion.simulate",
+    "simulate_batch": "pindrive.motion.batch",
 }
 
 
 def __getattr__(name: str) -> object:
-    """Import a public name at its first use, so that the command line starts fast."""
-    if name == "__version__":
-        from importlib.metadata import version
+    """Import a public name at its first use; `import pindrive` itself loads no other module."""
+    from pindrive.lazy import attach
 
-        value: object = version("pindrive")
-    elif name in _HOME:
-        from importlib import import_module
-
-        value = getattr(import_module(_HOME[name]), name)
-    else:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    globals()[name] = value
-    return value
+    get, _ = attach(__name__, _HOME)
+    return get(name)
 
 
 def __dir__() -> list[str]:

@@ -1,5 +1,5 @@
 """`python -m pindrive`: the command line."""
 
-from pindrive.cli import main
+from pindrive.cli.app import main
 
 main()

@@ -9,8 +9,8 @@ import warnings
 
 import numpy as np
 
-import test_oracle
-import test_oracle_piecewise as piecewise
+from core import test_oracle
+from core import test_oracle_piecewise as piecewise
 from pindrive import ImplausibleValueWarning
 
 warnings.simplefilter("ignore", ImplausibleValueWarning)  # the cases are no devices

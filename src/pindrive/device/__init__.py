@@ -4,64 +4,33 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from pindrive.device.array import PinArray
-    from pindrive.device.coil import Coil
-    from pindrive.device.control import Commands, ControlBlock, Decision
-    from pindrive.device.device import Device
-    from pindrive.device.hand import HandPath, lines, strokes, through
-    from pindrive.device.judging import judge
-    from pindrive.device.magnet import CoilState, Current, Electromagnet
-    from pindrive.device.record import read_csv
-    from pindrive.device.scanning import PinScan, PinState, Scan, scan
-    from pindrive.device.scene import Scene
-    from pindrive.device.verdict import Criteria, Judgement, Line
+from pindrive.lazy import attach
 
-_HOME = {
-    "Coil": "coil",
-    "CoilState": "magnet",
-    "Commands": "control",
-    "ControlBlock": "control",
-    "Criteria": "verdict",
-    "Current": "magnet",
-    "Decision": "control",
-    "Device": "device",
-    "Electromagnet": "magnet",
-    "HandPath": "hand",
-    "Judgement": "verdict",
-    "Line": "verdict",
-    "PinArray": "array",
-    "PinScan": "scanning",
-    "PinState": "scanning",
-    "Scan": "scanning",
-    "Scene": "scene",
-    "judge": "judging",
-    "lines": "hand",
-    "read_csv": "record",
-    "scan": "scanning",
-    "strokes": "hand",
-    "through": "hand",
-}
+if TYPE_CHECKING:
+    from pindrive.device.coil import Coil
+    from pindrive.device.controller import Commands, ControlBlock, Decision
+    from pindrive.device.device import Device
+    from pindrive.device.electromagnet import CoilState, Current, Electromagnet
+    from pindrive.device.hand import HandPath, lines, read_csv, strokes, through
+    from pindrive.device.page import Scene
+    from pindrive.device.pin_array import PinArray
+    from pindrive.device.scanning import PinScan, PinState, Scan, scan
 
 __all__ = [
     "Coil",
     "CoilState",
     "Commands",
     "ControlBlock",
-    "Criteria",
     "Current",
     "Decision",
     "Device",
     "Electromagnet",
     "HandPath",
-    "Judgement",
-    "Line",
     "PinArray",
     "PinScan",
     "PinState",
     "Scan",
     "Scene",
-    "judge",
     "lines",
     "read_csv",
     "scan",
@@ -69,18 +38,27 @@ __all__ = [
     "through",
 ]
 
-
-def __getattr__(name: str) -> object:
-    """Import a public name at its first use, so that the command line starts fast."""
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """The public names, imported or not."""
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = attach(
+    __name__,
+    {
+        "Coil": "pindrive.device.coil",
+        "CoilState": "pindrive.device.electromagnet",
+        "Commands": "pindrive.device.controller",
+        "ControlBlock": "pindrive.device.controller",
+        "Current": "pindrive.device.electromagnet",
+        "Decision": "pindrive.device.controller",
+        "Device": "pindrive.device.device",
+        "Electromagnet": "pindrive.device.electromagnet",
+        "HandPath": "pindrive.device.hand",
+        "PinArray": "pindrive.device.pin_array",
+        "PinScan": "pindrive.device.scanning",
+        "PinState": "pindrive.device.scanning",
+        "Scan": "pindrive.device.scanning",
+        "Scene": "pindrive.device.page",
+        "lines": "pindrive.device.hand",
+        "read_csv": "pindrive.device.hand",
+        "scan": "pindrive.device.scanning",
+        "strokes": "pindrive.device.hand",
+        "through": "pindrive.device.hand",
+    },
+)

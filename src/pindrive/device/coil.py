@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from math import pi
 from typing import Final
 
-from pindrive.quantities import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, refusal
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""

@@ -10,40 +10,41 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive import budgets
-from pindrive.device.course import Course
-from pindrive.quantities import QUANTITIES
+from pindrive.device.trajectory import Course
+from pindrive.lazy import xr
+from pindrive.quantities import budgets
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import xarray as xr
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
-    from pindrive.motion import Motion
+    from pindrive.motion.motion import Motion
 
 EACH: Final = 1e-3
 """Between two samples unless their times are given, s."""
 
 
-def dataset(scan: Scan, t: NDArray[np.float64]) -> xr.Dataset:
+def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     """Variables over (pin, time), and tables of events and switchings with the pin of each row.
 
     Args:
         scan: the scan.
-        t: s, shape (n,), on the path's clock.
+        times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
 
     Raises:
         ValueError: too many samples.
     """
-    check_samples(len(scan.pins), len(t))
-    import xarray as xr
-
     from pindrive import __version__
 
     device, path, pins = scan.device, scan.path, scan.pins
+    check_samples(len(pins), sample_count(path) if times is None else np.size(times))
+    if times is None:
+        times = np.append(np.arange(path.begin, path.end, EACH), path.end)
+    t = np.atleast_1d(np.asarray(times, np.float64))
     hand_x, hand_y = path.position(t)
     data: dict[str, Any] = {
         "hand_x": _over("time", hand_x, "m", "place of the hand across the page"),
@@ -235,3 +236,15 @@ def _gaps(scan: Scan) -> dict[str, Any]:
         quantity, values = QUANTITIES[name], [getattr(gap, attribute) for gap in scan.gaps]
         table[name.replace(".", "_")] = _over("neighbours", values, quantity.unit, quantity.meaning)
     return table
+
+
+def gap_words(scan: Scan) -> list[str]:
+    """How close neighbouring pins come; nothing where none stands ahead of another."""
+    smallest, length = scan.smallest_gap, QUANTITIES["pin_gap"]
+    if smallest is None:
+        return []
+    pins = f"pins {smallest.behind} and {smallest.ahead} at {smallest.time:.4g} s"
+    if smallest.size < 0.0:
+        overlap = f"Pins overlap by up to {length.text(-smallest.size)}, {pins}"
+        return [f"{overlap}: real pins would push each other."]
+    return [f"Smallest gap between neighbouring pins: {length.text(smallest.size)}, {pins}."]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
-from pindrive.device.array import PinArray
-from pindrive.device.control import ControlBlock
-from pindrive.device.magnet import Electromagnet
-from pindrive.drive import Contact, Drive
-from pindrive.friction import Coefficients
-from pindrive.quantities import refusal
+from pindrive.device.controller import ControlBlock
+from pindrive.device.electromagnet import Electromagnet
+from pindrive.device.pin_array import PinArray
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.friction import Coefficients
+from pindrive.quantities.table import refusal
 
 if TYPE_CHECKING:
     import numpy as np

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from pindrive.device.array import Neighbours
-    from pindrive.motion import Motion
+    from pindrive.device.pin_array import Neighbours
+    from pindrive.motion.motion import Motion
 
 CLOSE: Final = 1e-12
 """The smallest gap is found to within that, m."""

@@ -1,95 +1,445 @@
-"""What a hand reads and how it moves: text, a picture or lines; by strokes, or as was recorded."""
+"""The page: what is printed, dark on light, with a scale; images, lines, and text set in a font.
+
+Page coordinates: x to the right, y down, in metres. The luminance is that of the image as stored
+(gamma-encoded): 0 black, 1 white. Whatever an image leaves transparent is white.
+
+Text is set by Pillow's FreeType. Letters of scripts that are written one after the other, from left
+to right, are set as they come. Those that join, reorder or run from right to left (Arabic, Hebrew,
+Indic scripts), and combining marks that no single character stands for, are shaped by Raqm, which
+Pillow has where FriBiDi is installed; without it they are refused. Lines begin at the left in any
+script.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import warnings
+from dataclasses import dataclass, field
+from functools import cache
+from math import ceil
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+from unicodedata import bidirectional, category, name, normalize
 
-from pindrive.device.scene import in_words
-from pindrive.quantities import refusal
+import numpy as np
+
+from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
+from pindrive.quantities import budgets
+from pindrive.quantities.table import check, check_whole, refusal
+from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterable, Sequence
 
-    from pindrive.device.array import PinArray
-    from pindrive.device.hand import HandPath
-    from pindrive.device.reading import Reading
-    from pindrive.device.scene import Scene
+    from numpy.typing import ArrayLike, NDArray
+
+LUMA: Final = (0.299, 0.587, 0.114)
+"""Weights of red, green and blue (ITU-R BT.601-7)."""
+STRIP: Final = 1 << 20
+"""Pixels of a picture that are turned into luminance together."""
+INCH: Final = 0.0254
+NEAR: Final = 1e-9
+"""Off the page by no more than that (m) is on its border."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Page:
-    """One of `text`, `image` and `grating`.
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A page. Made by `from_image`, `from_text`, `from_grating`, or from an array.
+
+    Args:
+        luminance: in [0, 1], shape (rows, columns), the first row on top.
+        pixel: size of a pixel, m, greater than 0.
+        origin: place of its top left corner on the page, m.
+        lines: y of the middle of each line of text, m, where it has lines.
+        title: what it shows, in words.
+
+    Raises:
+        ValueError: no pixels, a luminance out of [0, 1], or a number out of its range.
+    """
+
+    luminance: NDArray[np.float64]
+    pixel: float
+    origin: tuple[float, float] = (0.0, 0.0)
+    lines: tuple[float, ...] = ()
+    title: str = field(default="a scene", kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Validate, and keep an array that nobody writes to."""
+        values = np.asarray(self.luminance, np.float64)
+        if values.flags.writeable or values.base is not None:
+            values = values.copy()  # somebody else may write to it
+        if values.ndim != 2 or values.size == 0:
+            raise ValueError(refusal("luminance", "rows and columns of pixels", values.shape))
+        if not (values.min() >= 0.0 and values.max() <= 1.0):
+            wrong = values[~((values >= 0.0) & (values <= 1.0))][0]
+            check("scene.luminance", wrong, label="luminance")
+        values.flags.writeable = False
+        x, y = self.origin
+        object.__setattr__(self, "luminance", values)
+        object.__setattr__(self, "pixel", check("pixel", self.pixel))
+        object.__setattr__(self, "origin", (check("scene.origin", x), check("scene.origin", y)))
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, top and bottom of the page, m."""
+        (rows, columns), (x, y) = self.luminance.shape, self.origin
+        return x, x + columns * self.pixel, y, y + rows * self.pixel
+
+    def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
+        """Whether places (m, any shape) are on the page, its border and rounding included."""
+        left, right, top, bottom = self.extent
+        left, right, top, bottom = left - NEAR, right + NEAR, top - NEAR, bottom + NEAR
+        px, py = np.asarray(x, np.float64), np.asarray(y, np.float64)
+        return (left <= px) & (px <= right) & (top <= py) & (py <= bottom)
+
+    def at(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
+        """Luminance at places (m, any shape) on the page, linear between the middles of pixels.
+
+        In the outer half of the outermost pixels it is theirs.
+
+        Raises:
+            ValueError: a place is not on the page.
+        """
+        px, py = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+        inside = self.contains(px, py)
+        if not inside.all():
+            left, right, top, bottom = (1e3 * edge for edge in self.extent)
+            required = f"within {left:g} to {right:g} mm across, {top:g} to {bottom:g} mm down"
+            given = f"{1e3 * px[~inside].flat[0]:g} mm, {1e3 * py[~inside].flat[0]:g} mm"
+            raise ValueError(refusal("a place", required, given))
+        (rows, columns), (x0, y0) = self.luminance.shape, self.origin
+        i, u = _between((px - x0) / self.pixel, columns)
+        j, w = _between((py - y0) / self.pixel, rows)
+        i1, j1 = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
+        above = self.luminance[j, i] * (1.0 - u) + self.luminance[j, i1] * u
+        below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
+        return np.asarray(above * (1.0 - w) + below * w)
+
+    def dark(self, threshold: float = 0.5) -> NDArray[np.bool_]:
+        """Which pixels hold information: darker than the threshold, in [0, 1]."""
+        return self.luminance < check("threshold", threshold)
+
+    # ---- where scenes come from ------------------------------------------------------------------
+
+    @classmethod
+    def from_image(cls, path: str | PathLike[str], pixel: float | None = None) -> Scene:
+        """An image file of any kind that Pillow reads, turned as its EXIF data says.
+
+        Args:
+            path: the file; of one with several pictures the first.
+            pixel: size of a pixel, m; None: what the file says of its resolution.
+
+        Raises:
+            ValueError: the file cannot be read, or says nothing of its resolution.
+        """
+        file = fspath(path)
+        try:
+            with _opened(file) as image:
+                _check_size(image.width, image.height, file)
+                resolution = image.info.get("dpi")
+                shown = ImageOps.exif_transpose(image)
+                values = _luminance(shown, file)
+                values.flags.writeable = False
+        except Image.DecompressionBombError as error:
+            raise ValueError(f"{file}: is too large: {error}") from None
+        except OSError as error:
+            reason = error.strerror or "it is no image, or a damaged one"
+            raise ValueError(f"{file}: cannot be read: {reason}") from None
+        except (SyntaxError, EOFError, IndexError, OverflowError) as error:  # damaged PNG, GIF ...
+            raise ValueError(f"{file}: cannot be read: {error}") from None
+        if pixel is None:
+            pixel = _pixel_of(resolution, file)
+        return cls(values, pixel, title=file)
+
+    @classmethod
+    def from_text(
+        cls,
+        text: str,
+        *,
+        height: float = 0.010,
+        pixel: float = 1e-4,
+        margin: float = 0.005,
+        line_pitch: float | None = None,
+        font: str | PathLike[str] | None = None,
+    ) -> Scene:
+        """Text, black on white.
+
+        Args:
+            text: one or more lines, apart by newlines.
+            height: of capital letters, m.
+            pixel: m.
+            margin: white around it, m, at least; a tall accent may ask for more.
+            line_pitch: from line to line, m; None: twice the height.
+            font: a file FreeType reads; None: DejaVu Sans, which comes with Matplotlib.
+
+        Raises:
+            ValueError: nothing to show, a character that the font lacks, a font that cannot be
+                read, or a number out of its range.
+        """
+        size, step = check("text_height", height), check("pixel", pixel)
+        pitch = 2.0 * size if line_pitch is None else check("line_pitch", line_pitch)
+        values, middles = draw(text, size / step, pitch / step, margin / step, font)
+        lines = tuple(middle * step for middle in middles)
+        return cls(values, step, (0.0, 0.0), lines, title=in_words(text))
+
+    @classmethod
+    def from_grating(
+        cls,
+        pitches: Iterable[float],
+        *,
+        count: int = 4,
+        height: float = 0.010,
+        pixel: float = 1e-4,
+        margin: float = 0.005,
+    ) -> Scene:
+        """Groups of upright black lines, each half as wide as its pitch.
+
+        Args:
+            pitches: from line to line in each group, m, greater than 0.
+            count: lines in each group, at least 1.
+            height: m.
+            pixel: m; a border between pixels is as dark as the part of the pixel it covers.
+            margin: white around the groups, m, and with the pitch between them.
+
+        Raises:
+            ValueError: no pitch, no lines, or a number out of its range.
+        """
+        steps = [check("pitch", pitch) for pitch in pitches]
+        if not steps:
+            raise ValueError(refusal("pitches", "at least one", "none"))
+        size, count = check("pixel", pixel), check_whole(count, "count")
+        begins, ends, x = [], [], margin
+        for pitch in steps:
+            begins += [x + i * pitch for i in range(count)]
+            ends += [x + (i + 0.5) * pitch for i in range(count)]
+            x = ends[-1] + margin
+        across, down = x / size, (check("text_height", height) + 2.0 * margin) / size
+        _check_size(across, down)
+        columns, rows = max(1, round(across)), max(1, round(down))
+        covered = _covered(size * np.arange(columns + 1), begins, ends)
+        row = 1.0 - np.clip(covered / size, 0.0, 1.0)
+        page = np.ones((rows, columns))
+        top = round(margin / size)
+        page[top : rows - top] = row
+        page.flags.writeable = False
+        words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)
+        return cls(page, size, lines=(0.5 * rows * size,), title=f"lines every {words} mm")
+
+
+def in_words(text: str) -> str:
+    """A text for a title, its lines apart by slashes."""
+    return f"text {quoted(' / '.join(text.splitlines()))}"
+
+
+def _between(
+    place: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """The pixel before a place (in pixels) and how far on to the next one it is, 0 to 1."""
+    middle = np.clip(place - 0.5, 0.0, count - 1.0)
+    i = np.minimum(middle.astype(np.intp), max(count - 2, 0))
+    return i, middle - i
+
+
+def _covered(
+    borders: NDArray[Any], begins: Sequence[float], ends: Sequence[float]
+) -> NDArray[np.float64]:
+    """How much (m) of the stretch between each border and the next lies on lines.
+
+    Args:
+        borders: m, shape (n + 1,), increasing.
+        begins: of the lines, m, increasing, none before the end of the one before.
+        ends: of the lines.
+    """
+    edges = np.stack([begins, ends], axis=1)
+    after = np.cumsum(edges[:, 1] - edges[:, 0])
+    before = np.stack([np.append(0.0, after[:-1]), after], axis=1)
+    return np.diff(np.interp(borders, edges.ravel(), before.ravel()))
+
+
+def _opened(file: str) -> Image.Image:
+    """An image file of which only the head is read; of its size we say ourselves what is wrong."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        return Image.open(file)
+
+
+def _check_size(across: float, down: float, where: str = "") -> None:
+    """Refuse a page of too many pixels."""
+    of = f"{across:.6g} by {down:.6g}; take larger pixels or a smaller page"
+    budgets.PIXELS.check(across * down, of, where=where)
+
+
+def _luminance(image: Image.Image, file: str) -> NDArray[np.float64]:
+    """The luminance of an image of any mode, on white."""
+    if image.mode == "F" or image.mode.startswith("I"):
+        values = np.asarray(image, np.float64)
+        whole = 1.0 if image.mode == "F" else 65535.0
+        low, high = float(values.min()), float(values.max())
+        if not (low >= 0.0 and high <= whole):
+            given = f"{low:g} to {high:g}"
+            raise ValueError(
+                refusal(f"grey of mode {image.mode}", f"in 0 to {whole:g}", given, file)
+            )
+        return values / whole
+    if image.has_transparency_data:
+        paper = Image.new("RGBA", image.size, "white")
+        image = Image.alpha_composite(paper, image.convert("RGBA"))
+    if image.mode in ("1", "L"):
+        return np.asarray(image.convert("L"), np.float64) / 255.0
+    colours = np.asarray(image.convert("RGB"))
+    grey = np.empty(colours.shape[:2])
+    rows = max(1, STRIP // image.width)
+    for top in range(0, image.height, rows):
+        red, green, blue = np.moveaxis(colours[top : top + rows].astype(np.float64), 2, 0)
+        strip = (LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue) / 255.0
+        grey[top : top + rows] = np.minimum(strip, 1.0)
+    return grey
+
+
+def _pixel_of(resolution: Any, file: str) -> float:
+    """The size of a pixel from dots per inch, alike in both directions."""
+    try:
+        across, down = (float(dots) for dots in resolution)
+    except (TypeError, ValueError):
+        across = down = 0.0
+    if not across > 1.0:
+        raise ValueError(
+            f'{file}: says nothing of its resolution; give scan.pixel, like pixel = "0.1 mm"'
+        )
+    if abs(across - down) > 0.01 * across:
+        given = f"{across:g} by {down:g}"
+        raise ValueError(refusal("dots per inch", "the same across and down", given, file))
+    return INCH / across
+
+
+MEASURED: Final = 1000
+"""Size at which the font's capitals are measured."""
+SMALLEST: Final = 1.0
+"""Height of capitals in pixels below which nothing can be set."""
+PLAIN: Final = 0x0590
+"""The first code point of Hebrew: Latin, Greek, Cyrillic and Armenian stand before it."""
+PLAIN_SCRIPTS: Final = (
+    *("LATIN", "GREEK", "CYRILLIC", "GEORGIAN", "CJK", "HIRAGANA", "KATAKANA", "HANGUL SYLLABLE"),
+    *("FULLWIDTH", "HALFWIDTH KATAKANA", "SUPERSCRIPT", "SUBSCRIPT", "DOUBLE-STRUCK", "SCRIPT"),
+    *("KELVIN", "OHM", "ANGSTROM", "TURNED"),
+)
+"""How the names of letters begin that stand after it and are set one after the other too."""
+
+
+@cache
+def default_font() -> str:
+    """DejaVu Sans, which comes with Matplotlib: Latin, Greek, Cyrillic, Arabic, Hebrew and more."""
+    return str(Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
+
+
+def draw(
+    text: str, height: float, pitch: float, margin: float, font: str | PathLike[str] | None = None
+) -> tuple[NDArray[np.float64], list[float]]:
+    """Text as luminance, and the middle of the capitals of each line from the top; in pixels.
 
     Args:
         text: one or more lines.
-        image: a file that Pillow reads.
-        grating: from line to line in each of several groups, m.
-        font: a file for the text; None: DejaVu Sans.
-        path: a CSV of the hand's path; None: strokes.
+        height: of capital letters.
+        pitch: from line to line.
+        margin: white around it, at least.
+        font: a file that FreeType reads; None: `default_font`.
+
+    Returns:
+        Luminance that cannot be written to, and the middles.
+
+    Raises:
+        ValueError: nothing to show, too much of it, letters too small, a character that the font
+            lacks or that takes shaping where there is none, or no such font.
     """
+    file = default_font() if font is None else fspath(font)
+    budgets.CHARACTERS.check(len(text))
+    lines = normalize("NFC", text).splitlines()
+    if not text.strip():
+        raise ValueError(refusal("text", "at least one character that is drawn", quoted(text)))
+    engine = _engine("".join(lines))
+    try:
+        measured = ImageFont.truetype(file, MEASURED, layout_engine=engine)
+    except OSError as error:
+        raise ValueError(f"{file}: is no font that can be read: {error}") from None
+    _check_known("".join(lines), file)
+    capital = -measured.getbbox("H", anchor="ls")[1]
+    if not capital > 0:
+        raise ValueError(f"{file}: its capital H has no height")
+    if not height >= SMALLEST:
+        required = f"at least {SMALLEST:g} pixel; take smaller pixels"
+        raise ValueError(refusal("the height of the text", required, f"{height:.3g}"))
+    _check_text_size(height, height)
+    letters = ImageFont.truetype(file, MEASURED * height / capital, layout_engine=engine)
+    boxes = [letters.getbbox(line, anchor="ls") for line in lines]
+    left = margin - min(box[0] for box in boxes)
+    first = max(margin + height, *(-i * pitch - box[1] for i, box in enumerate(boxes)))
+    last = first + (len(lines) - 1) * pitch
+    across = left + max(box[2] for box in boxes) + margin
+    down = max(last + margin, *(first + i * pitch + box[3] for i, box in enumerate(boxes)))
+    _check_text_size(across, down)
+    width, depth = ceil(across) + 1, ceil(down)
+    page = Image.new("L", (width, depth), 255)
+    pen = ImageDraw.Draw(page)
+    for i, line in enumerate(lines):
+        pen.text((left, first + i * pitch), line, fill=0, font=letters, anchor="ls")
+    middles = [first + i * pitch - 0.5 * height for i in range(len(lines))]
+    drawn = np.asarray(page)
+    ink = np.flatnonzero((drawn < 255).any(axis=0))
+    if not ink.size:
+        raise ValueError(refusal("text", "at least one character that is drawn", quoted(text)))
+    drawn, border = drawn[:, ink[0] : ink[-1] + 1], round(margin)
+    values = np.ones((depth, drawn.shape[1] + 2 * border))
+    np.divide(drawn, 255.0, out=values[:, border : border + drawn.shape[1]])
+    values.flags.writeable = False
+    return values, middles
 
-    text: str | None = None
-    image: Path | None = None
-    grating: tuple[float, ...] | None = None
-    font: Path | None = None
-    path: Path | None = None
 
-    def check(self, label: str, where: str = "") -> None:
-        """Refuse none or several of them, and a font without text.
+def _engine(text: str) -> ImageFont.Layout:
+    """How text is laid out: letter by letter, alike on every machine, or shaped by Raqm.
 
-        Args:
-            label: how a part is called where it was given, like "--{}".
-            where: the place, said first.
-        """
-        parts = {"text": self.text, "image": self.image, "grating": self.grating}
-        given = [label.format(name) for name, value in parts.items() if value is not None]
-        place = f"{where}: " if where else ""
-        if len(given) != 1:
-            text, image, grating = (label.format(name) for name in parts)
-            found = " and ".join(given) or "none of them"
-            raise ValueError(
-                f"{place}give exactly one of {text}, {image} and {grating}, got {found}"
-            )
-        if self.font and self.text is None:
-            font, text = label.format("font"), label.format("text")
-            raise ValueError(f"{place}{font} {self.font}: goes with {text} alone")
+    Raises:
+        ValueError: it takes shaping, and this machine has none.
+    """
+    taking = next((c for c in text if _takes_shaping(c)), None)
+    if taking is None:
+        return ImageFont.Layout.BASIC
+    if features.check("raqm") and features.check("fribidi"):
+        return ImageFont.Layout.RAQM
+    called = f"{quoted(taking)} (U+{ord(taking):04X} {name(taking, 'without a name')})"
+    raise ValueError(
+        f"text: {called} is of a script that must be shaped, for which the library FriBiDi is not "
+        "installed; install it (libfribidi0, fribidi), or give a picture with --image"
+    )
 
-    @property
-    def files(self) -> dict[str, Path]:
-        """The files it is made of, by the names of its parts."""
-        parts = {"image": self.image, "font": self.font, "path": self.path}
-        return {name: file for name, file in parts.items() if file is not None}
 
-    @property
-    def words(self) -> str:
-        """What it is, for a title."""
-        if self.text is not None:
-            shown = in_words(self.text)
-        elif self.image is not None:
-            shown = f"picture {self.image.name}"
-        else:
-            shown = f"lines every {', '.join(f'{1e3 * p:g}' for p in self.grating or ())} mm"
-        return f"{shown} along {self.path.name}" if self.path else shown
+def _takes_shaping(character: str) -> bool:
+    """Whether a character joins, moves or goes with others, or runs from right to left."""
+    kind = category(character)
+    if kind in ("Mn", "Mc", "Me", "Cf") or bidirectional(character) in ("R", "AL", "AN"):
+        return True
+    return (
+        kind.startswith("L")
+        and ord(character) >= PLAIN
+        and not name(character, "").startswith(PLAIN_SCRIPTS)
+    )
 
-    @property
-    def options(self) -> str:
-        """As `pindrive scan` takes it."""
-        pitches = ", ".join(f"{1e3 * pitch:.12g} mm" for pitch in self.grating or ())
-        text = None if self.text is None else self.text.replace("\n", "\\n")
-        given = {"text": text, "grating": pitches or None} | self.files
-        return " ".join(f'--{name} "{part}"' for name, part in given.items() if part is not None)
 
-    def scene(self, reading: Reading, array: PinArray) -> Scene:
-        """What is on it, in a fitting size; errors as for `Reading`'s text, image and grating."""
-        if self.text is not None:
-            return reading.text(self.text, array, self.font)
-        if self.image is not None:
-            return reading.image(self.image)
-        if self.grating is None:
-            raise ValueError(refusal("a page", "of text, an image or a grating", "none"))
-        return reading.grating(self.grating, array)
+def _check_text_size(width: float, depth: float) -> None:
+    """Refuse a page of too many pixels."""
+    of = f"{width:.6g} by {depth:.6g}; take larger pixels or less text"
+    budgets.PIXELS.check(width * depth, of)
 
-    def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
-        """How the hand moves over it; errors as for `Reading`'s strokes and record."""
-        return reading.strokes(scene, array) if self.path is None else reading.record(self.path)
+
+def _check_known(text: str, file: str) -> None:
+    """Refuse characters that the font would show as empty boxes."""
+    face = ft2font.FT2Font(file)
+    lacking = [
+        c for c in dict.fromkeys(text) if not c.isspace() and not face.get_char_index(ord(c))
+    ]
+    if lacking:
+        named = ", ".join(f"U+{ord(c):04X} {name(c, 'without a name')}" for c in lacking[:3])
+        more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
+        raise ValueError(
+            f"text: the font {Path(file).name} lacks {quoted(''.join(lacking))} ({named}{more}); "
+            "give another with --font"
+        )

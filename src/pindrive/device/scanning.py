@@ -16,21 +16,24 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive import budgets
-from pindrive.cores import worker_count
-from pindrive.device.control import Commands, Decision
-from pindrive.device.course import Way, check_vibration
+from pindrive import lazy
+from pindrive.device.controller import Commands, Decision
 from pindrive.device.device import Device
+from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
-from pindrive.device.magnet import CoilState, Current
-from pindrive.device.scene import Scene
-from pindrive.drive import Profile
-from pindrive.motion import Event, Motion, simulated
-from pindrive.quantities import QUANTITIES, refusal
+from pindrive.device.page import Scene
+from pindrive.device.trajectory import Way, check_vibration
+from pindrive.lazy import xr
+from pindrive.motion.drive import Profile
+from pindrive.motion.motion import Motion
+from pindrive.motion.results import Event
+from pindrive.motion.simulate import simulated
+from pindrive.quantities import budgets
+from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
 ROUNDING: Final = 1e-9
@@ -189,12 +192,8 @@ class Scan:
         Args:
             times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
         """
-        from pindrive.device.dataset import EACH, check_samples, dataset, sample_count
-
-        if times is None:
-            check_samples(len(self.pins), sample_count(self.path))
-            times = np.append(np.arange(self.path.begin, self.path.end, EACH), self.path.end)
-        return dataset(self, np.atleast_1d(np.asarray(times, np.float64)))
+        made: xr.Dataset = lazy.call("pindrive.device.dataset:dataset", self, times)
+        return made
 
 
 def scan(
@@ -224,8 +223,8 @@ def scan(
 
     Raises:
         ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, there is more to do than `pindrive.budgets` allow, or a simulation had to be
-            given up.
+            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation
+            had to be given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"

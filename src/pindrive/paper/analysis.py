@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
+from matplotlib.colors import ListedColormap
 
-from pindrive.batch import batched
-from pindrive.paper import formulas, printed
-from pindrive.paper.exhibit import Exhibit, page, tidy
-from pindrive.paper.reading import by_case, trend
+from pindrive.motion.batch import batched
+from pindrive.paper import as_printed, formulas
+from pindrive.paper.exhibit import Exhibit, by_case, page, tidy, trend
 from pindrive.paper.release import Release
-from pindrive.style import GREY, PALETTE, SMALL
+from pindrive.plot.style import GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -202,8 +202,6 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
     left.legend(frameon=False, loc="lower right")
     reverses = np.where(data.first_reversal.notnull(), 1.0, np.nan)
     extent = (0.0, float(data.speed_of_map.max()), 0.0, float(data.ratio_of_map.max()))
-    from matplotlib.colors import ListedColormap
-
     right.imshow(
         reverses,
         origin="lower",
@@ -251,9 +249,9 @@ def steady_and_rest() -> Exhibit:
         {
             "steady_after": (("speed", "place"), formulas.time_to_steady(r) / period),
             "reversals": ("place", formulas.reversals_to_steady(r)[0]),
-            "printed_steady": ("place", printed.periods_to_steady(r)[0]),
+            "printed_steady": ("place", as_printed.periods_to_steady(r)[0]),
             "rest_after": ("finger", formulas.periods_to_rest(rest, finger)),
-            "printed_rest": ("finger", printed.periods_to_rest(rest, finger)),
+            "printed_rest": ("finger", as_printed.periods_to_rest(rest, finger)),
             "simulated_rest": ("finger", found["transient_rest_time"].to_numpy() / period),
         },
         coords={
@@ -337,7 +335,9 @@ def printed_forms() -> Exhibit:
     r = release(ratios, speeds[:, None], 0.1)
     size = formulas.amplitude(r)
     off = {
-        name: np.max(np.abs(getattr(printed, name)(r) - getattr(formulas, name)(r)) / size, axis=0)
+        name: np.max(
+            np.abs(getattr(as_printed, name)(r) - getattr(formulas, name)(r)) / size, axis=0
+        )
         for name in SLIPS
     }
     data = xr.Dataset(

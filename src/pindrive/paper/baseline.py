@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import Final
 
-from pindrive.quantities import QUANTITIES
+from pindrive.quantities.table import QUANTITIES
 
 VALUES: Final = {
     name: QUANTITIES[name].default or 0.0

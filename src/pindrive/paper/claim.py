@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.batch import batched
+from pindrive.motion.batch import batched
 from pindrive.paper import population
 
 if TYPE_CHECKING:

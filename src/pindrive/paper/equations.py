@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pindrive.paper import formulas, printed
+from pindrive.paper import as_printed, formulas
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from pindrive.paper.facts import Facts
+    from pindrive.paper.population import Facts
 
     Array = NDArray[np.float64]
 
@@ -70,9 +70,9 @@ def rows(facts: Facts) -> list[Row]:
 
     def compare(name: str, exact: Array, unit: Array | float) -> tuple[float, float]:
         right = _worst((getattr(formulas, name)(r) - exact) / unit)
-        if not hasattr(printed, name):
+        if not hasattr(as_printed, name):
             return right, right
-        return _worst((getattr(printed, name)(r) - exact) / unit), right
+        return _worst((getattr(as_printed, name)(r) - exact) / unit), right
 
     def same(deviation: Array) -> tuple[float, float]:
         return _worst(deviation), _worst(deviation)

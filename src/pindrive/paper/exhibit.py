@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
+from html import escape
 from io import BytesIO
+from math import ceil, log10
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
+from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
-from pindrive.style import SMALL, STYLE
+from pindrive.plot.style import SMALL, STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import xarray as xr
     from matplotlib.axes import Axes
-
-__all__ = ["Exhibit", "page", "summary", "tidy"]
+    from numpy.typing import ArrayLike
 
 WIDTH: Final = 180 / 25.4
 """Of every figure, inches."""
@@ -93,3 +96,95 @@ def tidy(axes: Axes, title: str = "") -> None:
     axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     if title:
         axes.set_title(title, loc="left", fontsize=8.0)
+
+
+def trend(values: ArrayLike) -> str:
+    """How values go along their axis: throughout, on the whole (rank correlation), or neither."""
+    y = np.asarray(values, dtype=np.float64)
+    steps = np.diff(y)
+    if (steps >= 0.0).all():
+        return "rises throughout"
+    if (steps <= 0.0).all():
+        return "falls throughout"
+    rank = rank_correlation(y)
+    if abs(rank) < 0.5:
+        return "goes up and down"
+    return f"{'rises' if rank > 0 else 'falls'} on the whole (rank correlation {rank:.2f})".replace(
+        "-", "−"
+    )
+
+
+def rank_correlation(values: ArrayLike) -> float:
+    """Spearman's, of values against their order."""
+    ranks = np.argsort(np.argsort(np.asarray(values)))
+    return float(np.corrcoef(ranks, np.arange(len(ranks)))[0, 1])
+
+
+def listed(words: list[str]) -> str:
+    """A, b and c."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def by_case(found: dict[str, str]) -> str:
+    """What is found in each case, the same said once: "rises at 1 and 2, falls at 3"."""
+    cases: dict[str, list[str]] = {}
+    for case, words in found.items():
+        cases.setdefault(words, []).append(case)
+    return ", ".join(f"{words} at {listed(names)}" for words, names in cases.items())
+
+
+def at_most(value: float) -> str:
+    """A bound on a rounding error: the next power of ten, as TeX; twice the value for safety."""
+    return "0" if value == 0.0 else rf"< 10^{{{ceil(log10(2 * value))}}}"
+
+
+def share(true: ArrayLike) -> str:
+    """How many: "1990 of 2000"."""
+    found = np.asarray(true)
+    return f"{int(found.sum())} of {found.size}"
+
+
+_TEX: Final = re.compile(r"\$([^$]+)\$")
+_CODE: Final = re.compile(r"`([^`]+)`")
+_INDEX: Final = re.compile(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω]′?)_([a-z0-9]+(?:,[a-z0-9])?)")
+"""A letter with an index: x_d, φ′_0, X_m,0."""
+
+
+def html(text: str) -> str:
+    """As HTML: MathML, code, and indices as such."""
+
+    def math(tex: str) -> str:
+        return convert(tex.replace(r"\mathrm", r"\text"), display="inline")
+
+    found = _each(text, math, lambda code: f"<code>{escape(code)}</code>", escape)
+    return found.replace("\n", "<br>")
+
+
+def markdown(text: str) -> str:
+    """As GitHub's Markdown: thin spaces, which it takes for escapes, left out."""
+
+    def math(tex: str) -> str:
+        return f"${tex.replace(chr(92) + ',', ' ')}$"
+
+    return _each(text, math, lambda code: f"`{code}`", str).replace("\n", "<br>")
+
+
+def _each(
+    text: str,
+    math: Callable[[str], str],
+    code: Callable[[str], str],
+    plain: Callable[[str], str],
+) -> str:
+    pieces = []
+    for i, piece in enumerate(_TEX.split(text)):
+        if i % 2:
+            pieces.append(math(piece))
+            continue
+        for j, words in enumerate(_CODE.split(piece)):
+            pieces.append(code(words) if j % 2 else _INDEX.sub(_index, plain(words)))
+    return "".join(pieces)
+
+
+def _index(found: re.Match[str]) -> str:
+    return f"{found[1]}<sub>{found[2]}</sub>"

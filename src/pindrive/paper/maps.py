@@ -13,13 +13,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm, Normalize
 
-from pindrive.batch import batched
+from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
-from pindrive.paper.exhibit import Exhibit, page, tidy
+from pindrive.paper.exhibit import Exhibit, at_most, page, tidy, trend
 from pindrive.paper.population import SEED
-from pindrive.paper.reading import at_most, trend
 from pindrive.paper.release import Release
-from pindrive.style import GREY, SMALL
+from pindrive.plot.style import GREY, SMALL
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,10 +5,22 @@ Each is drawn from one seed, so that whoever draws it again gets the same.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
 import numpy as np
 
 from pindrive.paper import formulas
 from pindrive.paper.release import Release
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from pindrive.paper.release import Release
+
+    Array = NDArray[np.float64]
 
 SEED = 298
 """The paper's number in its journal."""
@@ -61,3 +73,85 @@ def limit_cases(count: int = COUNT, seed: int = SEED) -> Release:
     r = r.take((r.displacement > formulas.friction_offset(r)) & (r.mouse_velocity > 0.0))
     ratio = formulas.limit_damping_ratio(r)
     return r.replace(damping=2 * ratio * np.sqrt(r.mass * r.stiffness))
+
+
+SAMPLED: Final = 400
+"""Of the releases, how many are sampled over time."""
+SAMPLES: Final = 9
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the exact simulator says of the stated releases."""
+
+    r: Release
+
+    @cached_property
+    def batch(self) -> xr.Dataset:
+        """The numbers of every release, the finger frictionless."""
+        return self.r.batch(duration=1.01 * formulas.limit_reversal_time(self.r))
+
+    def number(self, name: str) -> Array:
+        """One of the transient's."""
+        return self.batch[f"transient_{name}"].to_numpy()
+
+    @cached_property
+    def until(self) -> Array:
+        """Until when the analysis holds, or (26) where friction never reverses."""
+        t_1 = self.number("first_reversal_time")
+        return np.where(np.isnan(t_1), formulas.limit_reversal_time(self.r), t_1)
+
+    @cached_property
+    def times(self) -> Array:
+        """Sample times of the first `SAMPLED` releases, shape (`SAMPLES`, `SAMPLED`)."""
+        return np.linspace(0.0, 1.0, SAMPLES)[:, None] * self.until[:SAMPLED]
+
+    @cached_property
+    def samples(self) -> tuple[Array, Array, Array]:
+        """Exact position, velocity and acceleration there."""
+        found = np.empty((3, SAMPLES, SAMPLED))
+        for i in range(SAMPLED):
+            motion, t = self.r.motion(i, duration=1.02 * float(self.until[i])), self.times[:, i]
+            for row, of in enumerate((motion.position, motion.velocity, motion.acceleration)):
+                found[row, :, i] = of(t, "left")
+            found[2, 0, i] = motion.acceleration(0.0)
+        return found[0], found[1], found[2]
+
+    @cached_property
+    def first(self) -> Release:
+        """The first `SAMPLED` releases."""
+        return self.r.take(slice(SAMPLED))
+
+    @cached_property
+    def forward(self) -> tuple[Array, Array]:
+        """Time and value of the exact extreme of the velocity forwards, where none reverses it.
+
+        Found by releasing the pin anew from the trough; NaN where friction reverses before.
+        """
+        trough, t_c = self.number("trough_displacement"), self.number("trough_time")
+        chosen = np.isnan(self.number("first_reversal_time")) & (trough < 0.0)
+        found = self.r.batch(displacement=np.where(chosen, trough, -1.0), velocity=0.0)
+        time = t_c + found["transient_return_velocity_time"].to_numpy()
+        speed = found["transient_return_velocity"].to_numpy()
+        return np.where(chosen, time, np.nan), np.where(chosen, speed, np.nan)
+
+    def friction_law(self, sign: float) -> float:
+        """Worst residual of (1) with its friction times `sign`, part of the largest force.
+
+        Of motions with finger friction 0 to 10 mN, followed to the end.
+        """
+        draw = np.random.default_rng(SEED + 1)
+        worst = 0.0
+        r = self.r
+        for i, finger in enumerate(draw.uniform(0.0, 0.01, SAMPLED)):
+            motion = r.motion(i, finger=float(finger))
+            t = draw.uniform(0.0, min(1.0, motion.duration), 20)
+            x, v, a = motion.position(t), motion.velocity(t), motion.acceleration(t)
+            u = v - r.mouse_velocity[i]
+            slides = (np.abs(u) > 1e-9) & (np.abs(v) > 1e-9)
+            friction = r.friction[i] * np.sign(u) + finger * np.sign(v)
+            left = r.mass[i] * a + r.damping[i] * v + r.stiffness[i] * x
+            force = r.stiffness[i] * np.abs(x).max() + r.friction[i] + finger
+            residual = np.abs(left - sign * friction)[slides] / force
+            worst = max(worst, float(residual.max(initial=0.0)))
+        return worst

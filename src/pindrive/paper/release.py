@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pindrive.quantities import QUANTITIES, refusal
-from pindrive.quantity import NON_NEGATIVE
+from pindrive.quantities.quantity import NON_NEGATIVE
+from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
-    from pindrive.motion import Motion
+    from pindrive.motion.motion import Motion
 
 __all__ = ["Release"]
 
@@ -99,7 +99,7 @@ class Release:
             duration: as for `pindrive.simulate`.
         """
         from pindrive import Contact, Drive
-        from pindrive.motion import simulated
+        from pindrive.motion.simulate import simulated
 
         drive = Drive(
             mass=float(self.mass[index]),
@@ -121,7 +121,7 @@ class Release:
         Args:
             others: what stands for, or beside, the arrays of the releases.
         """
-        from pindrive.batch import batched
+        from pindrive.motion.batch import batched
 
         given: dict[str, Any] = {
             "mass": self.mass,

@@ -6,19 +6,19 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive import budgets
-from pindrive.config import TABLES, keys_meant, not_known
-from pindrive.quantities import refusal
-from pindrive.schema import number
-from pindrive.study.axis import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
-from pindrive.study.plan import has_part
-from pindrive.template import DRIVE, NUMBERS, usual
-from pindrive.units import UnitError, quoted, to_si
+from pindrive.files.device import TABLES, keys_meant, not_known
+from pindrive.files.schema import number
+from pindrive.files.template import DRIVE, NUMBERS, usual
+from pindrive.quantities import budgets
+from pindrive.quantities.table import refusal
+from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.study.design import has_part
+from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from pindrive.quantity import Quantity
+    from pindrive.quantities.quantity import Quantity
 
 _WAYS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.batch import batched
-from pindrive.drive import Contact, Drive, Profile
-from pindrive.motion import Motion, simulated
-from pindrive.ratios import scaled_rows
+from pindrive.files.ratios import scaled_rows
+from pindrive.motion.batch import batched
+from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.motion.motion import Motion
+from pindrive.motion.simulate import simulated
+from pindrive.study.design import flags, variable
 from pindrive.study.outputs import LEDGER, MEASURED
-from pindrive.study.plan import variable
-from pindrive.study.points import flags
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from pindrive.config import DeviceFile
-    from pindrive.study.plan import Columns, Plan
+    from pindrive.files.device import DeviceFile
+    from pindrive.study.design import Columns, Plan
 
 _WHOLE: Final = {
     **dict.fromkeys(("status", "ending", "events"), np.int64),

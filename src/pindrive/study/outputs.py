@@ -1,21 +1,81 @@
-"""The numbers that a study can keep of each motion or scan, and how a file holds them."""
+"""The numbers that a study keeps of each motion or scan, and the limits that are set on them."""
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.quantities import ENDING, ENERGY, QUANTITIES, TRANSIENT, refusal
-from pindrive.study.scanned import COUNTED, SCANNED
-from pindrive.units import quoted
+from pindrive.quantities.evaluation import JUDGED, LINE
+from pindrive.quantities.quantity import Quantity
+from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
+from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from pindrive.config import DeviceFile
-    from pindrive.quantity import Quantity
+    from numpy.typing import NDArray
+
+    from pindrive.evaluation.results import Judgement
+    from pindrive.files.device import DeviceFile
+    from pindrive.quantities.quantity import Quantity
+
+_BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
+
+
+def _short(quantity: Quantity) -> str:
+    return quantity.name.partition(".")[2]
+
+
+def _median(quantity: Quantity) -> Quantity:
+    meaning = f"median of the lines shown: {quantity.meaning}"
+    return replace(quantity, name=f"median.{_short(quantity)}", meaning=meaning)
+
+
+def _worst(quantity: Quantity) -> Quantity:
+    end = "least" if _short(quantity) in _BAD_WHEN_SMALL else "largest"
+    meaning = f"{end} of the lines shown: {quantity.meaning}"
+    return replace(quantity, name=f"worst.{_short(quantity)}", meaning=meaning)
+
+
+SCANNED: Final[tuple[Quantity, ...]] = (
+    Quantity("judged.shown_part", "r_1", "1", "part of the lines that was shown"),
+    *JUDGED,
+    *(_median(quantity) for quantity in LINE),
+    *(_worst(quantity) for quantity in LINE),
+    Quantity("hand.duration", "T_h", "s", "how long the hand moves and pauses"),
+    Quantity("magnet.on_part", "D_on", "1", "part of that time that a magnet is on, the largest"),
+    Quantity("coil.warming", "ΔT_on", "K", "by how much its coil warms, where one is described"),
+)
+"""Medians and worst values are of the lines that have the number: one that does not settle has no
+smear, and is counted as unsettled."""
+COUNTED: Final = tuple(quantity.name for quantity in JUDGED)
+
+
+def scan_numbers(judgement: Judgement) -> dict[str, float]:
+    """The numbers of one scan, SI, by their names; NaN where one does not exist."""
+    counts, path = judgement.counts, judgement.scan.path
+    lines, duration = counts["judged.lines"], path.end - path.begin
+    on = max(sum(end - begin for begin, end in pin.energised) for pin in judgement.scan.pins)
+    coil = judgement.scan.device.magnet.coil
+    found: dict[str, float] = {
+        "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
+        **counts,
+        "hand.duration": duration,
+        "magnet.on_part": on / duration,
+        "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
+    }
+    for quantity in LINE:
+        name = _short(quantity)
+        least, median, largest = judgement.spread(quantity.name)
+        found[f"median.{name}"] = median
+        found[f"worst.{name}"] = least if name in _BAD_WHEN_SMALL else largest
+    return found
 
 
 def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
@@ -137,3 +197,75 @@ def label(name: str) -> str:
 def measured(name: str) -> Quantity:
     """The quantity that a variable holds, of an input or of a motion."""
     return NUMBERS[name] if name in NUMBERS else QUANTITIES[name]
+
+
+_CONDITION: Final = re.compile(r"\s*(<=|>=|≤|≥)\s*(.+)")
+LARGEST: Final = 1e100
+"""Of a limit: so that squares of what is beyond it are numbers."""
+_AT_MOST: Final = ("<=", "≤")
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """A limit on one number: at most, or at least, `limit` (SI)."""
+
+    name: str
+    at_most: bool
+    limit: float
+
+    def met(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which values meet it; a number that does not exist never does."""
+        return values <= self.limit if self.at_most else values >= self.limit
+
+    def excess(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far beyond the limit, SI: negative within it, infinite for what does not exist."""
+        beyond = values - self.limit if self.at_most else self.limit - values
+        return np.where(np.isnan(values), inf, beyond)
+
+    def text(self) -> str:
+        """As a person reads it: "settling_time ≤ 60.00 ms"."""
+        return f"{label(self.name)} {'≤' if self.at_most else '≥'} {self.shown()}"
+
+    def shown(self) -> str:
+        """The limit in the unit a person reads it in."""
+        quantity = NUMBERS[self.name]
+        return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
+
+
+def demands(
+    table: Any, file: str, problems: list[str], among: Sequence[str] = OUTPUTS
+) -> tuple[Demand, ...]:
+    """The demands of a [specification] on outputs; what is wrong is appended to `problems`."""
+    found = []
+    for given, conditions in table.items():
+        try:
+            name = known_output(given, f"{file}: specification", among)
+            if not is_measured(name):
+                raise ValueError(f"{file}: specification.{given} is no number to be demanded")
+        except ValueError as error:
+            problems.append(str(error))
+            continue
+        for condition in conditions if isinstance(conditions, list) else [conditions]:
+            try:
+                found.append(_demand(name, condition, f"specification.{given}", file))
+            except ValueError as error:
+                problems.append(str(error))
+    return tuple(found)
+
+
+def _demand(name: str, condition: object, where: str, file: str) -> Demand:
+    quantity = NUMBERS[name]
+    example = f'"<= 60 {quantity.display_unit}"'.replace(' "', '"')
+    match = _CONDITION.fullmatch(condition) if isinstance(condition, str) else None
+    if not match:
+        raise ValueError(
+            refusal(where, f"a limit with <= or >=, like {example}", quoted(condition), file)
+        )
+    try:
+        limit = to_si(match[2], quantity.unit or "1", f"60 {quantity.display_unit}".rstrip())
+    except UnitError as error:
+        raise ValueError(refusal(where, f"a limit: {error}", quoted(condition), file)) from None
+    if not abs(limit) <= LARGEST:
+        required = f"a finite limit, of at most {LARGEST:g} in size"
+        raise ValueError(refusal(where, required, quoted(condition), file))
+    return Demand(name, match[1] in _AT_MOST, limit)

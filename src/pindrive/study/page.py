@@ -8,16 +8,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.device.page import Page
-from pindrive.device.reading import Reading
-from pindrive.quantities import QUANTITIES, refusal
-from pindrive.schema import number
-from pindrive.units import quoted
+from pindrive.device.reading import Page, Reading
+from pindrive.files.schema import number
+from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pindrive.device.array import PinArray
     from pindrive.device.hand import HandPath
-    from pindrive.device.scene import Scene
+    from pindrive.device.page import Scene
+    from pindrive.device.pin_array import PinArray
 
 KEYS: Final = ("text", "image", "grating", "font", "path")
 _KEPT: Final = 2

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.config import motion_of
-from pindrive.study.points import device_at, flags
+from pindrive.files.device import motion_of
+from pindrive.study.design import device_at, flags
 from pindrive.study.scans import judged_at
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from pindrive.study.plan import Columns, Plan
+    from pindrive.study.design import Columns, Plan
 
 _EXIST: Final = ("ok", "too_many_events", "standstill")
 _LONG_NUMBER: Final = re.compile(r"\d+\.\d{6,}(e[-+]?\d+)?")

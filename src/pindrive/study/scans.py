@@ -10,19 +10,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.cores import worker_count
-from pindrive.device.judging import judge
 from pindrive.device.scanning import scan
-from pindrive.study.outputs import variables
-from pindrive.study.points import device_at, flags
-from pindrive.study.scanned import SCANNED, scan_numbers
+from pindrive.evaluation.perception import judge
+from pindrive.quantities.budgets import worker_count
+from pindrive.study.design import device_at, flags
+from pindrive.study.outputs import SCANNED, scan_numbers, variables
 from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from pindrive.device.verdict import Judgement
-    from pindrive.study.plan import Columns, Plan
+    from pindrive.evaluation.results import Judgement
+    from pindrive.study.design import Columns, Plan
 
 Row = dict[str, Any]
 

@@ -18,12 +18,12 @@ from zlib import crc32
 import numpy as np
 
 from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
-from pindrive.output import OutputError, naming
+from pindrive.files.output import OutputError, naming
+from pindrive.files.template import NUMBERS
+from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
+from pindrive.study.design import flags, variable
 from pindrive.study.evaluate import evaluate
-from pindrive.study.plan import variable
-from pindrive.study.points import flags
-from pindrive.template import NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from pindrive.study.plan import Plan
+    from pindrive.study.design import Plan
 
 
 class Piece(NamedTuple):
@@ -92,8 +92,6 @@ class Store:
 
     def __init__(self, path: Path, plan: Plan) -> None:
         """Open a file that `lay_out` made."""
-        import h5py
-
         self._path, self._lock = path, Lock()
         names = {variable(key) for d in plan.dimensions for key in d.axes} | {*plan.outputs}
         try:
@@ -158,8 +156,6 @@ def bytes_of(plan: Plan) -> int:
 
 def lay_out(path: Path, plan: Plan) -> None:
     """Write the file's structure: dimensions, coordinates, variables, units, the study itself."""
-    import h5netcdf
-
     from pindrive import __version__
 
     with h5netcdf.File(path, "w") as file:

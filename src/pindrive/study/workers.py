@@ -13,12 +13,12 @@ from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import TYPE_CHECKING, NoReturn, TypeVar
 
-from pindrive.output import OutputError
+from pindrive.files.output import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from pindrive.study.plan import Plan
+    from pindrive.study.design import Plan
 
 Given = TypeVar("Given")
 Done = TypeVar("Done")

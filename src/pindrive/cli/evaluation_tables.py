@@ -1,0 +1,184 @@
+"""A judgement as a person reads it, and its lines as CSV; how fast a hand may move, likewise."""
+
+from __future__ import annotations
+
+import csv
+from math import isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from pindrive.cli.tables import new_table
+from pindrive.evaluation.resolution import criterion
+from pindrive.quantities.evaluation import LINE
+from pindrive.quantities.table import QUANTITIES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.table import Table
+
+    from pindrive.evaluation.resolution import Band, SpeedLimit
+    from pindrive.evaluation.results import Criteria, Judgement
+
+_MM: Final = 1e3
+COUNTED: Final = (
+    *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
+)
+"""The counts in the order in which they are told: what was shown, what was missed, what was not."""
+PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y")
+
+
+def judgement_report(judgement: Judgement) -> RenderableType:
+    """What became of the lines, in words, and the numbers of those shown."""
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in verdict_words(judgement))
+    tables = [_counts(judgement)] if judgement.lines else []
+    if judgement.shown:
+        tables.append(_spreads(judgement))
+    return Group(*tables, *lines)
+
+
+def _counts(judgement: Judgement) -> Table:
+    table = new_table("What became of the lines", "symbol", ">count", "meaning")
+    for name in COUNTED:
+        quantity = QUANTITIES[f"judged.{name}"]
+        table.add_row(quantity.symbol, str(judgement.counts[quantity.name]), quantity.meaning)
+    return table
+
+
+def _spreads(judgement: Judgement) -> Table:
+    title = "Lines shown to the finger"
+    table = new_table(title, "symbol", ">least", ">median", ">most", "unit", "meaning")
+    for quantity in LINE:
+        values = judgement.spread(quantity.name)
+        share = quantity.unit == "1"
+        cells = [
+            f"{value:.1%}" if share and not isnan(value) else quantity.digits(value)
+            for value in values
+        ]
+        table.add_row(quantity.symbol, *cells, quantity.display_unit, quantity.meaning)
+    return table
+
+
+def verdict_words(judgement: Judgement) -> list[str]:
+    """What became of the lines."""
+    counts = {name.removeprefix("judged."): n for name, n in judgement.counts.items()}
+    if not counts["lines"]:
+        return [f"No line passed whole under a pin; {_number(counts['echoes'], 'false line')}."]
+    missed = counts["unseen"] + counts["merged"] + counts["faint"]
+    why = ", ".join(
+        f"{counts[fate]} {words}"
+        for fate, words in (
+            ("unseen", "not seen by the control block"),
+            ("merged", "run into the one before"),
+            ("faint", "too faint"),
+        )
+        if counts[fate]
+    )
+    limits = judgement.criteria
+    words = [
+        f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown, "
+        f"{missed} missed{f' ({why})' if why else ''}; {_number(counts['echoes'], 'false line')}.",
+        f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
+        f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
+        f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
+        f"line is {limits.echo:.0%} as high as the line before, or more.",
+    ]
+    if judgement.scan.device.drive.finger.rigid:
+        words.append(
+            "The finger is rigid: the pin's motion stands for the skin's, the most that skin could "
+            "move."
+        )
+    return words
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def write_lines(judgement: Judgement, file: Path) -> None:
+    """Each line under each pin, a row each, SI, with units in the header."""
+    with file.open("w", newline="", encoding="utf-8") as target:
+        writer = csv.writer(target)
+        names = [quantity.name for quantity in LINE]
+        units = ["s", "m", "m", "s", "m", "m"]
+        heads = [
+            *(f"{name} [{unit}]" for name, unit in zip(PLACES, units, strict=True)),
+            *(f"{q.name.removeprefix('line.')} [{q.unit}]" for q in LINE),
+        ]
+        writer.writerow(["pin", "fate", "cue_on", "cue_off", *heads])
+        for line in judgement.lines:
+            places = [(edge.time, edge.x, edge.y) for edge in (line.begin, line.end)]
+            row: list[Any] = [line.pin, line.fate, line.begin.cue, line.end.cue]
+            numbers = [*places[0], *places[1], *(line.numbers[name] for name in names)]
+            writer.writerow(row + ["" if isnan(value) else repr(value) for value in numbers])
+
+
+# ---- speed ---------------------------------------------------------------------------------------
+
+
+def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) -> RenderableType:
+    """The largest hand speed for each pitch, and by which criterion."""
+    length, speed = QUANTITIES["speed.pitch"], QUANTITIES["hand_speed"]
+    table = new_table(
+        "How fast the hand may move over two lines",
+        ">pitch",
+        ">width",
+        ">distinct up to",
+        ">settled up to",
+        "a faster hand",
+    )
+    table.add_row(
+        length.display_unit,
+        length.display_unit,
+        speed.display_unit,
+        speed.display_unit,
+        style="dim",
+    )
+    for limit in limits:
+        table.add_row(
+            length.digits(limit.pitch),
+            length.digits(limit.width),
+            _band(limit.distinct, limit),
+            _band(limit.settled, limit),
+            beyond(limit, part, criteria.direction),
+        )
+    tried = limits[0].tried
+    words = [
+        criterion(part, criteria.direction),
+        "Settled: besides, what the first line alone leaves swinging is over before the second.",
+        f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
+    ]
+    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in words))
+
+
+def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:
+    """The largest speed of the first band; from where on, unless from the slowest tried."""
+    if not bands:
+        return "-"
+    digits = QUANTITIES["hand_speed"].digits
+    low, high = bands[0]
+    most = f"> {digits(high)}" if high >= limit.tried[1] else digits(high)
+    return most if low <= limit.tried[0] else f"{digits(low)} to {most}"
+
+
+def beyond(limit: SpeedLimit, part: float, direction: float) -> str:
+    """What goes wrong for a hand that is faster than the limit, in words."""
+    if not limit.distinct:
+        return "at no speed tried are they distinct"
+    trial = limit.beyond
+    words = []
+    if trial is not None:
+        if trial.back == 0.0:
+            words.append("runs them into one")
+        elif trial.back < part:
+            words.append(f"has the pin back by {trial.back:.0%}")
+        if trial.skin < direction:
+            words.append(f"moves the skin {QUANTITIES['direction'].text(trial.skin)}")
+    speed = QUANTITIES["hand_speed"]
+    words += [
+        f"is distinct again at {speed.digits(a)}-{speed.text(b)}" for a, b in limit.distinct[1:]
+    ]
+    return ", ".join(words)

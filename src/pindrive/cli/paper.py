@@ -1,0 +1,49 @@
+"""The command `pindrive paper`: the paper reproduced, mended and answered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import refusing
+
+
+def paper(
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="The report: a page, figures, data.")
+    ] = None,
+    docs: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="The report as Markdown, with pictures.")
+    ] = None,
+) -> None:
+    """Recompute the paper, mend it, and judge what it says."""
+    from pindrive.files.output import REPORT, Output, check_folder, check_outputs, write_files
+    from pindrive.quantities.quantity import counted
+
+    with refusing():
+        if out is None and docs is None:
+            raise ValueError("say where the report goes: --out DIR, or --docs DIR")
+        for folder in (out, docs):
+            if folder is not None:
+                check_folder(folder)
+        from pindrive.paper import report
+
+        pages = [(out, report.PAGE, "--out"), (docs, report.NAME, "--docs")]
+        check_outputs([Output(d / name, REPORT, option) for d, name, option in pages if d])
+        from pindrive.cli.progress import steps
+
+        written: dict[Path, dict[str, bytes]] = {}
+        faces = (out is not None) + (docs is not None)
+        with steps(report.STEPS + faces * report.FIGURES) as step:
+            made = report.make(step)
+            if out is not None:
+                written[out / report.PAGE] = made.files(step)
+            if docs is not None:
+                written[docs / report.NAME] = report.files(made, step)
+        for page, files in written.items():
+            write_files(page.parent, files)
+    typer.echo(made.summary)
+    for page, files in written.items():
+        typer.echo(f"Wrote {page} and {counted(len(files) - 1, 'file')} beside it")

@@ -1,0 +1,43 @@
+"""A progress bar where somebody looks on."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from pindrive.lazy import rich_console, rich_progress
+
+
+@contextmanager
+def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
+    """What to tell how many of how many are done; None where standard error is no terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with rich_progress.Progress(console=rich_console.Console(stderr=True), transient=True) as shown:
+        task = shown.add_task(what)
+        yield lambda done, of: shown.update(task, completed=done, total=of)
+
+
+@contextmanager
+def steps(count: int) -> Iterator[Callable[[str], None]]:
+    """What to tell, as each of so many steps begins, what it is."""
+    columns = (
+        rich_progress.BarColumn(),
+        rich_progress.TextColumn("{task.description}"),
+        rich_progress.TimeElapsedColumn(),
+    )
+    screen, looked_at = rich_console.Console(stderr=True), sys.stderr.isatty()
+    with rich_progress.Progress(
+        *columns, console=screen, transient=True, disable=not looked_at
+    ) as shown:
+        task = shown.add_task("", total=count)
+        begun = 0
+
+        def step(what: str) -> None:
+            nonlocal begun
+            shown.update(task, description=what, completed=begun)
+            begun += 1
+
+        yield step

@@ -1,0 +1,136 @@
+"""The command `pindrive scan`: a hand moves the whole device over a page."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import (
+    DeviceArgument,
+    OverridesOption,
+    measures,
+    picture,
+    picture_format,
+    refusing,
+)
+from pindrive.cli.progress import bar
+
+STROKES = "strokes"
+
+
+def scan(
+    file: DeviceArgument,
+    text: Annotated[
+        str | None, typer.Option(metavar="TEXT", help=r"What is on the page; \n begins a line.")
+    ] = None,
+    image: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A picture of the page instead.")
+    ] = None,
+    grating: Annotated[
+        str | None, typer.Option(metavar="PITCHES", help='Lines instead, as in "4 mm, 2 mm".')
+    ] = None,
+    font: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Font of the text; DejaVu Sans if none.")
+    ] = None,
+    path: Annotated[
+        str,
+        typer.Option(metavar="strokes|FILE", help="How the hand moves: a CSV of t [s], x, y [mm]."),
+    ] = STROKES,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
+    ] = None,
+    pin: Annotated[
+        int | None, typer.Option(metavar="NUMBER", help="The pin drawn in detail, from 0.")
+    ] = None,
+    film: Annotated[
+        Path | None, typer.Option("--animate", metavar="FILE", help="Film it: .gif or .mp4.")
+    ] = None,
+    slow: Annotated[float, typer.Option(help="How many times slower the film is.")] = 4.0,
+    lines: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Each line under each pin, as CSV.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="All of it, as NetCDF.")
+    ] = None,
+    overrides: OverridesOption = None,
+) -> None:
+    """Move the device over a page and say what its pins do."""
+    from pindrive.files.device import load
+
+    with refusing(), ExitStack() as stack:
+        device_file = load(file, overrides or (), whole=True)
+        assert device_file.whole
+        device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
+        from pindrive.files.output import FILMS, LINES_CSV, SCAN_NETCDF, Output, naming, writing
+
+        outputs = [picture(plot)] if plot else []
+        if film:
+            from pindrive.plot.animation import animate, animation_format, frame_times
+
+            film_kind = animation_format(film)
+            outputs.append(Output(film, FILMS[film.suffix.lower()], "--animate"))
+        if lines:
+            outputs.append(Output(lines, LINES_CSV, "--lines"))
+        if output:
+            outputs.append(Output(output, SCAN_NETCDF, "--output"))
+        if pin is not None and not (plot and 0 <= pin < len(device.array)):
+            required = f"from 0 to {len(device.array) - 1}, beside --plot"
+            raise ValueError(f"--pin must be {required}, got {pin}")
+
+        from pindrive.device.reading import Page
+        from pindrive.device.scanning import scan as follow
+        from pindrive.evaluation.perception import judge
+
+        page = Page(
+            text=None if text is None else text.replace("\\n", "\n"),
+            image=image,
+            grating=None
+            if grating is None
+            else tuple(measures(grating, "pitch", "4 mm", "--grating")),
+            font=font,
+            path=None if path == STROKES else Path(path),
+        )
+        page.check("--{}")
+        parts = stack.enter_context(writing(outputs, [file, *page.files.values()]))
+        scene = page.scene(reading, device.array)
+        hand = page.hand(reading, scene, device.array)
+        if output:
+            from pindrive.device.dataset import check_samples, sample_count
+
+            check_samples(len(device.array), sample_count(hand))
+        if film:
+            frame_times(hand, slow)
+        with bar("Pins") as progress:
+            done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
+        judgement = judge(done, device_file.whole.criteria())
+        if output:
+            from pindrive.device.dataset import write_netcdf
+
+            with naming(output):
+                write_netcdf(done, parts[output])
+        if lines:
+            from pindrive.cli.evaluation_tables import write_lines
+
+            with naming(lines):
+                write_lines(judgement, parts[lines])
+        if plot:
+            from pindrive.plot.scan import plot_scan
+            from pindrive.plot.style import save
+
+            with naming(plot):
+                save(plot_scan(judgement, pin), parts[plot], picture_format(plot))
+        if film:
+            with naming(film), bar("Frames") as progress:
+                animate(judgement, parts[film], film_kind, slow=slow, progress=progress)
+    from pindrive.cli.evaluation_tables import judgement_report
+    from pindrive.cli.tables import scan_report, show
+
+    for warning in done.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    show(scan_report(done))
+    show(judgement_report(judgement))
+    for target in outputs:
+        typer.echo(f"Wrote {target.path}")

@@ -1,0 +1,295 @@
+"""Studies as a person reads them in a terminal."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Group
+from rich.text import Text
+
+from pindrive.cli.tables import new_table
+from pindrive.files import template
+from pindrive.files.device import keys_meant
+from pindrive.lazy import h5py
+from pindrive.quantities.quantity import counted, significant
+from pindrive.study.design import flags
+from pindrive.study.distributions import base_value
+from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.refusals import why
+from pindrive.study.runner import human_bytes
+from pindrive.study.slices import elasticity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from pindrive.study.design import Plan
+    from pindrive.study.local_sensitivity import Elasticities
+    from pindrive.study.refusals import Refusal
+    from pindrive.study.robustness import Robustness, Share, WorstCase
+    from pindrive.study.runner import Result
+    from pindrive.study.sensitivity import Influence
+
+QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
+_SLICE = 1 << 24
+"""Points of which the status is read at a time."""
+
+
+def sweep_report(plan: Plan, done: Result) -> list[str]:
+    """What a sweep came to, in lines."""
+    points, size = counted(done.points, "point"), human_bytes(done.path.stat().st_size)
+    if not done.complete:
+        of = counted(plan.size, "point")
+        lines = [f"Stopped at {count(done.points)} of {of}; --resume goes on"]
+    elif done.worked_out:
+        speed = count(round(done.worked_out / done.seconds))
+        resumed = (
+            "" if done.worked_out == done.points else f", {count(done.worked_out)} of them now"
+        )
+        lines = [
+            f"Wrote {done.path}: {points}{resumed}, {size}, "
+            f"in {significant(done.seconds, 3)} s ({speed} a second)"
+        ]
+    else:
+        lines = [f"{done.path} is complete: {points}, {size}"]
+    numbered = done.points - done.refused
+    if numbered and done.settled >= 0:
+        of_them = " of those with numbers" if done.refused else ""
+        lines.append(f"settled: {percent(done.settled, numbered)}{of_them}")
+    if done.refused and done.complete:
+        lines.append(f"without numbers: {percent(done.refused, done.points)}, by their status")
+        lines += [_why_without(plan, done, *status) for status in _statuses(done)]
+    return lines
+
+
+def _why_without(plan: Plan, done: Result, status: str, number: int, first: int) -> str:
+    """How many points have a status, and why the first of them has."""
+    columns = plan.columns(first, first + 1)
+    at = {key: float(values.ravel()[0]) for key, values in columns.items()}
+    reason = why(plan, at)
+    shown = f"{'' if number == 1 else ', the first'}: {reason}" if reason else ""
+    return f"  {percent(number, done.points)} {status}{shown}"
+
+
+def _statuses(done: Result) -> list[tuple[str, int, int]]:
+    """Each status but ok, at how many points it is, and the first of them; most first."""
+    found: dict[int, tuple[int, int]] = {}
+    with h5py.File(done.path, "r") as file:
+        status = file["status"]
+        inner = max(1, status.size // status.shape[0])
+        rows = max(1, _SLICE // inner)
+        for begin in range(0, status.shape[0], rows):
+            part = status[begin : begin + rows].ravel()
+            for flag, first, number in zip(*np.unique(part, True, False, True), strict=True):
+                before, place = found.get(int(flag), (0, begin * inner + int(first)))
+                found[int(flag)] = (before + int(number), place)
+    meanings = flags("status")
+    named = [(meanings[flag], *of) for flag, of in found.items() if flag]
+    return sorted(named, key=lambda of: -of[1])
+
+
+def influence_report(found: Influence) -> RenderableType:
+    """Three tables: elasticities, and Sobol' indices of first order and in total."""
+    told = [name for name in found.over if found.over[name].spread > 0.0]
+    tables: list[RenderableType] = [_near(found, found.near)] if found.near else []
+    for title, order in (
+        ("Over the whole ranges: part of the variance due to, by itself", "first"),
+        ("Over the whole ranges: part of the variance due to, with all interactions", "total"),
+    ):
+        cell = partial(_index, found, order)
+        tables.append(_by_key(title, found.keys, told, cell))
+    return Group(*tables, *_notes(found))
+
+
+def _near(found: Influence, near: Elasticities) -> Table:
+    names = [name for name in found.over if name != "transient_settled"]
+    return _by_key(
+        "Near the device's values: per cent of change for one per cent more of",
+        found.keys,
+        [name for name in names if not np.isnan(near.values[name])],
+        lambda name, i: elasticity(near.table[name][found.keys[i]]),
+    )
+
+
+def _by_key(
+    title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
+) -> Table:
+    """A line for each number, a column for each key."""
+    heads = [template.NUMBERS[key].symbol for key in keys]
+    made = new_table(title, "number", *(f">{head}" for head in heads))
+    for name in names:
+        made.add_row(label(name), *(cell(name, i) for i in range(len(keys))))
+    return made
+
+
+def _index(found: Influence, order: str, name: str, i: int) -> str:
+    """An index and half its interval: "0.41 ±.02"; one that may be none is a point."""
+    interval = getattr(found.over[name], order)
+    value, half = interval.value[i], 0.5 * (interval.high[i] - interval.low[i])
+    if np.isnan(value):
+        return "-"
+    if value < 0.005 and half < 0.02:
+        return "·"
+    return f"{max(value, 0.0):.2f} ±{half:.2f}".replace("±0.", "±.")
+
+
+def _notes(found: Influence) -> list[str]:
+    """What the tables leave out, and from how much they come."""
+    design = f"{counted(found.points, 'point')} (Sobol' design of {counted(found.rows, 'row')})"
+    lines = [
+        f"{design}; ± half of the 95 % bootstrap interval; · below 0.005.",
+        f"Elasticities hold over a fixed time, the {found.near.duration:.4g} s followed."
+        if found.near
+        else "No elasticities: a scan has no exact derivatives.",
+    ]
+    lines += _refused(found.refusals, found.points, "point")
+    partly = [
+        f"{label(n)} {100 * x.kept:.3g} %" for n, x in found.over.items() if 0.0 < x.kept < 1.0
+    ]
+    if partly:
+        lines.append(
+            "Rows where a number exists at every point; its indices hold there: "
+            f"{', '.join(partly)}."
+        )
+    nothing = [label(name) for name, x in found.over.items() if x.kept == 0.0]
+    if nothing:
+        lines.append(f"Nowhere: {', '.join(nothing)}.")
+    constant = [label(name) for name, x in found.over.items() if x.spread == 0.0]
+    if constant:
+        lines.append(f"The same everywhere: {', '.join(constant)}.")
+    lines += [
+        f"{template.NUMBERS[key].symbol}: some derivatives do not exist, {why}."
+        for key, why in (found.near.gaps.items() if found.near else ())
+    ]
+    return lines
+
+
+def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
+    """How many cannot exist and are left out, and why."""
+    if not found:
+        return []
+    number = sum(refusal.count for refusal in found)
+    said = f"cannot exist and {'is' if number == 1 else 'are'} left out"
+    lines = [f"{count(number)} of {counted(of, what)} ({percent(number, of)}) {said}:"]
+    for refusal in found:
+        first = "" if refusal.count == 1 else ", the first"
+        lines.append(f"  {count(refusal.count)}{first}: {refusal.reason}")
+    return lines
+
+
+def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
+    """Spread of the watched numbers, yield, and the worst cases."""
+    tables: list[RenderableType] = [_spread(found)]
+    if found.all_met:
+        tables.append(_yield(found, found.all_met))
+        tables.append(_worst_cases(plan, found))
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _draws(plan, found))
+    return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
+
+
+def _spread(found: Robustness) -> Table:
+    """Quantiles over all designs of which the number exists."""
+    heads = ("number", ">design", *(f">{100 * q:g} %" for q in QUANTILES), "unit", ">exists in")
+    made = new_table("How the designs scatter: quantiles", *heads)
+    for name, values in found.values.items():
+        quantity = NUMBERS[name]
+        known = values[np.isfinite(values)]
+        ends = np.quantile(known, QUANTILES) if known.size else np.full(len(QUANTILES), np.nan)
+        shown = (quantity.digits(float(x)) for x in (found.own[name], *ends))
+        unit = quantity.display_unit
+        made.add_row(label(name), *shown, unit, percent(known.size, found.designs))
+    return made
+
+
+def _yield(found: Robustness, all_met: Share) -> Table:
+    title = f"Yield: of {counted(found.designs, 'design')}"
+    made = new_table(title, "demand", ">met by", "95 % interval", ">without a number")
+    for demand, share in found.shares:
+        made.add_row(demand.text(), *_share(share), percent(share.without, share.of))
+    if len(found.shares) > 1:
+        made.add_row("all", *_share(all_met), "", style="bold")
+    return made
+
+
+def _share(share: Share) -> tuple[str, str]:
+    low, high = 100.0 * share.low, 100.0 * share.high
+    return share.text, f"{low:.3f} to {high:.3f} %"
+
+
+def _worst_cases(plan: Plan, found: Robustness) -> Table:
+    """The values at which each demand is missed by the most, beside the design's own."""
+    heads = (f">{label(case.demand.name)}" for case in found.worst)
+    made = new_table("The worst found for", "key", ">design", *heads, "unit")
+    for key in found.worst[0].keys:
+        quantity, own = template.NUMBERS[key], base_value(plan.device, key)
+        values = [quantity.digits(case.keys[key]) for case in found.worst]
+        shown = quantity.digits(own) if isinstance(own, float) else "-"
+        made.add_row(key, shown, *values, quantity.display_unit)
+    results = []
+    for case in found.worst:
+        quantity = NUMBERS[case.demand.name]
+        results.append("never" if np.isnan(case.value) else quantity.text(case.value))
+    made.add_row("gives", "", *results, "", style="bold")
+    sampled = []
+    for case in found.worst:
+        quantity = NUMBERS[case.demand.name]
+        sampled.append("never" if np.isnan(case.sampled) else quantity.text(case.sampled))
+    made.add_row("among the draws", "", *sampled, "")
+    return made
+
+
+def _draws(plan: Plan, found: Robustness) -> list[str]:
+    lines = [f"{counted(found.draws, 'independent random draw')}, seed {found.seed}."]
+    lines += _refused(found.refusals, found.draws, "draw")
+    if any(share.without for _, share in found.shares):
+        lines.append("A design without a number, such as one that never settles, meets no demand.")
+    if found.stopped:
+        stopped = counted(found.stopped, "design was", "designs were")
+        lines.append(f"{stopped} followed only up to the largest number of events.")
+    for case in found.worst if plan.device.path != plan.path else ():
+        given = " ".join(
+            [
+                *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
+                *(
+                    f'--set {key}="{template.NUMBERS[key].written(value)}"'
+                    for key, value in case.keys.items()
+                ),
+            ]
+        )
+        command = (
+            f"scan {plan.device.path} {plan.page.page.options}"
+            if plan.page
+            else f"simulate {plan.device.path}"
+        )
+        lines.append(f"Worst {label(case.demand.name)}: pindrive {command} {given}")
+    if not found.all_met:
+        lines.append("No specification is given: write what is demanded in [specification].")
+    return lines
+
+
+def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
+    """What the study sets of its device and the case leaves, as the command line takes it."""
+    for setting in plan.device.settings:
+        (key,) = keys_meant(setting.key)
+        if key not in case.keys:
+            value = setting.value
+            yield key, value if isinstance(value, str) else json.dumps(value)
+
+
+def count(number: int) -> str:
+    """A count with its thousands apart: "10 000 000"."""
+    return f"{number:,}".replace(",", " ")
+
+
+def percent(part: int, whole: int) -> str:
+    """A part of a whole: "98.5 %"; never 100 % nor 0 % by rounding."""
+    if part in (0, whole):
+        return "all" if part else "none"
+    shown = f"{100.0 * part / whole:.3g} %"
+    return f"all but {count(whole - part)}" if shown == "100 %" else shown

@@ -1,0 +1,328 @@
+"""Motions and scans as tables and words in a terminal."""
+
+from __future__ import annotations
+
+from math import degrees, isfinite, nan, tau
+from typing import TYPE_CHECKING, Final
+
+from rich import box
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from pindrive.device.dataset import gap_words, numbers
+from pindrive.motion.friction import Coefficients
+from pindrive.quantities.device import PIN
+from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.quantity import Rows, counted, significant
+from pindrive.quantities.results import TRANSIENT
+from pindrive.quantities.table import QUANTITIES
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from pindrive.device.device import Device
+    from pindrive.device.scanning import PinScan, Scan
+    from pindrive.files.device import DeviceFile
+    from pindrive.motion.motion import Motion
+
+PINS_HEAD, PINS_TAIL = 24, 8
+"""How many pins of a large array are shown, from its first and from its last."""
+HEADINGS: Final = {
+    "pin.energised": "magnet\non",
+    "pin.switchings": "times\non",
+    "pin.slips": "slips\nwhile on",
+    "pin.captures": "times\ncaught",
+    "pin.carried": "time\nheld",
+    "pin.peak_displacement": "peak\n|x|",
+    "pin.peak_skin_force": "peak\nforce",
+    "pin.peak_stretch": "peak\nstretch",
+    "pin_gap": "least\ngap",
+}
+_MM: Final = 1e3
+
+
+def scan_report(scan: Scan) -> RenderableType:
+    """Its pins in a table, then its hand, its device and how far it can be trusted, in words."""
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _words(scan))
+    return Group(_pins(scan), *lines)
+
+
+def _pins(scan: Scan) -> Table:
+    names = [q.name for q in PIN]
+    if scan.device.drive.finger.rigid:
+        names.remove("pin.peak_stretch")
+    if scan.gaps:
+        names.append("pin_gap")
+    title = f"Pins, over {scan.scene.title}"
+    found = new_table(title, ">pin", ">place", *(f">{HEADINGS[name]}" for name in names))
+    found.collapse_padding, found.pad_edge = True, False  # all of it in a hundred columns
+    found.add_row("", "mm", *(QUANTITIES[name].display_unit for name in names), style="dim")
+    for pin in scan.pins:
+        if PINS_HEAD <= pin.number < len(scan.pins) - PINS_TAIL:
+            if pin.number == PINS_HEAD:
+                found.add_row("...", f"{len(scan.pins) - PINS_HEAD - PINS_TAIL} more")
+            continue
+        found.add_row(*_row(scan, pin, names))
+    return found
+
+
+def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
+    x, y = scan.device.array.places[pin.number]
+    values = numbers(pin)
+    beside = [gap.size for gap in scan.gaps if pin.number in (gap.behind, gap.ahead)]
+    values["pin_gap"] = min(beside, default=nan)
+    cells = [
+        f"{values[n]:g}" if QUANTITIES[n].unit == "" else QUANTITIES[n].digits(values[n])
+        for n in names
+    ]
+    return [str(pin.number), f"{_MM * x:g}, {_MM * y:g}", *cells]
+
+
+def _words(scan: Scan) -> list[str]:
+    device, path = scan.device, scan.path
+    largest, _ = path.angles(device.array.axis)
+    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
+    worst = max(pin.motion.certificate().worst for pin in scan.pins)
+    doubt = "" if worst <= TRUSTED else " Do not trust this scan."
+    return [
+        f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
+        f"{degrees(largest):.3g} deg off the drive axis.",
+        *gap_words(scan),
+        *device_words(device),
+        f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
+    ]
+
+
+def device_words(device: Device) -> list[str]:
+    """What follows from a device's numbers."""
+    length, force = QUANTITIES["displacement"], QUANTITIES["hold_force"]
+    drag = f" Off, the plate drags it {length.text(device.drag)}." if device.drag else ""
+    if device.reach:
+        words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
+    else:
+        held = device.drive.plate.static_friction * device.load(device.magnet.hold_force)
+        words = [
+            f"A magnet does not carry its pin: it holds with {force.text(held)} of friction at "
+            f"most, the finger with {force.text(device.drive.finger.kinetic)}.{drag}"
+        ]
+    words.append(f"The plate: {device.friction.words}.")
+    coil = device.magnet.coil
+    if coil is not None:
+        quantities = [
+            QUANTITIES[f"coil.{name}"].text(getattr(coil, name))
+            for name in ("resistance", "inductance", "current", "power")
+        ]
+        words.append(
+            f"Its coil: {', '.join(quantities)}; on for {coil.duty:.0%} of the time at most, to "
+            f"warm by {coil.temperature_rise:g} K."
+        )
+    return words
+
+
+def meeting_words(device: Device, speed: float) -> list[str]:
+    """Whether neighbouring pins can meet, by where they stand and how far they go at most.
+
+    Args:
+        device: the device.
+        speed: of the hand at most, m/s.
+    """
+    array, length = device.array, QUANTITIES["pin_gap"]
+    neighbours = array.neighbours
+    words = [
+        f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
+        for one, other in array.abreast[:1]
+    ]
+    if not neighbours:
+        return words
+    room, reach = min(pair.clearance for pair in neighbours), device.excursion(speed)
+    at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"
+    gone = f"{at} {length.text(reach)} either way"
+    if room < 0.0:
+        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest.")
+    elif room < 2.0 * reach:
+        words.append(
+            f"Neighbouring pins have {length.text(room)} between them at rest, and can meet: "
+            f"{gone}. A scan says whether they do."
+        )
+    else:
+        words.append(
+            f"Neighbouring pins have {length.text(room)} between them at rest, and cannot meet: "
+            f"{gone}."
+        )
+    return words
+
+
+WIDTH = 100
+"""Columns where the output is no terminal."""
+HEAD, TAIL = 14, 6
+"""How many phases of a long motion are shown, from its start and from its end."""
+TRUSTED = 1e-8
+"""Largest relative residual that a million events may leave; numbers that overflow leave more."""
+
+_KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+_TIME, _POSITION, _VELOCITY = (QUANTITIES[q] for q in ("duration", "displacement", "velocity"))
+
+
+def console() -> Console:
+    """The standard output, as wide as the terminal."""
+    screen = Console(highlight=False, markup=False, emoji=False)
+    if not screen.is_terminal:
+        screen.width = WIDTH
+    return screen
+
+
+def show(report: RenderableType) -> None:
+    """Print a report; what is wider than the terminal is left for it to wrap, never cut off."""
+    console().print(report, crop=False)
+
+
+def device_report(device: DeviceFile) -> RenderableType:
+    """What a device file describes, and what follows from it."""
+    drive = device.drive
+    table = new_table("Device", "key", "symbol", ">value", "unit", "meaning")
+    for key, value in device.values().items():
+        name = key if key in QUANTITIES else key.partition(".")[2]
+        if isinstance(value, tuple):
+            _add_rows(table, name, value, key)
+        elif value is not None:
+            _add_number(table, name, value, key)
+    _add_number(table, "natural_frequency", drive.natural_frequency, "")
+    hertz = significant(drive.natural_frequency / tau)
+    words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
+    lines = [f"{device.name or 'The drive'}: {words}."]
+    if device.whole:
+        whole, hand = device.whole.device(drive), device.whole.reading()
+        lines += device_words(whole)
+        lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
+    elif not drive.plate.frictionless:
+        lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
+    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
+
+
+def regime(damping_ratio: float) -> str:
+    """The name of a damping regime."""
+    if damping_ratio == 0.0:
+        return "undamped"
+    if abs(damping_ratio - 1.0) < 1e-12:
+        return "critically damped"
+    return "underdamped" if damping_ratio < 1.0 else "overdamped"
+
+
+def motion_report(motion: Motion) -> RenderableType:
+    """Phases, numbers, and how the motion ends."""
+    words = [ending(motion), trust(motion)]
+    if motion.status != "ok":
+        words.append(f"The simulation {motion.status}.")
+    lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
+    return Group(_phases(motion), _numbers(motion), *lines)
+
+
+def _phases(motion: Motion) -> Table:
+    """A line for each mode the motion goes through; the middle of many left out."""
+    table = new_table("Phases", ">from", ">to", ">duration", "phase", ">x", ">v", "ends as")
+    t, x, v = _TIME.display_unit, _POSITION.display_unit, _VELOCITY.display_unit
+    table.add_row(t, t, t, "", x, v, "", style="dim")
+    causes: dict[float, list[str]] = {}
+    for event in motion.events:
+        causes.setdefault(event.time, []).append(f"{event.contact} {_KINDS[event.kind]}")
+    segments = motion.segments
+    for i, segment in enumerate(segments):
+        if HEAD <= i < len(segments) - TAIL:
+            if i == HEAD:
+                table.add_row("...", "", "", counted(len(segments) - HEAD - TAIL, "more phase"))
+            continue
+        lasts = isfinite(segment.end)
+        table.add_row(
+            _TIME.digits(segment.begin),
+            _TIME.digits(segment.end) if lasts else "",
+            _TIME.digits(segment.end - segment.begin) if lasts else "for ever",
+            segment.mode,
+            _POSITION.digits(motion.position(segment.begin)),
+            _VELOCITY.digits(motion.velocity(segment.begin)),
+            ", ".join(causes.get(segment.end, [])),
+        )
+    return table
+
+
+def _numbers(motion: Motion) -> Table:
+    """The transient's numbers; those of an absent contact left out."""
+    followed = f"Transient, followed for {_TIME.text(motion.duration)}"
+    table = new_table(followed, "symbol", ">value", "unit", "meaning")
+    values = motion.numbers()
+    unseen = {"transient.settled"}
+    if motion.drive.finger.rigid:
+        unseen |= {"transient.peak_stretch", "transient.peak_stretch_rate"}
+    absent = tuple(
+        f"transient.{name}."
+        for name, contact in (("plate", motion.drive.plate), ("finger", motion.drive.finger))
+        if contact.frictionless
+    )
+    for quantity in TRANSIENT:
+        if not quantity.name.startswith(absent) and quantity.name not in unseen:
+            in_band = f"within {100.0 * motion.settling_band:g} % of the way to the resting place"
+            said = f"from then on {in_band}" if quantity.name == "transient.settling_time" else ""
+            _add_number(table, quantity.name, values[quantity.name], meaning=said)
+    return table
+
+
+def new_table(title: str, *headings: str) -> Table:
+    """A table with headings; ">" aligns a column to the right."""
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+    for heading in headings:
+        right = heading.startswith(">")
+        last = heading == headings[-1]
+        table.add_column(
+            heading.removeprefix(">"), justify="right" if right else "left", no_wrap=not last
+        )
+    return table
+
+
+def _add_number(table: Table, name: str, value: float, *before: str, meaning: str = "") -> None:
+    """A row for the quantity called `name`: symbol, value, unit, meaning."""
+    quantity = QUANTITIES[name]
+    shown = f"{value:g}" if quantity.unit == "" else quantity.digits(value)
+    table.add_row(
+        *before, quantity.symbol, shown, quantity.display_unit, meaning or quantity.meaning
+    )
+
+
+def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:
+    """A line for each row of a curve or a profile: its value, and where it holds."""
+    quantity = QUANTITIES[name]
+    across = QUANTITIES[COLUMNS[quantity.rows_of][0]]
+    for i, (place, value) in enumerate(rows):
+        at = f"at {across.written(place)}"
+        table.add_row(
+            "" if i else key,
+            "" if i else quantity.symbol,
+            quantity.digits(value),
+            quantity.display_unit,
+            at if i else f"{quantity.meaning}; {at}",
+        )
+
+
+def ending(motion: Motion) -> str:
+    """How the motion ends, in a sentence."""
+    end, place = motion.ending, _POSITION.text(motion.ending.position)
+    if end.kind == "resting":
+        return f"At rest at x = {place} since {_TIME.text(motion.transient.rest_time)}."
+    if end.kind == "decaying":
+        last = motion.transient.last_event_time
+        events = f"last event at {_TIME.text(last)}" if last > 0.0 else "no event"
+        return f"Decays towards x = {place} and never comes to rest; {events}."
+    if end.kind == "steady":
+        size, period = _POSITION.text(end.amplitude), _TIME.text(end.period)
+        since = _TIME.text(end.steady_since)
+        return (
+            f"Steady {end.cycle} oscillation about x = {place} since {since}: "
+            f"amplitude {size}, period {period}."
+        )
+    return f"Still moving after {_TIME.text(motion.duration)}."
+
+
+def trust(motion: Motion) -> str:
+    """How well the motion keeps the laws, checked without the solver."""
+    worst = motion.certificate().worst
+    doubt = "" if worst <= TRUSTED else " Do not trust this motion."
+    return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"

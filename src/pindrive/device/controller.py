@@ -1,0 +1,135 @@
+"""The control block: looks at the scene at its own rate, and switches the coils a little later."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive.quantities import budgets
+from pindrive.quantities.table import check, refusal
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Commands:
+    """On and off of one coil over time."""
+
+    times: NDArray[np.float64]
+    """When it is switched, s, shape (n,), increasing."""
+    at_first: bool = False
+    """Whether it is on before the first."""
+
+    def on(self, t: ArrayLike) -> NDArray[np.bool_]:
+        """Whether it is on at time t (s), any shape; at a switching, as switched."""
+        count = np.searchsorted(self.times, np.asarray(t, np.float64), "right")
+        on: NDArray[np.bool_] = (count % 2 == 1) ^ self.at_first
+        return on
+
+    def spans(self, begin: float, end: float) -> list[tuple[float, float]]:
+        """From when to when (s) it is on between two times."""
+        inside = self.times[(self.times > begin) & (self.times < end)].tolist()
+        edges = [begin, *inside] if self.on(begin) else inside
+        return list(zip(edges[::2], [*edges[1::2], end], strict=False))
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What the control block has in mind for one coil."""
+
+    on: bool = False
+    """What it decided last."""
+    switched: bool = False
+    """What the coil does."""
+    pending: tuple[float, ...] = ()
+    """When it will be switched by what is decided already, s."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlBlock:
+    """A threshold with hysteresis, at a sample rate, with latency.
+
+    A coil is switched on when the luminance falls below threshold - hysteresis/2, off when it rises
+    above threshold + hysteresis/2: the black line energises the magnet (the paper, introduction).
+
+    Args:
+        sample_rate: Hz, greater than 0; it looks at the whole multiples of 1/sample_rate.
+        latency: from looking to switching, s, at least 0.
+        threshold: luminance in [0, 1].
+        hysteresis: width of the band about it, in [0, 1]; the band lies within [0, 1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    sample_rate: float = 1000.0
+    latency: float = 0.005
+    threshold: float = 0.5
+    hysteresis: float = 0.1
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        for name in ("sample_rate", "latency", "threshold", "hysteresis"):
+            object.__setattr__(self, name, check(name, getattr(self, name)))
+        check_band(self.threshold, self.hysteresis)
+
+    def looks(self, begin: float, end: float) -> NDArray[np.float64]:
+        """When it looks at the scene in [begin, end), s, shape (n,)."""
+        self.check_looks(begin, end)
+        first, last = ceil(begin * self.sample_rate), ceil(end * self.sample_rate)
+        times = np.arange(first - 1, last + 1, dtype=np.float64) / self.sample_rate
+        return times[(times >= begin) & (times < end)]
+
+    def check_looks(self, begin: float, end: float, pins: int = 1) -> None:
+        """Refuse to look too often at the spots of so many pins from `begin` to `end` (s)."""
+        each, lasts = ceil((end - begin) * self.sample_rate), end - begin
+        of = f"{pins} pins, {lasts:g} s at {self.sample_rate:g} Hz"
+        budgets.LOOKS.check(float(pins * each), of)
+
+    def decide(
+        self,
+        luminance: NDArray[np.float64],
+        looks: NDArray[np.float64],
+        end: float,
+        before: Decision | None = None,
+    ) -> tuple[Commands, Decision]:
+        """The commands that one spot's luminance leads to.
+
+        Args:
+            luminance: at each look, shape (n,).
+            looks: s, shape (n,), as from `looks`.
+            end: until when, s; a switching due then or later is left pending.
+            before: where the control block stands at the first look; None: all off.
+
+        Returns:
+            The switchings before `end`, and where the control block stands then.
+        """
+        before = before or Decision()
+        dark = luminance < self.threshold - 0.5 * self.hysteresis
+        light = luminance > self.threshold + 0.5 * self.hysteresis
+        told = np.flatnonzero(dark | light)
+        on = np.concatenate([[before.on], dark[told]])
+        changes = told[on[1:] != on[:-1]]
+        due = np.concatenate([before.pending, looks[changes] + self.latency])
+        times = due[due < end]
+        switched = before.switched ^ (len(times) % 2 == 1)
+        after = Decision(bool(on[-1]), switched, tuple(due[due >= end].tolist()))
+        return Commands(times, before.switched), after
+
+    def enough_rate(self, speed: float, pixel: float) -> float:
+        """The sample rate (Hz) that looks at every pixel (m) at a speed (m/s)."""
+        return speed / pixel
+
+
+def check_band(
+    threshold: float, hysteresis: float, *, where: str = "", label: str = "hysteresis"
+) -> None:
+    """Refuse a band of luminance that is not within [0, 1]: it would never switch back."""
+    widest = 2.0 * min(threshold, 1.0 - threshold)
+    if hysteresis > widest:
+        required = f"at most {widest:g} about a threshold of {threshold:g}"
+        raise ValueError(refusal(label, required, repr(hysteresis), where))

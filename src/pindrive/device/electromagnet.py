@@ -1,0 +1,335 @@
+"""The electromagnet: commands to current, current to pull, pull as a load on the plate's friction.
+
+The current c, a part of the full one, rises and falls exponentially with L/R. The pull is
+P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the current until the iron saturates,
+and a residual pull stays. In time it is smooth piece by piece, so that rows whose distance h obeys
+h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from math import exp, log, sqrt
+from typing import TYPE_CHECKING, Final, overload
+
+import numpy as np
+
+from pindrive.motion.friction import GRAVITY
+from pindrive.quantities import budgets
+from pindrive.quantities.table import check, refusal
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.device.coil import Coil
+    from pindrive.device.controller import Commands
+
+AT_ONCE: Final = 0.01
+"""How soon after a switching the pull is exact: when it can have changed by no more than twice this
+part of its deviation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Electromagnet:
+    """What an electromagnet does to the plate.
+
+    Args:
+        hold_force: P_h, pull at full current, N, greater than 0.
+        rise_constant: time constant of the rising current, s, greater than 0.
+        fall_constant: of the falling current, s, greater than 0.
+        saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
+        residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
+        pressing: W, what presses it on the plate besides, N, greater than 0; None: its weight.
+        deviation: of the piecewise-linear pull, a part of `hold_force`, in (0, 0.1].
+        coil: what it is made from, where known.
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    hold_force: float = 1.0
+    rise_constant: float = 0.001
+    fall_constant: float = 0.004
+    saturation: float = 1.0
+    residual: float = 0.0
+    pressing: float | None = None
+    deviation: float = 1e-4
+    coil: Coil | None = None
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name != "coil" and value is not None:
+                object.__setattr__(self, field.name, check(field.name, value))
+        check_residual(self.residual, self.hold_force)
+
+    @classmethod
+    def from_times(
+        cls,
+        *,
+        hold_force: float = 1.0,
+        rise_time: float = 0.003,
+        fall_time: float = 0.005,
+        saturation: float = 1.0,
+        residual: float = 0.0,
+        pressing: float | None = None,
+        deviation: float = 1e-4,
+    ) -> Electromagnet:
+        """An electromagnet by how fast its pull comes and goes; the rest as for the class.
+
+        Args:
+            hold_force: N.
+            rise_time: from switching on until 90 % of the pull beyond the residual, s.
+            fall_time: from switching off until 10 % of it, s.
+            saturation: a part of the full current.
+            residual: N.
+            pressing: N.
+            deviation: a part of `hold_force`.
+
+        Raises:
+            ValueError: as for the class.
+        """
+        rise, fall = check("rise_time", rise_time), check("fall_time", fall_time)
+        sigma = check("saturation", saturation)
+        return cls(
+            hold_force=hold_force,
+            rise_constant=-rise / log(1.0 - sigma * sqrt(0.9)),
+            fall_constant=-fall / log(sigma * sqrt(0.1)),
+            saturation=sigma,
+            residual=residual,
+            pressing=pressing,
+            deviation=deviation,
+        )
+
+    @classmethod
+    def from_coil(
+        cls,
+        coil: Coil,
+        *,
+        residual: float = 0.0,
+        pressing: float | None = None,
+        deviation: float = 1e-4,
+    ) -> Electromagnet:
+        """An electromagnet by how it is made.
+
+        Raises:
+            ValueError: as for the class.
+        """
+        return cls(
+            hold_force=coil.pull,
+            rise_constant=coil.inductance / coil.resistance,
+            fall_constant=coil.inductance / (coil.resistance + coil.release_resistance),
+            saturation=coil.saturation,
+            residual=residual,
+            pressing=pressing,
+            deviation=deviation,
+            coil=coil,
+        )
+
+    @property
+    def rise_time(self) -> float:
+        """From switching on until 90 % of the pull beyond the residual, s."""
+        return -self.rise_constant * log(1.0 - self.saturation * sqrt(0.9))
+
+    @property
+    def fall_time(self) -> float:
+        """From switching off until 10 % of it, s."""
+        return -self.fall_constant * log(self.saturation * sqrt(0.1))
+
+    def pressed(self, mass: float) -> float:
+        """W, the force on the plate without any pull, N, of a pin of this mass (kg)."""
+        return mass * GRAVITY if self.pressing is None else self.pressing
+
+    @overload
+    def pull(self, current: float) -> float: ...
+    @overload
+    def pull(self, current: ArrayLike) -> NDArray[np.float64]: ...
+    def pull(self, current: ArrayLike) -> float | NDArray[np.float64]:
+        """The pull (N) at a current, a part of the full one in [0, 1], of any shape."""
+        share = np.minimum((np.asarray(current, np.float64) / self.saturation) ** 2, 1.0)
+        pull = self.residual + (self.hold_force - self.residual) * share
+        return float(pull) if pull.ndim == 0 else pull
+
+    def current(self, commands: Commands, before: CoilState) -> Current:
+        """The current under commands that come after the coil's last switching."""
+        times = commands.times[commands.times > before.since]
+        begins = np.concatenate([[before.since], times])
+        on = np.concatenate([[before.on], commands.on(times)])
+        return Current.of(self, begins, on, before.current)
+
+    def pull_rows(
+        self, current: Current, end: float, first: float | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The pull as rows (time in s, N) from the current's begin to `end`, or a row beyond.
+
+        Linear between them it is nowhere further from the exact one than `deviation` of the hold
+        force. No row depends on what comes after it, so that a course that is cut goes on with the
+        same rows: a switching finds the pull on its line, and a moment later it is exact again.
+
+        Args:
+            current: the current.
+            end: s, after its begin.
+            first: the pull at its begin, N; None: the exact one.
+
+        Raises:
+            ValueError: there would be too many rows.
+        """
+        rows = 0
+        times: list[NDArray[np.float64]] = []
+        pulls: list[NDArray[np.float64]] = []
+        stops = [*current.begins[1:].tolist(), end]
+        pull = self.pull(float(current.starts[0])) if first is None else first
+        for begin, stop, start, rises in zip(
+            current.begins.tolist(),
+            stops,
+            current.starts.tolist(),
+            current.on.tolist(),
+            strict=True,
+        ):
+            after, currents = self._rows_after(start, rises)
+            t = begin + after
+            p = np.concatenate([[pull], self.pull(currents)])
+            count = int(np.searchsorted(t, stop))
+            pull = float(np.interp(stop, t, p))
+            last = count + 1 if stop == end else count
+            rows += last
+            budgets.INPUT_ROWS.check(rows, f"{len(stops)} switchings of one coil")
+            times.append(t[:last])
+            pulls.append(p[:last])
+        return np.concatenate(times), np.concatenate(pulls)
+
+    def _rows_after(
+        self, start: float, rises: bool
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """When rows are due after a switching at the current `start`, s, and the currents then.
+
+        At the switching, whose current is left out; a moment later; as the current passes its
+        levels; and when it is as good as at its end, where it stays.
+        """
+        constant, levels, final = (
+            (self.rise_constant, self._rising, 1.0)
+            if rises
+            else (self.fall_constant, self._falling, 0.0)
+        )
+        if start == final:
+            return np.zeros(1), np.zeros(0)
+        moment = AT_ONCE * self.saturation * self._tolerance
+        soon = _after(start, rises, moment)
+        due = levels[(levels > soon) if rises else (levels < soon)]
+        apart = np.log((1.0 - start) / (1.0 - due)) if rises else np.log(start / due)
+        due, apart = due[apart > 2.0 * moment], apart[apart > 2.0 * moment]
+        after = np.concatenate([[0.0, moment], apart])
+        return constant * np.append(after, after[-1] + 1.0), np.concatenate([[soon], due, [final]])
+
+    @property
+    def _tolerance(self) -> float:
+        """The deviation as a part of the pull that comes and goes, less what a moment takes."""
+        part = self.deviation * self.hold_force / (self.hold_force - self.residual)
+        return (1.0 - 5.0 * AT_ONCE) * part
+
+    @cached_property
+    def _rising(self) -> NDArray[np.float64]:
+        """Currents at which rows are due as it rises from 0.
+
+        With E = 1 − c = exp(−t/τ) the pull's curvature is 2E (2E − 1) / (σ τ)², whose size at any
+        later time is at most that at E or, before E = 1/4, that there, 1/4.
+        """
+
+        def curvature(c: float) -> float:
+            e = 1.0 - c
+            return max(abs(2.0 * e * (2.0 * e - 1.0)), 0.25 if e > 0.25 else 0.0)
+
+        sigma, tolerance = self.saturation, self._tolerance
+        levels, c = [0.0], 0.0
+        while True:
+            if sigma == 1.0 and 1.0 - c * c <= tolerance:
+                return np.array(levels)
+            c = 1.0 - (1.0 - c) * exp(-sigma * sqrt(8.0 * tolerance / curvature(c)))
+            levels.append(min(c, sigma) if sigma < 1.0 else c)
+            if sigma < 1.0 and c >= sigma:
+                return np.array(levels)
+
+    @cached_property
+    def _falling(self) -> NDArray[np.float64]:
+        """Currents at which rows are due as it falls from 1, with a curvature of 4c² / (σ τ)²."""
+        sigma, tolerance = self.saturation, self._tolerance
+        levels = [1.0, sigma] if sigma < 1.0 else [1.0]
+        while (levels[-1] / sigma) ** 2 > tolerance:
+            c = levels[-1]
+            levels.append(c * exp(-sigma * sqrt(2.0 * tolerance) / c))
+        return np.array(levels)
+
+
+@dataclass(frozen=True, slots=True)
+class CoilState:
+    """All there is to know of a coil: its last switching."""
+
+    since: float = 0.0
+    """When that was, s."""
+    on: bool = False
+    """Whether it is on since then."""
+    current: float = 0.0
+    """The current then, a part of the full one."""
+    pull: float | None = None
+    """The pull then, as its rows have it, N; None: exactly that of the current."""
+
+
+@dataclass(frozen=True, slots=True)
+class Current:
+    """A current over time, a part of the full one, exactly: an exponential after each switching."""
+
+    begins: NDArray[np.float64]
+    """When each piece begins, s, shape (n,), n >= 1."""
+    starts: NDArray[np.float64]
+    """The current then."""
+    on: NDArray[np.bool_]
+    """Whether it rises towards 1 from then on, or falls towards 0."""
+    constants: NDArray[np.float64]
+    """Its time constant, s."""
+
+    @classmethod
+    def of(
+        cls,
+        magnet: Electromagnet,
+        begins: NDArray[np.float64],
+        on: NDArray[np.bool_],
+        start: float,
+    ) -> Current:
+        """The current of a magnet that is switched at `begins`, from the current `start` on."""
+        constants = np.where(on, magnet.rise_constant, magnet.fall_constant)
+        starts = [float(start)]
+        for lasts, rises, constant in zip(
+            np.diff(begins).tolist(), on.tolist(), constants.tolist(), strict=False
+        ):
+            starts.append(_after(starts[-1], rises, lasts / constant))
+        return cls(begins, np.array(starts), on, constants)
+
+    @overload
+    def __call__(self, t: float) -> float: ...
+    @overload
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
+    def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
+        """The current at time t (s), any shape; before its begin what it begins with."""
+        times = np.asarray(t, np.float64)
+        i = np.maximum(np.searchsorted(self.begins, times, "right") - 1, 0)
+        left = np.exp(-np.maximum(times - self.begins[i], 0.0) / self.constants[i])
+        start = self.starts[i]
+        value = np.where(self.on[i], 1.0 - (1.0 - start) * left, start * left)
+        return float(value) if value.ndim == 0 else value
+
+
+def _after(start: float, rises: bool, constants: float) -> float:
+    """A current so many time constants later."""
+    left = exp(-constants)
+    return 1.0 - (1.0 - start) * left if rises else start * left
+
+
+def check_residual(
+    residual: float, hold_force: float, *, where: str = "", label: str = "residual"
+) -> None:
+    """Refuse a residual pull (N) that is not less than the hold force (N)."""
+    if residual >= hold_force:
+        required = f"less than the hold force, {hold_force!r} N"
+        raise ValueError(refusal(label, required, f"{residual!r} N", where))

@@ -1,0 +1,232 @@
+"""Where the pins stand in the mouse, and which spot of the scene each of them shows."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from dataclasses import dataclass
+from math import cos, sin, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.quantities import budgets
+from pindrive.quantities.table import QUANTITIES, check, refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    Places = tuple[tuple[float, float], ...]
+    Row = list[tuple[float, int]]
+
+PIN_DIAMETER: Final = QUANTITIES["pin_diameter"].default or 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbours:
+    """Two pins, one next to the other along the drive axis, that would meet if one moved far."""
+
+    behind: int
+    """The number of the one with the smaller place along the drive axis."""
+    ahead: int
+    """That of the other."""
+    clearance: float
+    """How much room there is between them at rest, along the drive axis, m; negative where they
+    overlap."""
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class PinArray:
+    """Any number of pins in a mouse.
+
+    Args:
+        places: (x, y) of each pin, m: along the drive axis and across it, from the point of the
+            mouse whose path is given. One pin at (0, 0) unless given.
+        spots: (x, y) of the spot each of them shows, m, in the same frame; where it stands unless
+            given.
+        axis: direction of the drive axis on the page, rad, from its x towards its y.
+        pin_diameter: of each pin, m, greater than 0.
+
+    Raises:
+        ValueError: no pins, two at one place, as many spots as pins are not given, or a number is
+            not finite.
+    """
+
+    places: Places
+    spots: Places
+    axis: float
+    pin_diameter: float
+
+    def __init__(
+        self,
+        places: Iterable[tuple[float, float]] = ((0.0, 0.0),),
+        spots: Iterable[tuple[float, float]] | None = None,
+        axis: float = 0.0,
+        pin_diameter: float = PIN_DIAMETER,
+    ) -> None:
+        """Validate, and keep tuples of plain floats."""
+        stands = _pairs(places, "places")
+        if not stands:
+            raise ValueError(refusal("places", "at least one place", "none"))
+        check_apart(stands)
+        shows = stands if spots is None else _pairs(spots, "spots")
+        if len(shows) != len(stands):
+            raise ValueError(refusal("spots", f"as many as pins, {len(stands)}", str(len(shows))))
+        object.__setattr__(self, "places", stands)
+        object.__setattr__(self, "spots", shows)
+        object.__setattr__(self, "axis", check("axis", axis))
+        object.__setattr__(self, "pin_diameter", check("pin_diameter", pin_diameter))
+
+    @classmethod
+    def grid(
+        cls,
+        columns: float = 1,
+        rows: float = 1,
+        pitch: float = 0.005,
+        *,
+        spot_scale: float = 1.0,
+        axis: float = 0.0,
+        pin_diameter: float = PIN_DIAMETER,
+    ) -> PinArray:
+        """Pins in columns along the drive axis and rows across it, about the middle, row by row.
+
+        Args:
+            columns: how many stand side by side.
+            rows: how many rows there are.
+            pitch: from pin to pin, m.
+            spot_scale: their spots stand likewise, so many times as far apart.
+            axis: as for the class.
+            pin_diameter: as for the class.
+
+        Raises:
+            ValueError: as for the class, or a count is no whole number.
+        """
+        across, down = check_count("columns", columns), check_count("rows", rows)
+        check_pins(across, down)
+        step = check("pitch", pitch)
+        places = [
+            ((i - 0.5 * (across - 1)) * step, (j - 0.5 * (down - 1)) * step)
+            for j in range(down)
+            for i in range(across)
+        ]
+        return cls(places, _scaled(places, spot_scale), axis, pin_diameter)
+
+    @classmethod
+    def at(
+        cls,
+        places: Iterable[tuple[float, float]],
+        *,
+        spot_scale: float = 1.0,
+        axis: float = 0.0,
+        pin_diameter: float = PIN_DIAMETER,
+    ) -> PinArray:
+        """Pins at given places (m), their spots likewise, `spot_scale` times as far apart."""
+        stands = _pairs(places, "places")
+        return cls(stands, _scaled(stands, spot_scale), axis, pin_diameter)
+
+    def __len__(self) -> int:
+        """How many pins there are."""
+        return len(self.places)
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """The drive axis on the page, a unit vector."""
+        return cos(self.axis), sin(self.axis)
+
+    @property
+    def neighbours(self) -> tuple[Neighbours, ...]:
+        """Pins that are next to each other along the drive axis, closer across it than a diameter.
+
+        Of each pin and each row of pins across the axis, the nearest that stands ahead of it. Pins
+        that stand exactly abreast never pass each other: see `abreast`.
+        """
+        found = []
+        for row, ahead, across in self._rows_apart(-self.pin_diameter):
+            touching = sqrt(self.pin_diameter**2 - across**2)
+            for x, number in row:
+                i = bisect_right(ahead, (x, len(self)))
+                if i < len(ahead):
+                    found.append(Neighbours(number, ahead[i][1], ahead[i][0] - x - touching))
+        return tuple(sorted(found, key=lambda pair: (pair.behind, pair.ahead)))
+
+    @property
+    def abreast(self) -> tuple[tuple[int, int], ...]:
+        """The numbers of pins that stand abreast, across the drive axis, and overlap for good."""
+        found = []
+        for row, other, _ in self._rows_apart(0.0):
+            at = dict(other)
+            found += [(number, at[x]) for x, number in row if x in at]
+        return tuple(found)
+
+    def _rows_apart(self, least: float) -> Iterator[tuple[Row, Row, float]]:
+        """Pairs of rows more than `least` and less than a diameter apart, and how much, m.
+
+        Rows across the drive axis; each is the places of its pins along it, with their numbers, in
+        order.
+        """
+        rows: defaultdict[float, Row] = defaultdict(list)
+        for number, (x, y) in enumerate(self.places):
+            rows[y].append((x, number))
+        places = sorted(rows)
+        ordered = [sorted(rows[y]) for y in places]
+        for y, row in zip(places, ordered, strict=True):
+            first = bisect_right(places, y + least)
+            last = bisect_left(places, y + self.pin_diameter)
+            for i in range(first, last):
+                yield row, ordered[i], places[i] - y
+
+    def on_page(self, places: Places) -> NDArray[np.float64]:
+        """Places in the mouse as offsets on the page, m, shape (n, 2)."""
+        (ax, ay), (along, across) = self.direction, np.array(places).T
+        return np.stack([ax * along - ay * across, ay * along + ax * across], axis=1)
+
+
+def check_count(name: str, value: float, *, where: str = "", label: str = "") -> int:
+    """`value` as a whole number of at least 1."""
+    number = check(name, value, where=where, label=label or name)
+    if number != int(number):
+        raise ValueError(refusal(label or name, "a whole number", repr(value), where))
+    return int(number)
+
+
+def check_pins(columns: float, rows: float, *, where: str = "", label: str = "") -> None:
+    """Refuse a grid of too many pins."""
+    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows", where=where)
+
+
+def check_apart(places: Places, *, where: str = "", label: str = "places") -> None:
+    """Refuse two pins at one place."""
+    seen: dict[tuple[float, float], int] = {}
+    for i, place in enumerate(places):
+        if place in seen:
+            x, y = place
+            raise ValueError(
+                refusal(
+                    label,
+                    "places of their own",
+                    f"pins {seen[place]} and {i} both at ({x!r} m, {y!r} m)",
+                    where,
+                )
+            )
+        seen[place] = i
+
+
+def _pairs(places: Iterable[tuple[float, float]], label: str) -> Places:
+    try:
+        pairs = [(x, y) for x, y in places]
+    except (TypeError, ValueError):
+        raise ValueError(refusal(label, "pairs (x, y)", repr(places))) from None
+    return tuple(
+        (
+            check("places", x, label=f"{label}[{i}] x"),
+            check("places", y, label=f"{label}[{i}] y"),
+        )
+        for i, (x, y) in enumerate(pairs)
+    )
+
+
+def _scaled(places: Iterable[tuple[float, float]], scale: float) -> Places:
+    factor = check("spot_scale", scale)
+    return tuple((factor * x, factor * y) for x, y in places)

@@ -1,0 +1,268 @@
+"""The course of a pin between its turning points, where it goes one way: extremes and levels.
+
+The turning points are roots of the velocity's closed form. Between two of them, and between two
+events, both the deflection and the stretch of the skin are monotone, so that nothing is missed
+between samples: there are none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import nan, pi, sqrt
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.quantities import budgets
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.device.hand import HandPath
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.motion import Motion
+    from pindrive.motion.results import Side
+
+EACH_PERIOD: Final = 30.0
+"""Looks for turning points in a period of the fastest vibration."""
+AT_ONCE: Final = 1 << 16
+"""Looks that are taken together: more take memory and save no time."""
+HALVINGS: Final = 60
+PIECES: Final = 64
+"""A bracket is cut into so many at once, which is as good as six halvings."""
+_GRID: Final = np.arange(PIECES + 1) / PIECES
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+class Values:
+    """A quantity of a pin over time, counted forward: monotone between the knots of its course.
+
+    Args:
+        of: a method of a `Motion`: its `position` or its `stretch`.
+        sign: 1, or -1 where the plate goes backwards.
+    """
+
+    def __init__(self, of: Callable[..., NDArray[np.float64]], sign: float) -> None:
+        self.of, self.sign = of, sign
+
+    def __call__(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """It at times t (s, any shape); `side` is the limit taken where it jumps."""
+        return self.sign * np.asarray(self.of(t, side))
+
+    def __neg__(self) -> Values:
+        """The same, counted backwards."""
+        return Values(self.of, -self.sign)
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Where a pin goes, piece by piece; times are since the motion's begin, s."""
+
+    motion: Motion
+
+    @cached_property
+    def knots(self) -> NDArray[np.float64]:
+        """Begin, events, turning points and end, s, shape (n,), increasing; one way between them.
+
+        Turning points closer together than a thirtieth of the fastest period may count as none:
+        between them nothing changes.
+        """
+        motion, lasts = self.motion, self.motion.duration
+        ends = np.unique([segment.end for segment in motion.segments])
+        ends = ends[(ends > 0.0) & (ends < lasts)]
+        count = check_vibration(motion.drive, lasts)
+        found = [np.array([0.0]), ends, np.array([lasts])]
+        for first in range(0, count, AT_ONCE):
+            last = min(first + AT_ONCE, count)
+            even = lasts * (np.arange(first, last + 1) / count)
+            low, high = np.searchsorted(ends, even[[0, -1]])
+            t = np.union1d(even, ends[low:high])
+            right, left = motion.velocity(t), motion.velocity(t, "left")
+            turns = right[:-1] * left[1:] < 0.0
+            found.append(halved(motion.velocity, t[:-1][turns], t[1:][turns]))
+            stops = (right * left <= 0.0) & ((right != 0.0) | (left != 0.0))
+            stops &= (t > 0.0) & (t < lasts)
+            found.append(t[stops])  # turns at an event, or comes to rest or leaves it
+        return np.unique(np.concatenate(found))
+
+    def within(self, begin: float, end: float) -> NDArray[np.float64]:
+        """The knots from `begin` to `end`, both of these included."""
+        first, last = np.searchsorted(self.knots, (begin, end), ("right"))
+        inner = self.knots[first:last]
+        return np.concatenate([[begin], inner[inner < end], [end]])
+
+    def pieces(
+        self, values: Values, begin: float, end: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """The knots in between, and the values where each piece begins and where it ends."""
+        t = self.within(begin, end)
+        return t, values(t[:-1]), values(t[1:], "left")
+
+    def highest(self, values: Values, begin: float, end: float) -> tuple[float, float]:
+        """The time and the size of the largest value from `begin` to `end`."""
+        t, starts, stops = self.pieces(values, begin, end)
+        i, j = int(np.argmax(starts)), int(np.argmax(stops))
+        if starts[i] >= stops[j]:
+            return float(t[i]), float(starts[i])
+        return float(t[j + 1]), float(stops[j])
+
+    def first_at(self, values: Values, level: float, begin: float, end: float) -> float:
+        """The first time in [begin, end] at which the values are at `level` or above; or NaN."""
+        t, starts, stops = self.pieces(values, begin, end)
+        found = np.flatnonzero((starts >= level) | (stops >= level))
+        if not found.size:
+            return nan
+        i = int(found[0])
+        if starts[i] >= level:
+            return float(t[i])
+        return crossing(lambda s: values(s, "left") - level, t[i], t[i + 1])
+
+    def last_beyond(
+        self, values: Values, middle: float, band: float, begin: float, end: float
+    ) -> float:
+        """The last time in [begin, end] at which the values are `band` or more from `middle`.
+
+        For values that do not jump; `begin` where they never are.
+        """
+        t = self.within(begin, end)
+        out = np.flatnonzero(np.abs(values(t) - middle) >= band)
+        if not out.size:
+            return begin
+        i = int(out[-1])
+        if i == len(t) - 1:
+            return end
+        return crossing(lambda s: band - np.abs(values(s) - middle), t[i], t[i + 1])
+
+    def climbs(self, values: Values, height: float, begin: float, end: float) -> bool:
+        """Whether the values ever come to be `height` above their lowest since `begin`."""
+        y = values(self.within(begin, end))
+        return bool((y - np.minimum.accumulate(y) >= height).any())
+
+    def climb(self, values: Values, height: float, begin: float, end: float) -> tuple[float, float]:
+        """When values that do not jump are first `height` above their lowest since `begin`.
+
+        Returns:
+            That time, NaN if they never are; and the time of that lowest value.
+        """
+        t = self.within(begin, end)
+        y = values(t)
+        found = np.flatnonzero(y - np.minimum.accumulate(y) >= height)
+        if not found.size:
+            return nan, float(t[int(np.argmin(y))])
+        i = int(found[0])
+        dip = int(np.argmin(y[: i + 1]))
+        base = float(y[dip])
+        return crossing(lambda s: values(s) - base - height, t[i - 1], t[i]), float(t[dip])
+
+    def swings(self, values: Values, begin: float, end: float) -> list[tuple[float, float]]:
+        """From when to when values that do not jump climb, from each lowest to the next highest."""
+        t = self.within(begin, end)
+        up = np.diff(values(t)) > 0.0
+        steps = np.diff(np.concatenate([[False], up, [False]]).astype(int))
+        return list(zip(t[steps == 1].tolist(), t[steps == -1].tolist(), strict=True))
+
+    def held(self) -> list[tuple[float, float]]:
+        """From when to when the plate holds the pin."""
+        held: list[tuple[float, float]] = []
+        for segment in self.motion.segments:
+            if segment.plate == 0 and segment.begin < self.motion.duration:
+                begin, end = segment.begin, min(segment.end, self.motion.duration)
+                if held and held[-1][1] == begin:
+                    begin, _ = held.pop()
+                held.append((begin, end))
+        return held
+
+    def rests(self, t: float) -> bool:
+        """Whether the finger holds the pin still just before a time."""
+        i = int(np.searchsorted(self._ends, t))
+        segments = self.motion.segments
+        segment = segments[min(i, len(segments) - 1)]
+        return segment.mode == "resting" and float(self.motion.velocity(t, "left")) == 0.0
+
+    @cached_property
+    def _ends(self) -> NDArray[np.float64]:
+        return np.array([segment.end for segment in self.motion.segments])
+
+
+def check_vibration(drive: Drive, duration: float, pins: int = 1) -> int:
+    """How many looks find the turning points of one pin over a duration (s).
+
+    Raises:
+        ValueError: too many, for so many pins: the skin makes it vibrate too fast.
+    """
+    skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
+    frequency = sqrt((drive.stiffness + skin) / drive.mass) / (2.0 * pi)
+    count = EACH_PERIOD * duration * frequency + 1.0
+    of = f"{pins} pins over {duration:g} s, which vibrate at {frequency:g} Hz"
+    words = f"{of} on spring and skin; a finger without finger.stiffness is rigid"
+    budgets.MOTION_LOOKS.check(pins * count, words if skin else of)
+    return int(count)
+
+
+def halved(
+    f: Callable[[Any], NDArray[np.float64]], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The zeros of f, by halving brackets; where it jumps, just after the jump.
+
+    Args:
+        f: of times of any shape.
+        low: where the brackets begin, s, shape (n,); f changes its sign once in each.
+        high: where they end.
+    """
+    low, high = low.copy(), high.copy()
+    if not low.size:
+        return high
+    sign = np.sign(f(low))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if ((middle == low) | (middle == high)).all():
+            break  # nothing is between them
+        before = sign * f(middle) > 0.0
+        low[before], high[~before] = middle[before], middle[~before]
+    return high
+
+
+def crossing(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:
+    """Where a monotone f, negative at `low`, reaches 0 on the way to `high`."""
+    while True:
+        t = low + (high - low) * _GRID
+        t[-1] = high
+        i = int(np.argmax(f(t[1:]) >= 0.0)) + 1
+        if not (low < t[i - 1] or t[i] < high):
+            return float(high)
+        low, high = t[i - 1], t[i]
+
+
+# ---- along the page ------------------------------------------------------------------------------
+
+
+class Way:
+    """The length of the hand's way over the page."""
+
+    def __init__(self, path: HandPath) -> None:
+        self.path = path
+        times = path.times
+        self._lengths = np.concatenate([[0.0], np.cumsum(self._length(times[:-1], times[1:]))])
+
+    def _length(self, begin: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of stretches of time in which the velocity is linear: exact where it is straight."""
+        half = 0.5 * (end - begin)
+        t = begin[:, None] + half[:, None] * (1.0 + NODES)
+        speed = np.hypot(*self.path.velocity(np.clip(t, self.path.begin, self.path.end)))
+        return np.asarray(half * (speed @ WEIGHTS))
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        """The length gone by times t (s, shape (n,)), m."""
+        at = np.atleast_1d(np.asarray(t, np.float64))
+        i = np.clip(np.searchsorted(self.path.times, at, "right") - 1, 0, len(self._lengths) - 2)
+        return self._lengths[i] + self._length(self.path.times[i], at)
+
+    def between(self, begin: float, end: float) -> float:
+        """The length gone between two times, m; NaN if one of them is."""
+        if not begin <= end:
+            return nan if begin != begin or end != end else -self.between(end, begin)
+        first, last = self((begin, end))
+        return float(last - first)

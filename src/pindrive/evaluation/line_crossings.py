@@ -1,0 +1,135 @@
+"""What is printed along a pin's way: the lines that its spot passes, to the instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.scanning import AT_ONCE, FINER
+from pindrive.device.trajectory import Way, halved
+from pindrive.quantities import budgets
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from pindrive.device.hand import HandPath
+    from pindrive.device.scanning import Scan
+
+GRAZED: Final = 0.5
+"""What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A line printed across a pin's way, while its spot was on it."""
+
+    begin: float
+    """When the spot came upon it, s."""
+    end: float
+    """When it left it, s."""
+    whole: bool
+    """Whether it did both: the way neither begins nor ends on the line, nor turns back there."""
+
+
+def printed(scan: Scan) -> list[list[Printed]]:
+    """The lines along the way of each pin: where the luminance is below the threshold.
+
+    The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
+    bisection. A line on which the hand turns back is not whole, nor is one under the spot at the
+    path's begin or end.
+
+    Raises:
+        ValueError: too many lines.
+    """
+    path, scene, device = scan.path, scan.scene, scan.device
+    way = Way(path)
+    lengths = np.diff(way(path.times))
+    counts = 1 + np.ceil(lengths * FINER / scene.pixel).astype(int)
+    turned = turnings(scan)
+    threshold = device.control.threshold
+    offsets = device.array.on_page(device.array.spots)
+    found: list[list[Printed]] = []
+    passed = 0.0
+    for dx, dy in offsets.tolist():
+
+        def lightness(
+            t: NDArray[np.float64], dx: float = dx, dy: float = dy
+        ) -> NDArray[np.float64]:
+            x, y = path.position(t)
+            left, right, top, bottom = scene.extent
+            return scene.at(np.clip(x + dx, left, right), np.clip(y + dy, top, bottom)) - threshold
+
+        edges, first, last = _edges(lightness, _looks(path, counts))
+        passed += 0.5 * len(edges)
+        budgets.LINES.check(passed, f"up to pin {len(found)} of {len(offsets)}")
+        times = np.concatenate([[path.begin], edges, [path.end]])
+        times = times[0 if first else 1 : None if last else -1]
+        begins, ends = times[::2], times[1::2]
+        shortest = GRAZED * scene.pixel
+        gaps = way(begins[1:]) - way(ends[:-1]) > shortest if len(begins) else np.zeros(0, bool)
+        begins = begins[np.append(True, gaps)] if len(begins) else begins
+        ends = ends[np.append(gaps, True)] if len(ends) else ends
+        long = way(ends) - way(begins) > shortest if len(begins) else np.zeros(0, bool)
+        found.append(
+            [
+                Printed(
+                    a,
+                    b,
+                    path.begin < a and b < path.end and not ((turned > a) & (turned < b)).any(),
+                )
+                for a, b in zip(begins[long].tolist(), ends[long].tolist(), strict=True)
+            ]
+        )
+    return found
+
+
+def _edges(
+    lightness: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    looks: Iterator[NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], bool, bool]:
+    """When it changes between dark and light, s, and whether it is dark at first and at last.
+
+    Args:
+        lightness: luminance above the threshold at times, s.
+        looks: times that find each change, in order, some at a time.
+    """
+    low, high = [np.zeros(0)], [np.zeros(0)]
+    first, before, was = False, np.zeros(0), np.zeros(0, bool)
+    for some in looks:
+        t = np.concatenate([before, some])
+        dark = np.concatenate([was, lightness(some) < 0.0])
+        changes = np.flatnonzero(dark[1:] != dark[:-1])
+        budgets.LINES.check(0.5 * sum(map(len, low)) + 0.5 * len(changes))
+        low.append(t[changes])
+        high.append(t[changes + 1])
+        first = first if before.size else bool(dark[0])
+        before, was = t[-1:], dark[-1:]
+    return halved(lightness, np.concatenate(low), np.concatenate(high)), first, bool(was[0])
+
+
+def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
+    """When the page is looked at, s, in order: so often in each row of a path, and at its end."""
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    lasts = np.diff(path.times)
+    for first in range(0, int(starts[-1]), AT_ONCE):
+        k = np.arange(first, min(first + AT_ONCE, int(starts[-1])))
+        row = np.searchsorted(starts, k, "right") - 1
+        yield path.times[row] + lasts[row] * (k - starts[row]) / counts[row]
+    yield path.times[-1:]
+
+
+def turnings(scan: Scan) -> NDArray[np.float64]:
+    """When the hand comes to a stop or turns back along the drive axis, s, increasing."""
+    axis, path = scan.device.array.axis, scan.path
+    along = path.vx * cos(axis) + path.vy * sin(axis)
+    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis but for rounding
+    still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]
+    through = np.flatnonzero(along[1:] * along[:-1] < 0.0)
+    part = along[through] / (along[through] - along[through + 1])
+    across = path.times[through] + part * (path.times[through + 1] - path.times[through])
+    return np.union1d(still, across)

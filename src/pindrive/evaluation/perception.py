@@ -1,0 +1,328 @@
+"""What the finger was shown in a scan, against what is printed: line by line, edge by edge.
+
+All times are roots of closed forms, never samples. Deflections are counted forward: the way the
+plate passes under the mouse while the line is read.
+
+- **Response.** A pin responds to the begin of a line when it has come forward by the motion that is
+  felt as a pulse, from its lowest place since its magnet was switched on; to the end, when it has
+  gone back by as much from its highest place since the magnet was switched off.
+- **Latency** is the time from the edge under the spot to the response, **lag** what the hand goes
+  meanwhile on the page.
+- **Smear** is what the hand goes from the pin's release until the pin has settled: stays within 5 %
+  of the way from where it was released to where it comes to stand. Standing means at rest, or in
+  that band for half a natural period and one time constant of the slowest decay, before the next
+  line moves it or the hand stops. A pin that does not settle has no smear, and is counted.
+- **Overshoot** is the largest swing beyond that place, as a part of the way back to it. Of a pin
+  that does not settle, the place where spring and dragging plate balance stands for it.
+- **Contrast** is (P - T) / (|P| + |T|) with the highest deflection P for a line and the lowest T
+  after it, before the next line or the hand's stop (Michelson's, of crest and trough): 1 where the
+  pin comes all the way back, 0 where it stays.
+- **Skin** moves as far as a compliant finger stretches. A rigid finger has no skin that gives: the
+  pin's own way is taken, which is the most that skin could move.
+- **False lines** are swings forward that no magnet made, at least `echo` times as high as the line
+  before (before the first of a stroke of the hand: as that one), which move the skin enough for
+  its direction; in a stroke without lines, enough for a sure direction. The height of a line is
+  that of the highest swing while its magnet pulled, not of a ripple on top of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive._core import settling_band
+from pindrive.device.trajectory import Course, Values, Way
+from pindrive.evaluation.line_crossings import Printed, printed, turnings
+from pindrive.evaluation.results import CUES, Criteria, Cue, Echo, Edge, Fate, Judgement, Line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from pindrive.device.scanning import PinScan, Scan
+
+
+def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
+    """Hold what each pin did in a scan against what is printed along its way.
+
+    Args:
+        scan: the scan.
+        criteria: what counts as felt; the middle of the literature unless given.
+    """
+    limits = criteria or Criteria()
+    stops, way = turnings(scan), Way(scan.path)
+    lines: list[Line] = []
+    echoes: list[Echo] = []
+    for pin, passed in zip(scan.pins, printed(scan), strict=True):
+        judged = JudgedPin(scan, pin, passed, stops, way, limits)
+        lines += judged.lines()
+        echoes += judged.echoes()
+    return Judgement(scan=scan, criteria=limits, lines=tuple(lines), echoes=tuple(echoes))
+
+
+@dataclass(frozen=True, slots=True)
+class _Pull:
+    """One time its magnet was on, and how the pin answered."""
+
+    on: float
+    off: float
+    begin: float
+    """When the pin came forward; NaN: never."""
+    dip: float
+    """When it was lowest before that."""
+    release: float
+    """When the plate let go of it."""
+    sign: float
+    """Of the plate's velocity."""
+
+
+class JudgedPin:
+    """One pin's lines and swings. Times are since the scan's begin, s.
+
+    Args:
+        scan: the scan.
+        pin: one of its pins.
+        passed: the lines printed along its way.
+        stops: when the hand stops or turns back, s.
+        way: the length of the hand's way.
+        criteria: what counts as felt.
+    """
+
+    def __init__(
+        self,
+        scan: Scan,
+        pin: PinScan,
+        passed: Sequence[Printed],
+        stops: NDArray[np.float64],
+        way: Way,
+        criteria: Criteria,
+    ) -> None:
+        self.scan, self.pin, self.criteria = scan, pin, criteria
+        self.begin, self.way = pin.begin, way
+        self.passed = [
+            Printed(line.begin - pin.begin, line.end - pin.begin, line.whole) for line in passed
+        ]
+        self.stops = stops - pin.begin
+        self.latency = scan.device.control.latency
+        self.course, self.end = Course(pin.motion), pin.motion.duration
+        self.held = self.course.held()
+        self.plate = scan.path.plate_velocity(scan.device.array.axis)
+        self.pulls = self._pulls()
+
+    # ---- what the magnet did -----------------------------------------------------------------
+
+    def _pulls(self) -> list[_Pull]:
+        spans = [(on - self.begin, off - self.begin) for on, off in self.pin.energised]
+        pulls = []
+        for (on, off), (limit, _) in zip(spans, [*spans[1:], (self.end, nan)], strict=False):
+            sign = self._sign(max(0.0, on - self.latency))
+            x = Values(self.pin.motion.position, sign)
+            stop = min(limit, self._stop(off))
+            begin, dip = self.course.climb(x, self.criteria.felt, on, stop)
+            release = next((end for start, end in self.held if start <= off < end), off)
+            pulls.append(_Pull(on, off, begin, dip, release, sign))
+        return pulls
+
+    def _sign(self, t: float) -> float:
+        """Which way the plate goes at a time; forward where it stands."""
+        return -1.0 if self.plate(t) < 0.0 else 1.0
+
+    def _stop(self, t: float) -> float:
+        """When the hand stops or turns back after a time, or the scan ends."""
+        i = int(np.searchsorted(self.stops, t, "right"))
+        return min(float(self.stops[i]), self.end) if i < len(self.stops) else self.end
+
+    def _until(self, k: int) -> float:
+        """How long pull k has the pin to itself: until the next one moves it, or the hand stops."""
+        stop = max(self._stop(self.pulls[k].off), self.pulls[k].off)
+        later = self.pulls[k + 1 : k + 2]
+        return min([stop, *(p.dip if p.begin == p.begin else p.on for p in later)])
+
+    # ---- the printed lines -------------------------------------------------------------------
+
+    def lines(self) -> list[Line]:
+        """Each whole line that passed under the pin."""
+        found = []
+        begun: set[int] = set()
+        for i, line in enumerate(self.passed):
+            mine = [
+                k
+                for k, pull in enumerate(self.pulls)
+                if pull.on - self.latency <= line.end and pull.off - self.latency >= line.begin
+            ]
+            first = next((k for k in mine if k not in begun), None)
+            last = mine[-1] if mine and not self._goes_on(mine[-1], i) else None
+            begun.update(mine)
+            if line.whole:
+                found.append(self._line(line, first, last, bool(mine)))
+        return found
+
+    def _goes_on(self, k: int, i: int) -> bool:
+        """Whether the magnet stays on from line i into the next."""
+        later = self.passed[i + 1 : i + 2]
+        return any(self.pulls[k].off - self.latency >= line.begin for line in later)
+
+    def _line(self, line: Printed, first: int | None, last: int | None, seen: bool) -> Line:
+        """A printed line, for which pull `first` began and pull `last` ended."""
+        sign = self._sign(line.begin)
+        x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
+        fate: Fate = "shown"
+        stroke = height = returned = release = settled = overshoot = contrast = nan
+        on = off = (nan, nan, nan)  # command, response, motion of the skin
+        cue_on = cue_off = CUES[0]
+        if first is None:
+            fate = "merged" if seen else "unseen"
+        elif self._still_held(first):
+            fate = "merged"
+        else:
+            pull = self.pulls[first]
+            on = (pull.on, nan, nan)
+            if pull.begin == pull.begin:
+                peak_time, peak = self.course.highest(x, pull.begin, self._until(first))
+                stroke = peak - float(x(pull.dip))
+                moved, cue_on = self._moved(skin, pull.dip, peak_time)
+                on = (pull.on, pull.begin, moved)
+        if last is not None:
+            pull, limit = self.pulls[last], self._until(last)
+            release = min(pull.release, limit)
+            peak_time, peak = self.course.highest(x, pull.on, limit)
+            low = -self.course.highest(-x, peak_time, limit)[1]
+            back = self.course.climb(-x, self.criteria.felt, pull.off, limit)[0]
+            off = (pull.off, back, nan)
+            if back == back:
+                moved, cue_off = self._moved(-skin, peak_time, limit)
+                off = (pull.off, back, moved)
+            height, returned = peak, peak - low
+            contrast = (peak - low) / (abs(peak) + abs(low)) if peak > low else 0.0
+            settled, overshoot = self._settling(x, release, peak, low, limit)
+        went, felt = on[1] == on[1], (cue_on, cue_off) != (CUES[0], CUES[0])
+        if fate == "shown" and not (went and felt):
+            fate = "faint"
+        return Line(
+            pin=self.pin.number,
+            begin=self._edge(line.begin, *on, cue_on),
+            end=self._edge(line.end, *off, cue_off),
+            fate=fate,
+            stroke=stroke,
+            height=height,
+            returned=returned,
+            release=self.begin + release,
+            settled=self.begin + settled,
+            smear=self.way.between(self.begin + release, self.begin + settled),
+            overshoot=overshoot,
+            contrast=contrast,
+        )
+
+    def _edge(self, time: float, command: float, response: float, skin: float, cue: Cue) -> Edge:
+        x, y = self._spot(time)
+        return Edge(
+            time=self.begin + time,
+            x=x,
+            y=y,
+            command=self.begin + command,
+            response=self.begin + response,
+            lag=self.way.between(self.begin + time, self.begin + response),
+            skin=skin,
+            cue=cue,
+        )
+
+    def _spot(self, t: float) -> tuple[float, float]:
+        """Where the pin's spot is on the page."""
+        x, y = self.scan.spot(self.pin.number, [min(self.begin + t, self.pin.end)])[0].tolist()
+        return x, y
+
+    def _still_held(self, k: int) -> bool:
+        """Whether the pin had not gone back from the pull before when pull k moved it on."""
+        before, pull = self.pulls[max(k - 1, 0)], self.pulls[k]
+        if k == 0 or before.sign != pull.sign or before.begin != before.begin:
+            return False  # nothing before it, or nothing that had moved the pin
+        until = pull.begin if pull.begin == pull.begin else self._until(k)
+        back = -Values(self.pin.motion.position, pull.sign)
+        return not self.course.climbs(back, self.criteria.felt, before.off, until)
+
+    # ---- numbers -----------------------------------------------------------------------------
+
+    def _skin(self, sign: float) -> Values:
+        """How far the skin is moved; of a rigid finger, the pin."""
+        motion = self.pin.motion
+        return Values(motion.position if motion.drive.finger.rigid else motion.stretch, sign)
+
+    def _moved(self, skin: Values, begin: float, end: float) -> tuple[float, Cue]:
+        """How far the skin moves forward between two times, and what the finger makes of it."""
+        limits = self.criteria
+        base = float(skin(begin, "left"))
+        way = self.course.highest(skin, begin, end)[1] - base
+        soon = begin + limits.direction_sure / limits.direction_speed
+        if way >= limits.direction_sure:
+            sure = base + limits.direction_sure
+            if self.course.first_at(skin, sure, begin, end) <= soon:
+                return way, "sure"
+        if way < limits.felt:
+            return way, "none"
+        return way, "direction" if way >= limits.direction else "felt"
+
+    def _settling(
+        self, x: Values, release: float, peak: float, low: float, limit: float
+    ) -> tuple[float, float]:
+        """When the pin has settled after a release, and how far it swings over."""
+        if not limit > release:
+            return nan, nan
+        end = float(x(limit))
+        band = settling_band * abs(float(x(release)) - end)
+        since = self.course.last_beyond(x, end, band, release, limit)
+        settles = limit - since >= self._patience or self.course.rests(limit)
+        place = end if settles else self.scan.device.drag
+        over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
+        return since if settles else nan, over
+
+    @property
+    def _patience(self) -> float:
+        """How long a pin must stay within its band to be believed that it has settled, s."""
+        drive = self.pin.motion.drive
+        half = pi / drive.natural_frequency
+        return max(half, 1.0 / drive.slowest_rate) if drive.damping_ratio > 1.0 else half
+
+    # ---- false lines -------------------------------------------------------------------------
+
+    def echoes(self) -> list[Echo]:
+        """Swings forward that no magnet made, and that are as high as the criteria ask."""
+        found = []
+        times = np.unique(np.concatenate([[0.0], self.stops, [self.end]]))
+        for begin, end in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
+            if self.plate(0.5 * (begin + end)) != 0.0:
+                found += self._echoes(begin, end)
+        return found
+
+    def _echoes(self, begin: float, end: float) -> list[Echo]:
+        """Those of one stroke of the hand."""
+        sign = self._sign(0.5 * (begin + end))
+        x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
+        swings = [
+            (low, high, float(x(high) - x(low)), self._puller(low, high))
+            for low, high in self.course.swings(x, begin, end)
+        ]
+        heights: dict[int, float] = {}  # of the line for which each pull was: its highest swing
+        for _, _, height, k in swings:
+            if k is not None:
+                heights[k] = max(heights.get(k, 0.0), height)
+        before = next(iter(heights.values()), nan)
+        found = []
+        for low, high, height, k in swings:
+            if k is not None:
+                before = heights[k]
+                continue
+            usual = self.criteria.echo * before if before == before else 0.0
+            least = self.criteria.direction if usual else self.criteria.direction_sure
+            if height >= max(usual, least) and self._moved(skin, low, high)[0] >= least:
+                px, py = self._spot(high)
+                found.append(Echo(self.pin.number, self.begin + high, px, py, height))
+        return found
+
+    def _puller(self, low: float, high: float) -> int | None:
+        """The last pull that has a part in a swing."""
+        mine = [k for k, p in enumerate(self.pulls) if p.on < high and max(p.off, p.release) > low]
+        return mine[-1] if mine else None

@@ -1,0 +1,371 @@
+"""How fast the hand may move before two lines run into one.
+
+Two lines, black, stand `pitch` apart; an even hand goes over them. They are **distinct** at its
+speed if, wherever the control block's looks happen to fall (`PHASES` of them are tried),
+
+- between them the pin comes back at least `part` of its way from its highest place to where spring
+  and dragging plate balance, before the second line takes it along, and
+- each of them moves the skin, forward or back, enough for its direction to be perceived (of a rigid
+  finger: the pin).
+
+They are **settled** if moreover the transient that the first line alone leaves (see `judging`) is
+over before the second takes the pin along. Every trial is an exact simulation.
+
+Distinct speeds need not be one interval: a swing may fit by chance, and a slow hand may leave the
+pin where the finger's friction holds it. So all of a geometric grid of speeds is tried first, and
+the border of each interval it shows is found by bisection; intervals between two speeds of the grid
+may be missed. A border is as sharp as the control block looks: within a look it is chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, isnan, nan, pi
+from typing import Final
+
+import numpy as np
+
+from pindrive.device.device import Device
+from pindrive.device.hand import HandPath
+from pindrive.device.page import Scene
+from pindrive.device.pin_array import PinArray
+from pindrive.device.scanning import PinState, scan
+from pindrive.device.trajectory import Way, check_vibration
+from pindrive.evaluation.line_crossings import Printed
+from pindrive.evaluation.perception import JudgedPin
+from pindrive.evaluation.results import Criteria, Line
+from pindrive.motion.drive import Drive
+from pindrive.quantities import budgets
+from pindrive.quantities.table import check, refusal
+
+PART: Final = 0.5
+SLOWEST: Final = 0.005
+FASTEST: Final = 1.0
+"""What is tried, m/s: beyond both ends of what hands do (20-100 mm/s, arXiv 2505.11162)."""
+PHASES: Final = 4
+TRIED: Final = 32
+"""Speeds in the grid."""
+PRECISION: Final = 1e-3
+"""Of a border, a part of it."""
+FINE: Final = 40.0
+"""Pixels in the thinner of line and gap."""
+MOMENT: Final = 0.002
+"""From the begin of a trial to the first line, s, and a look more."""
+
+LONGEST: Final = 200.0
+"""A transient is followed for so many radians of its natural frequency at most."""
+
+Band = tuple[float, float]
+Progress = Callable[[int, int], None]
+"""Told after each pitch: how many are done, of how many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """Two lines at one speed: the worst of all phases."""
+
+    speed: float
+    """m/s"""
+    back: float
+    """Part of its way that the pin comes back between the lines; 0 where they merge."""
+    skin: float
+    """How far the fainter line moves the skin, m."""
+    until: tuple[float, ...]
+    """When the second line takes the pin along, for each phase, s since the trial's begin."""
+
+    def distinct(self, part: float, direction: float) -> bool:
+        """Whether two lines are felt; direction is in m."""
+        return self.back >= part and self.skin >= direction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedLimit:
+    """How fast a hand may go over two lines."""
+
+    pitch: float
+    width: float
+    """Of the lines, m."""
+    tried: Band
+    """The slowest hand and the fastest, m/s."""
+    distinct: tuple[Band, ...]
+    """From which speed to which the lines are distinct, m/s, the slowest first."""
+    settled: tuple[Band, ...]
+    """From which to which they are distinct and the pin settles in between."""
+    beyond: Trial | None
+    """What a hand just faster than the limit finds; None: there is none so fast."""
+
+    @property
+    def speed(self) -> float:
+        """The largest hand speed at which the lines are distinct, m/s; NaN: at none they are.
+
+        Of the first interval: a faster one beyond it is chance. Where that interval does not begin
+        with the slowest hand tried, `distinct` says from where on.
+        """
+        return self.distinct[0][1] if self.distinct else nan
+
+    @property
+    def settled_speed(self) -> float:
+        """The largest up to which the pin settles in between, m/s; NaN: there is none."""
+        return self.settled[0][1] if self.settled else nan
+
+
+def largest_speeds(
+    device: Device,
+    pitches: Sequence[float],
+    *,
+    width: float | None = None,
+    part: float = PART,
+    slowest: float = SLOWEST,
+    fastest: float = FASTEST,
+    criteria: Criteria | None = None,
+    progress: Progress | None = None,
+) -> tuple[SpeedLimit, ...]:
+    """The largest hand speed at which two lines stay distinct, for each pitch.
+
+    Args:
+        device: its drive, magnet and control block; one pin of it.
+        pitches: from line to line, m, greater than 0.
+        width: of the lines, m, less than each pitch; None: half the pitch.
+        part: of its way that the pin must be back in between, in (0, 1].
+        slowest: hand tried, m/s, greater than 0.
+        fastest: hand tried, m/s, greater than `slowest`.
+        criteria: what counts as felt; the literature's unless given.
+        progress: told after each pitch.
+
+    Raises:
+        ValueError: no pitch, a value is no number or out of its range, or there is more to do than
+            `pindrive.quantities.budgets` allow.
+    """
+    budgets.PITCHES.check(len(pitches))
+    steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
+    if not steps:
+        raise ValueError(refusal("pitches", "at least one", "none"))
+    least, most = (
+        check(f"speed.{name}", value, label=name)
+        for name, value in (("slowest", slowest), ("fastest", fastest))
+    )
+    if not least < most:
+        raise ValueError(
+            refusal("fastest", f"greater than the slowest, {least!r} m/s", f"{most!r}")
+        )
+    needed = check("speed.part", part, label="part")
+    limits = criteria or Criteria()
+    lines = [
+        check("speed.width", 0.5 * pitch if width is None else width, label="width")
+        for pitch in steps
+    ]
+    for pitch, line in zip(steps, lines, strict=True):
+        if not line < pitch:
+            raise ValueError(refusal("width", f"less than the pitch, {pitch!r} m", f"{line!r} m"))
+    _check_work(device, steps, lines, (least, most))
+    found = []
+    for pitch, line in zip(steps, lines, strict=True):
+        found.append(_limit(device, pitch, line, needed, (least, most), limits))
+        if progress:
+            progress(len(found), len(steps))
+    return tuple(found)
+
+
+def _check_work(
+    device: Device, pitches: Sequence[float], widths: Sequence[float], tried: Band
+) -> None:
+    """Refuse trials whose counts are beyond the budgets, before the first of them.
+
+    The slowest trial takes the most looks, the fastest the most pixels; that the looks of all are
+    so many times those of the slowest follows from the grid.
+    """
+    drive = device.drive
+    alone = _clear(device) + max(_followed(drive), 4.0 * pi / drive.natural_frequency)
+    slowest, fastest = tried
+    all_trials = sum(slowest / speed for speed in np.geomspace(*tried, TRIED).tolist())
+    looks = 0.0
+    for pitch, width in zip(pitches, widths, strict=True):
+        of = f"for lines {1e3 * pitch:g} mm apart and {1e3 * width:g} mm wide"
+        lasts = (pitch + width) / slowest + alone
+        looks += PHASES * device.control.sample_rate * all_trials * (pitch + width) / slowest
+        looks += PHASES * device.control.sample_rate * TRIED * alone
+        check_vibration(drive, TRIED * alone + all_trials * lasts, PHASES)
+        pixel = min(width, pitch - width) / FINE
+        most = (
+            pitch + width + fastest * (alone + MOMENT + 2.0 / device.control.sample_rate)
+        ) / pixel
+        budgets.PIXELS.check(most, of)
+    of = f"{len(pitches)} pitches, hands from {slowest:g} m/s, at {device.control.sample_rate:g} Hz"
+    budgets.LOOKS.check(looks, of)
+
+
+def _followed(drive: Drive) -> float:
+    """How long a transient is followed for it to settle, s."""
+    return 8.0 / max(drive.slowest_rate, 8.0 / LONGEST * drive.natural_frequency)
+
+
+def _limit(
+    device: Device, pitch: float, width: float, part: float, tried: Band, criteria: Criteria
+) -> SpeedLimit:
+    """The limit for one pitch."""
+    speeds = np.geomspace(*tried, TRIED).tolist()
+    trials = {speed: two_lines(device, pitch, width, speed, criteria) for speed in speeds}
+    calm: dict[float, bool] = {}
+
+    def bands(holds: Callable[[Trial], bool]) -> list[Band]:
+        """The intervals in which something holds: from the grid, with borders by bisection."""
+        borders = [-inf] if holds(trials[speeds[0]]) else []
+        for slow, fast in pairwise(speeds):
+            if holds(trials[slow]) != holds(trials[fast]):
+                borders.append(border(slow, fast, holds))
+        if holds(trials[speeds[-1]]):
+            borders.append(inf)
+        ends = np.clip(borders, *tried).tolist()
+        return list(zip(ends[::2], ends[1::2], strict=True))
+
+    def border(slow: float, fast: float, holds: Callable[[Trial], bool]) -> float:
+        """The speed at which it begins or ceases to hold, on the side on which it holds."""
+        before = holds(trials[slow])
+        while fast - slow > PRECISION * slow:
+            middle = 0.5 * (slow + fast)
+            trials[middle] = two_lines(device, pitch, width, middle, criteria)
+            if holds(trials[middle]) == before:
+                slow = middle
+            else:
+                fast = middle
+        return slow if before else fast
+
+    def distinct(trial: Trial) -> bool:
+        return trial.distinct(part, criteria.direction)
+
+    def settled(trial: Trial) -> bool:
+        if distinct(trial) and trial.speed not in calm:
+            calm[trial.speed] = settles(device, pitch, width, trial, criteria)
+        return calm.get(trial.speed, False)
+
+    apart = bands(distinct)
+    faster = [speed for speed in sorted(trials) if apart and speed > apart[0][1]]
+    return SpeedLimit(
+        pitch=pitch,
+        width=width,
+        tried=tried,
+        distinct=tuple(apart),
+        settled=tuple(bands(settled)),
+        beyond=trials[faster[0]] if faster else None,
+    )
+
+
+def two_lines(
+    device: Device, pitch: float, width: float, speed: float, criteria: Criteria
+) -> Trial:
+    """Go over two lines at an even speed, once for each phase of the control block's looks.
+
+    Args:
+        device: one pin of it is taken.
+        pitch: m.
+        width: m.
+        speed: m/s.
+        criteria: what counts as felt.
+    """
+    drive = device.drive
+    after = _clear(device) + 4.0 * pi / drive.natural_frequency
+    worst = Trial(speed, inf, inf, ())
+    for pin in _pass(device, (0.0, pitch), pitch, width, speed, after, criteria):
+        first, second = pin.lines()
+        back = 0.0 if "merged" in (first.fate, second.fate) else _back(device, first)
+        worst = Trial(
+            speed,
+            min(worst.back, back),
+            min(worst.skin, _skin(first), _skin(second)),
+            (*worst.until, pin.pulls[1].dip if len(pin.pulls) > 1 else 0.0),
+        )
+    return worst
+
+
+def settles(device: Device, pitch: float, width: float, trial: Trial, criteria: Criteria) -> bool:
+    """Whether the first line of a trial, alone, would leave the pin settled before the second.
+
+    Args:
+        device: as in the trial.
+        pitch: m, as in the trial.
+        width: m, as in the trial.
+        trial: as `two_lines` found it.
+        criteria: as in the trial.
+    """
+    after = _clear(device) + _followed(device.drive)
+    alone = _pass(device, (0.0,), pitch, width, trial.speed, after, criteria)
+    times = [line.settled for pin in alone for line in pin.lines()]
+    return all(time <= until for time, until in zip(times, trial.until, strict=True))
+
+
+def _pass(
+    device: Device,
+    begins: Sequence[float],
+    pitch: float,
+    width: float,
+    speed: float,
+    after: float,
+    criteria: Criteria,
+) -> list[JudgedPin]:
+    """Go evenly over lines that begin at these places (m), once for each phase, and `after` (s)."""
+    look = 1.0 / device.control.sample_rate
+    begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
+    pixel = min(width, pitch - width) / FINE
+    shifts = [speed * look * i / PHASES for i in range(PHASES)]
+    phases = PinArray([(0.0, float(i)) for i in range(PHASES)], [(s, 0.0) for s in shifts])
+    page = _page(begins, width, begin - pixel, end + speed * look + pixel, pixel)
+    lasts = (end - begin) / speed
+    path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
+    done = scan(
+        replace(device, array=phases), page, path, start=[steady(device)] * PHASES, threads=1
+    )
+    stops, way = np.zeros(0), Way(path)
+    judged = []
+    for pin, shift in zip(done.pins, shifts, strict=True):
+        times = [(x - begin - shift) / speed for x in begins]
+        passed = [Printed(time, time + width / speed, True) for time in times]
+        judged.append(JudgedPin(done, pin, passed, stops, way, criteria))
+    return judged
+
+
+def _clear(device: Device) -> float:
+    """From a line's end until its magnet is as good as off, s."""
+    return device.control.latency + 8.0 * device.magnet.fall_constant
+
+
+def steady(device: Device) -> PinState:
+    """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
+    finger = device.drive.finger
+    if finger.rigid:
+        return PinState(position=device.drag)
+    plate = device.drive.plate.kinetic * device.load(device.magnet.residual)
+    held = plate if plate <= finger.static_friction else finger.kinetic
+    return PinState(position=device.drag, skin_stretch=held / finger.stiffness)
+
+
+def _page(begins: Sequence[float], width: float, left: float, right: float, pixel: float) -> Scene:
+    """Lines that begin at these places; a border between pixels is as dark as it covers."""
+    first = int(np.floor(left / pixel))
+    borders = pixel * np.arange(first, int(np.ceil(right / pixel)) + 1)
+    covered = sum(np.clip(borders, x, x + width) for x in begins)
+    row = 1.0 - np.clip(np.diff(covered) / pixel, 0.0, 1.0)
+    return Scene(row[np.newaxis], pixel, (first * pixel, 0.0), title="lines")
+
+
+def _back(device: Device, line: Line) -> float:
+    """The part of its way back to its place of rest that the pin comes after a line."""
+    if isnan(line.returned):
+        return 0.0
+    high = line.height - device.drag
+    return line.returned / high if high > 0.0 else 0.0
+
+
+def _skin(line: Line) -> float:
+    """How far a line moves the skin, forward or back, m."""
+    moves = [edge.skin for edge in (line.begin, line.end) if not isnan(edge.skin)]
+    return max(moves, default=0.0)
+
+
+def criterion(part: float, direction: float) -> str:
+    """When two lines are distinct, in a sentence."""
+    return (
+        f"Two lines are distinct where the pin comes back at least {part:.0%} of its way between "
+        f"them, and each moves the skin {1e3 * direction:g} mm or more."
+    )

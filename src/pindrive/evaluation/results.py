@@ -1,0 +1,178 @@
+"""What the finger was shown in a scan, as data: lines, their edges, false lines, and counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from math import isnan, nan
+from typing import TYPE_CHECKING, Final, Literal
+
+import numpy as np
+
+from pindrive.quantities.table import QUANTITIES, check
+
+if TYPE_CHECKING:
+    from pindrive.device.scanning import Scan
+
+Fate = Literal["shown", "unseen", "merged", "faint"]
+Cue = Literal["none", "felt", "direction", "sure"]
+
+CUES: Final[tuple[Cue, ...]] = ("none", "felt", "direction", "sure")
+FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
+
+
+def usual(name: str) -> float:
+    """The value of the literature, SI."""
+    return QUANTITIES[name].default or 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Criteria:
+    """What counts as felt, by the sources in `quantities_judge`; a user who measures replaces it.
+
+    Args:
+        felt: motion that is felt as a pulse, m, greater than 0.
+        direction: motion of skin whose direction is perceived, m, greater than 0.
+        direction_sure: whose direction is told right in more than 95 % of cases, m.
+        direction_speed: at which that must be gone, m/s.
+        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    felt: float = usual("felt")
+    direction: float = usual("direction")
+    direction_sure: float = usual("direction_sure")
+    direction_speed: float = usual("direction_speed")
+    echo: float = usual("echo")
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        for field in fields(self):
+            object.__setattr__(self, field.name, check(field.name, getattr(self, field.name)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Edge:
+    """One end of a printed line under one pin, and what became of it. NaN: it did not."""
+
+    time: float
+    """When it passed under the spot, s."""
+    x: float
+    y: float
+    """Where that is on the page, m."""
+    command: float
+    """When the magnet was switched for it, s."""
+    response: float
+    """When the finger was shown it, s."""
+    lag: float
+    """What the hand went from `time` to `response`, m."""
+    skin: float
+    """How far the skin moved for it, m."""
+    cue: Cue
+    """What the finger makes of that: nothing, a pulse, its direction, its direction for sure."""
+
+    @property
+    def latency(self) -> float:
+        """From the edge to the response, s."""
+        return self.response - self.time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Line:
+    """One printed line under one pin."""
+
+    pin: int
+    begin: Edge
+    end: Edge
+    fate: Fate
+    """Shown; or missed: unseen by the control block, merged into the line before, or too faint: the
+    pin did not go along, or the skin did not move enough to be felt."""
+    stroke: float
+    """How far it moved the pin, m."""
+    height: float
+    """The pin's highest deflection for it, m."""
+    returned: float
+    """How far the pin came back from there, before the next line or the hand's stop, m."""
+    release: float
+    """When the plate let go of the pin, s."""
+    settled: float
+    """When the pin had settled after it, s; NaN: it did not."""
+    smear: float
+    """What the hand went from release to settled, m."""
+    overshoot: float
+    contrast: float
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What was found, SI, by the names of the table of quantities."""
+        return {
+            "line.latency_on": self.begin.latency,
+            "line.latency_off": self.end.latency,
+            "line.lag_on": self.begin.lag,
+            "line.lag_off": self.end.lag,
+            "line.stroke": self.stroke,
+            "line.skin_on": self.begin.skin,
+            "line.skin_off": self.end.skin,
+            "line.smear_time": self.settled - self.release,
+            "line.smear": self.smear,
+            "line.overshoot": self.overshoot,
+            "line.contrast": self.contrast,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Echo:
+    """A swing of a pin that feels like a line and is none."""
+
+    pin: int
+    time: float
+    """When it was highest, s."""
+    x: float
+    y: float
+    """Where the pin's spot was then, m."""
+    stroke: float
+    """How high it was, m."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Judgement:
+    """What the finger was shown in a scan."""
+
+    scan: Scan
+    criteria: Criteria
+    lines: tuple[Line, ...]
+    """Pin after pin, in the order of time. Lines that the way does not cross whole are left out."""
+    echoes: tuple[Echo, ...]
+    """False lines."""
+
+    @property
+    def shown(self) -> tuple[Line, ...]:
+        """The lines that were shown."""
+        return tuple(line for line in self.lines if line.fate == "shown")
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many lines, and what became of them, by the names of the table of quantities."""
+        shown = self.shown
+        cues = [CUES.index(line.begin.cue) for line in shown]
+        return {
+            "judged.lines": len(self.lines),
+            **{f"judged.{fate}": sum(line.fate == fate for line in self.lines) for fate in FATES},
+            "judged.echoes": len(self.echoes),
+            "judged.unsettled": sum(isnan(line.settled) for line in shown),
+            "judged.direction": sum(cue >= CUES.index("direction") for cue in cues),
+            "judged.sure": sum(cue >= CUES.index("sure") for cue in cues),
+        }
+
+    def spread(self, name: str) -> tuple[float, float, float]:
+        """Least, median and largest of a number of the lines shown, SI; NaN where none has it.
+
+        Args:
+            name: of `Line.numbers`.
+        """
+        values = np.array([line.numbers[name] for line in self.shown])
+        known = values[~np.isnan(values)]
+        if not known.size:
+            return nan, nan, nan
+        return float(known.min()), float(np.median(known)), float(known.max())

@@ -1,0 +1,419 @@
+"""Device files: TOML with units, read into a validated drive and the start of its motion.
+
+Whatever is wrong is found in one pass and said in lines that name file, key, value and bound.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Container, Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from math import inf
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from pydantic import ValidationError
+
+from pindrive.files.ratios import keep_ratios
+from pindrive.files.schema import Place, Schema, over_time
+from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
+from pindrive.motion.drive import Drive, Profile
+from pindrive.quantities.quantity import Rows
+from pindrive.quantities.table import refusal, warn_of
+from pindrive.quantities.units import quoted
+
+if TYPE_CHECKING:
+    from pindrive.files.schema_device import Whole
+    from pindrive.motion.motion import Motion
+
+STUDY_KEYS: Final = (
+    *("base", "set", "page", "outputs", "zip", "chunk"),
+    *("axes", "sample", "tolerances", "specification"),
+)
+"""What stands at the top of a study file beside the tables of a device and the name."""
+KEYS: Final = ("device.name", "device.description", *NUMBERS)
+AROUND: Final = ("magnet", "control", "array", "scan", "judge")
+TABLES: Final = ("device", "drive", "plate", "finger", "motion", *AROUND)
+
+
+class Setting(NamedTuple):
+    """A value that is set otherwise than in a device file."""
+
+    key: str
+    """In full, or its last part where that is unique."""
+    value: object
+    """As TOML has it."""
+    place: str
+    """Where that is written, for messages."""
+
+
+class ConfigError(ValueError):
+    """A device file that cannot be used. `problems` holds one line each."""
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeviceFile:
+    """What a device file says, in SI: the drive and the start of its motion (see `simulate`).
+
+    Where it has a table of the whole device, or is asked for it, `whole` is that device, and how a
+    hand reads with it (see `pindrive.device.scan`).
+    """
+
+    path: Path
+    name: str
+    description: str
+    drive: Drive
+    mouse_velocity: float | Profile
+    plate_load: float | Profile
+    displacement: float
+    velocity: float | None
+    skin_stretch: float | None
+    duration: float | None
+    settling_band: float
+    tables: Mapping[str, Any]
+    """What the file has, as text with units, with the values that were set otherwise."""
+    settings: tuple[Setting, ...] = ()
+    """The values that were set otherwise."""
+    whole: Whole | None = None
+
+    @property
+    def by_ratio(self) -> bool:
+        """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
+        return "damping_ratio" in self.tables["drive"]
+
+    def values(self) -> dict[str, float | Rows | None]:
+        """The value of every key that holds a quantity, in SI; None where it was left out.
+
+        What changes is its rows: (speed, force) or (time, value).
+        """
+        owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
+        places = ((key, *key.split(".")) for key in DRIVE)
+        values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        if self.whole:
+            values |= {key: self.whole.value(key) for key in WHOLE}
+        return {
+            key: value.rows if isinstance(value, Profile) else None if value == inf else value
+            for key, value in values.items()
+        }
+
+
+def load(
+    path: str | PathLike[str], overrides: Iterable[str] = (), *, whole: bool = False
+) -> DeviceFile:
+    """The device file at `path`, with single values set otherwise.
+
+    Args:
+        path: a TOML file; `template()` is one.
+        overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
+            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
+            Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
+            a value that is set keeps its ratio to it unless it is set too: static friction and the
+            friction curve to kinetic friction, the skin's stretch to the largest that it can have.
+        whole: the whole device is wanted, also of a file without a table of it.
+
+    Raises:
+        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
+    """
+    file = Path(path)
+    settings, problems = settings_of(overrides)
+    return device_of(file, read_tables(file), settings, whole=whole, problems=problems)
+
+
+def device_of(
+    file: Path,
+    given: Mapping[str, Any],
+    settings: Iterable[Setting] = (),
+    *,
+    whole: bool = False,
+    problems: Iterable[str] = (),
+) -> DeviceFile:
+    """The device that the tables `given` describe, with values set otherwise, one after the other.
+
+    The rest, and what it raises, as for `load`; `problems` are what was found wrong before.
+    """
+    _refuse_study(file, given)
+    settings = tuple(settings)
+    tables = _with_all_tables(file, given)
+    places, found = _set(tables, settings)
+    problems = [*problems, *found]
+    as_written = _copied(tables)
+
+    def place(*keys: str) -> str:
+        return next((places[key] for key in keys if key in places), str(file))
+
+    whole = whole or any(tables[name] for name in AROUND)
+    hand = whole and "mouse_velocity" not in tables["motion"]
+    if hand:  # a single release is at the hand's speed then
+        tables["motion"]["mouse_velocity"] = usual(NUMBERS["scan.hand_speed"])
+    unknown = _unknown_keys(tables)
+    meant = {nearest(key) for key in unknown}
+    problems += [f"{file}: {not_known(key)}" for key in unknown]
+    problems += _damping_problems(tables["drive"], meant, place)
+    try:
+        schema = Schema.model_validate(tables, context=place)
+        problems += schema.conflicts(place)
+        around = _around(tables, place) if whole else None
+        if around:
+            problems += around.conflicts(schema, tables, place)
+        if not problems:
+            device = replace(_device(file, schema, around, hand, as_written), settings=settings)
+            _warn(device, place)
+            return device
+    except ValidationError as error:
+        problems += _value_problems(error, meant, place)
+    except ValueError as error:  # each value in range, but not all together
+        problems.append(f"{file}: {error}")
+    raise ConfigError(problems)
+
+
+def motion_of(device: DeviceFile) -> Motion:
+    """The release that a device file describes."""
+    from pindrive.motion.simulate import simulated
+
+    return simulated(
+        device.drive,
+        mouse_velocity=device.mouse_velocity,
+        displacement=device.displacement,
+        velocity=device.velocity,
+        plate_load=device.plate_load,
+        skin_stretch=device.skin_stretch,
+        duration=device.duration,
+        settling_band=device.settling_band,
+    )
+
+
+# ---- the file's text -----------------------------------------------------------------------------
+
+
+def read_tables(file: Path, template: str = "`pindrive init FILE` writes a device file") -> Any:
+    """What a TOML file says, as a dictionary; of an empty one `template` says what to do.
+
+    Raises:
+        ConfigError: it cannot be read, is empty or no TOML.
+    """
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        with file.open("rb") as opened:
+            netcdf = opened.read(4) == b"\x89HDF"
+        words = (
+            "is a NetCDF file; `pindrive map` draws one that a sweep wrote"
+            if netcdf
+            else f"is not UTF-8 text, at byte {error.start}"
+        )
+        raise ConfigError([f"{file}: {words}"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ConfigError([f"{file}: cannot be read: {reason}"]) from None
+    if not text.strip():
+        raise ConfigError([f"{file}: is empty; {template}"])
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        hint = "; a value with a unit stands in quotes" if "Expected newline" in str(error) else ""
+        raise ConfigError([f"{file}: is not valid TOML: {error}{hint}"]) from None
+
+
+def _refuse_study(file: Path, given: Mapping[str, Any]) -> None:
+    found = [key for key in STUDY_KEYS if key in given]
+    if found:
+        shown = [f"[{key}]" if isinstance(given[key], dict) else key for key in found[:2]]
+        raise ConfigError(
+            [
+                f"{file}: is a study file, as it has {' and '.join(shown)}; `pindrive sweep`, "
+                "`sensitivity` and `robustness` take it"
+            ]
+        )
+
+
+def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Its tables, free to be changed; empty where they are missing."""
+    tables = {name: {} for name in TABLES} | {
+        name: dict(table) if isinstance(table, dict) else table for name, table in given.items()
+    }
+    flat = [name for name in TABLES if not isinstance(tables[name], dict)]
+    if flat:
+        raise ConfigError(
+            [
+                f"{file}: {refusal(name, f'a table, [{name}]', quoted(tables[name]))}"
+                for name in flat
+            ]
+        )
+    return tables
+
+
+def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
+    """What "key=value" on the command line sets, each, and what is wrong with it."""
+    settings, problems = [], []
+    for override in overrides:
+        given, equals, text = (part.strip() for part in override.partition("="))
+        place = f"--set {' '.join(given.split())}"
+        value: object = text
+        if not equals or not given:
+            problems.append(f"--set {quoted(override)}: must be key=value")
+            continue
+        keys = keys_meant(given)
+        if len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
+            try:
+                value = _rows_as_toml(text)
+            except (ValueError, RecursionError) as error:
+                problems.append(f"{place}: {keys[0]} is not valid TOML: {error}")
+                continue
+        settings.append(Setting(given, value, place))
+    return settings, problems
+
+
+def _rows_as_toml(text: str) -> object:
+    given = tomllib.loads(f"rows = {text}")
+    if len(given) > 1:
+        raise ValueError("more than one value")
+    return given["rows"]
+
+
+def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str, str], list[str]]:
+    """Set values in `tables`. Return where each set key was written, and what was wrong."""
+    before = _copied(tables)
+    places: dict[str, str] = {}
+    problems: list[str] = []
+    for given, value, place in settings:
+        keys = keys_meant(given)
+        if not keys:
+            problems.append(f"{place}: {not_known(given, tables=False)}")
+        elif len(keys) > 1:
+            problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
+        else:
+            table, _, name = keys[0].partition(".")
+            places[keys[0]] = place
+            tables[table][name] = value
+    for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
+        if f"drive.{one}" in places and f"drive.{other}" not in places:
+            tables["drive"].pop(other, None)
+    if places:
+        keep_ratios(tables, before, places)
+    return places, problems
+
+
+def _copied(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The known tables as they stand."""
+    return {name: dict(tables[name]) for name in TABLES}
+
+
+def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
+    unknown = [name for name in tables if name not in TABLES]
+    full = [f"{table}.{name}" for table in TABLES for name in tables[table]]
+    return unknown + [key for key in full if key not in KEYS]
+
+
+def keys_meant(given: str) -> list[str]:
+    """The keys that may be meant by one in full, or by its last part."""
+    return [key for key in KEYS if given in (key, key.partition(".")[2])]
+
+
+def nearest(key: str, *, tables: bool = True) -> str | None:
+    """The known table or key most like `key`; a known name in the wrong table finds its table."""
+    names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
+    if tables and "." not in key:
+        names |= {table: table for table in TABLES}
+    table, _, name = key.rpartition(".")
+    here = [known for known in names if f"{table}.{known}" in KEYS]
+    near = (
+        get_close_matches(key, KEYS, 1, cutoff=0.8)
+        or get_close_matches(name, here, 1)
+        or get_close_matches(name, names, 1, cutoff=0.7)
+    )
+    return names.get(near[0], near[0]) if near else None
+
+
+def not_known(key: str, *, tables: bool = True) -> str:
+    """What to say of an unknown key; without `tables` where only a key can stand."""
+    if key == "plate.stiffness":
+        return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
+    near = nearest(key, tables=tables) if tables or key not in TABLES else None
+    said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
+    if near:
+        return f"unknown key {said}; did you mean {near}?"
+    table = key.partition(".")[0]
+    known = [known for known in KEYS if known.startswith(f"{table}.")] or (
+        TABLES if tables else KEYS
+    )
+    return f"unknown key {said}; there are {', '.join(known)}"
+
+
+# ---- its values ----------------------------------------------------------------------------------
+
+
+def _damping_problems(
+    drive: Mapping[str, Any], meant: Container[str | None], place: Place
+) -> list[str]:
+    keys = ("drive.damping", "drive.damping_ratio")
+    given = [key for key in keys if key.partition(".")[2] in drive]
+    if len(given) == 1 or (not given and any(key in meant for key in keys)):
+        return []
+    found = "both" if given else "neither"
+    return [f"{place(*keys)}: give exactly one of {' and '.join(keys)}, got {found}"]
+
+
+def _value_problems(error: ValidationError, meant: Set[str | None], place: Place) -> list[str]:
+    problems = []
+    for problem in error.errors():
+        key = ".".join(str(part) for part in problem["loc"])
+        if problem["type"] == "value_error":
+            problems.append(str(problem["ctx"]["error"]))
+        elif problem["type"] == "missing" and not {key, f"{key.partition('.')[0]}.curve"} & meant:
+            table, written = key.partition(".")[0], line(NUMBERS[key])
+            problems.append(f"{place(key)}: {key} is missing; write {written} in [{table}]")
+        elif problem["type"] == "string_type":
+            problems.append(
+                f"{place(key)}: {refusal(key, 'text in quotes', quoted(problem['input']))}"
+            )
+    return problems
+
+
+def _warn(device: DeviceFile, place: Place) -> None:
+    """Warn of values that no such device has, with the place where each was written."""
+    for key, value in device.values().items():
+        if key in DRIVE and value is not None:
+            warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
+
+
+def _around(tables: Mapping[str, Any], place: Place) -> Whole:
+    """The tables of the whole device; a plain drive does without what reading them takes."""
+    from pindrive.files.schema_device import Whole
+
+    return Whole.model_validate(tables, context=place)
+
+
+def _device(
+    file: Path, schema: Schema, whole: Whole | None, hand: bool, tables: Mapping[str, Any]
+) -> DeviceFile:
+    drive, motion = schema.drive, schema.motion
+    plate, finger = schema.plate.contact(), schema.finger.contact()
+    body = {"mass": drive.mass, "stiffness": drive.stiffness}
+    return DeviceFile(
+        path=file,
+        name=schema.device.name,
+        description=schema.device.description,
+        drive=Drive(**body, damping=drive.damping, plate=plate, finger=finger)
+        if drive.damping is not None
+        else Drive.with_damping_ratio(
+            **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
+        ),
+        mouse_velocity=whole.scan.hand_speed
+        if whole and hand
+        else over_time(motion.mouse_velocity),
+        plate_load=over_time(motion.plate_load),
+        displacement=motion.displacement,
+        velocity=motion.velocity,
+        skin_stretch=motion.skin_stretch,
+        duration=motion.duration,
+        settling_band=motion.settling_band,
+        tables=tables,
+        whole=whole,
+    )

@@ -1,0 +1,269 @@
+"""Files that are whole or not there, and never in the place of what somebody needs; their kinds.
+
+They are written beside their target and renamed when complete. A file that is there is replaced
+only if it is of the kind that is written, and never if the command reads it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from secrets import token_hex
+from typing import Final
+
+from pindrive.lazy import h5py
+
+_HEAD = 4096
+"""Bytes in which a file says what it is."""
+
+
+class OutputError(ValueError):
+    """A file that cannot be written; says which and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of file: what it is called, and whether a file is one."""
+
+    name: str
+    holds: Callable[[Path], bool]
+    consent: str = ""
+    """The option with which one is replaced, as it took long to make; none where it did not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A file that a command is asked to write."""
+
+    path: Path
+    kind: Kind
+    option: str = ""
+    """Where it was named, for messages."""
+
+    def __str__(self) -> str:
+        """As it was named."""
+        return f"{self.option} {self.path}".lstrip()
+
+
+def check_outputs(
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+) -> None:
+    """Refuse to write over what is needed.
+
+    Args:
+        outputs: what is to be written.
+        inputs: what the command reads; compared as files, through links of any sort.
+        consent: whether files may be replaced that took long to make.
+
+    Raises:
+        OutputError: two outputs are one file, an output is an input, or a file is there that is of
+            another kind, or takes consent.
+    """
+    read = [*inputs]
+    for i, output in enumerate(outputs):
+        if any(_are_one(output.path, other.path) for other in outputs[:i]):
+            raise OutputError(f"{output}: is named twice; give each file a name of its own")
+        check_unread(output.path, read, str(output))
+        with naming(output.path):
+            if not output.path.is_file() or not output.path.stat().st_size:
+                continue
+        try:
+            alike = output.kind.holds(output.path)
+        except OSError as error:
+            raise OutputError(f"{output}: is there, and cannot be read: {error.strerror}") from None
+        if not alike:
+            raise OutputError(
+                f"{output}: is there and is no {output.kind.name}; it stays, give another name"
+            )
+        if output.kind.consent and not consent:
+            raise OutputError(f"{output}: exists already; {output.kind.consent} replaces it")
+
+
+def check_unread(path: Path, inputs: Iterable[Path], label: str = "") -> None:
+    """Refuse to write to a file that is read."""
+    if any(_are_one(path, other) for other in inputs):
+        raise OutputError(f"{label or path}: is read by this command; give another name")
+
+
+def _are_one(one: Path, other: Path) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):  # one of them is not there
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+@contextmanager
+def writing(
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+) -> Iterator[dict[Path, Path]]:
+    """For the path of each output a path to write to, as `atomic_write` gives it.
+
+    Arguments and errors as for `check_outputs` and `atomic_write`.
+    """
+    check_outputs(outputs, inputs, consent=consent)
+    with ExitStack() as stack:
+        yield {output.path: stack.enter_context(atomic_write(output.path)) for output in outputs}
+
+
+@contextmanager
+def atomic_write(target: str | os.PathLike[str]) -> Iterator[Path]:
+    """A path beside `target` to write to; it takes the target's place when the block ends well.
+
+    Entering creates the file, so that a target that cannot be written is refused at once. After an
+    exception in the block nothing is left behind and an older file at `target` is as it was.
+
+    Raises:
+        OutputError: the target is no regular file, or cannot be created or replaced.
+    """
+    path = Path(os.path.realpath(target))  # a link stays, what it points to is replaced
+    part = path.with_name(f".{path.name[:200]}.{token_hex(4)}.part")
+    try:
+        with naming(target):
+            if path.exists() and not path.is_file():
+                raise OSError("not a regular file")
+            if path.exists() and not os.access(path, os.W_OK):
+                raise PermissionError("it is read-only")
+            part.touch(exist_ok=False)
+        yield part
+        with naming(target):
+            os.replace(part, path)
+    finally:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            part.unlink()
+
+
+def _like(name: str, content: bytes) -> Kind:
+    """Files that begin as this one does."""
+
+    def beginning(content: bytes) -> tuple[bytes, list[bytes]]:
+        return content.partition(b"\n")[0], re.findall(rb"<title>.*?</title>", content)
+
+    head = beginning(content[:_HEAD])
+
+    def holds(path: Path) -> bool:
+        with path.open("rb") as file:
+            return beginning(file.read(_HEAD)) == head
+
+    return Kind(f"{Path(name).name} of an earlier run", holds)
+
+
+@contextmanager
+def naming(target: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn what the system refuses in the block into an `OutputError` that names `target`."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(f"{os.fspath(target)}: cannot be written: {reason}") from error
+
+
+def check_folder(folder: str | os.PathLike[str]) -> None:
+    """Refuse at once what `write_files` would refuse of a folder; nothing is made.
+
+    Raises:
+        OutputError: it, or what it would be made in, is no folder or cannot be written.
+    """
+    path = Path(os.path.realpath(folder))
+    while not path.exists():
+        path = path.parent
+    with naming(folder):
+        if not path.is_dir():
+            raise NotADirectoryError(f"{path.name} is no folder")
+        if not os.access(path, os.W_OK | os.X_OK):
+            raise PermissionError(f"{path} is read-only")
+
+
+def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+    """Write files into a folder that need not be there: all, or none.
+
+    Args:
+        folder: where; other files in it stay as they are.
+        files: what, by the path in the folder. One that is there is replaced if it begins with the
+            same line, and has the same title.
+
+    Raises:
+        OutputError: a file or a folder cannot be written, or would replace something else.
+    """
+    top, made = Path(folder), []
+    check_outputs([Output(top / name, _like(name, content)) for name, content in files.items()])
+    try:
+        with ExitStack() as stack:
+            for name, content in files.items():
+                target = top / name
+                for place in reversed([p for p in target.parents if not p.exists()]):
+                    with naming(place):
+                        place.mkdir()
+                    made.append(place)
+                part = stack.enter_context(atomic_write(target))
+                with naming(target):
+                    part.write_bytes(content)
+    except BaseException:
+        for place in reversed(made):
+            with suppress(OSError):  # where something was written meanwhile, it stays
+                place.rmdir()
+        raise
+
+
+def _beginning(name: str, *beginnings: bytes) -> Kind:
+    """A kind whose files begin so."""
+    return Kind(name, lambda path: _head(path).startswith(beginnings))
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(_HEAD)
+
+
+def _titled(name: str, beginning: str) -> Kind:
+    """A NetCDF file of pindrive by the beginning of its title."""
+    return Kind(name, lambda path: _attribute(path, "title").startswith(beginning))
+
+
+def _attribute(path: Path, name: str) -> str:
+    """A text of a NetCDF file that pindrive wrote; empty where there is none."""
+    if not _head(path).startswith(b"\x89HDF\r\n\x1a\n"):
+        return ""
+    try:
+        with h5py.File(path, "r") as file:
+            of_pindrive = str(file.attrs.get("source", "")).startswith("pindrive ")
+            return str(file.attrs.get(name, "")) if of_pindrive else ""
+    except OSError:  # cut off
+        return ""
+
+
+def _is_device_file(path: Path) -> bool:
+    from tomllib import loads
+
+    from pindrive.files.device import STUDY_KEYS, TABLES
+
+    try:
+        tables = loads(path.read_text("utf-8-sig"))
+    except (ValueError, RecursionError):
+        return False
+    return not tables.keys().isdisjoint(TABLES) and tables.keys().isdisjoint(STUDY_KEYS)
+
+
+PICTURES: Final = {
+    ".png": _beginning("PNG picture", b"\x89PNG\r\n\x1a\n"),
+    ".svg": Kind("SVG picture", lambda path: b"<svg" in _head(path)),
+    ".pdf": _beginning("PDF file", b"%PDF-"),
+}
+"""By the ending of a name."""
+FILMS: Final = {
+    ".gif": _beginning("GIF film", b"GIF87a", b"GIF89a"),
+    ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp"),
+}
+MOTION_CSV: Final = _beginning("CSV file of a motion", b"time_s,position_m,")
+MOTION_JSON: Final = _beginning("JSON file of a motion", b'{\n  "pindrive": ')
+MOTION_NETCDF: Final = _titled("NetCDF file of a motion", "Motion of ")
+LINES_CSV: Final = _beginning("CSV file of lines", b"pin,fate,")
+SCAN_NETCDF: Final = _titled("NetCDF file of a scan", "Scan of ")
+STUDY_NETCDF: Final = Kind(
+    "NetCDF file of a study", lambda path: _attribute(path, "identity") != "", "--restart"
+)
+DEVICE_FILE: Final = Kind("device file", _is_device_file, "--force")
+REPORT: Final = Kind("report of the paper", lambda path: b"Dynamics of tactile" in _head(path))

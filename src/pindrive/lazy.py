@@ -1,0 +1,115 @@
+"""Imports at first use: the one place where this package postpones an import.
+
+Libraries that take long to load are names of this module, and are loaded when one of their own
+names is first asked for. A package hands out its public names by `attach`; a result reaches what is
+built on it, such as its figure, by `call`, whose target is text: the graph of the import statements
+then has no circle. The package lazy_loader does the first two, but its modules have no types.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+__all__ = [
+    "Image",
+    "ImageDraw",
+    "ImageFont",
+    "ImageOps",
+    "attach",
+    "call",
+    "features",
+    "ft2font",
+    "h5netcdf",
+    "h5py",
+    "matplotlib",
+    "optimize",
+    "pint",
+    "qmc",
+    "rich_console",
+    "rich_progress",
+    "special",
+    "stats",
+    "xr",
+]
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from types import ModuleType
+
+    import h5netcdf
+    import h5py
+    import matplotlib
+    import pint
+    import rich.console as rich_console
+    import rich.progress as rich_progress
+    import xarray as xr
+    from matplotlib import ft2font
+    from PIL import Image, ImageDraw, ImageFont, ImageOps, features
+    from scipy import optimize, special, stats
+    from scipy.stats import qmc
+else:
+
+    class _Module:
+        """A module that is loaded when a name in it is first asked for."""
+
+        def __init__(self, name: str) -> None:
+            self._name = name
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(_loaded(self._name), name)
+
+    h5netcdf = _Module("h5netcdf")
+    h5py = _Module("h5py")
+    matplotlib = _Module("matplotlib")
+    pint = _Module("pint")
+    xr = _Module("xarray")
+    ft2font = _Module("matplotlib.ft2font")
+    Image = _Module("PIL.Image")
+    ImageDraw = _Module("PIL.ImageDraw")
+    ImageFont = _Module("PIL.ImageFont")
+    ImageOps = _Module("PIL.ImageOps")
+    features = _Module("PIL.features")
+    rich_console = _Module("rich.console")
+    rich_progress = _Module("rich.progress")
+    optimize = _Module("scipy.optimize")
+    special = _Module("scipy.special")
+    stats = _Module("scipy.stats")
+    qmc = _Module("scipy.stats.qmc")
+
+
+def _loaded(name: str) -> ModuleType:
+    """A module by its full name, without importlib: that is not loaded yet when Python starts."""
+    __import__(name)
+    return sys.modules[name]
+
+
+def attach(
+    package: str, homes: Mapping[str, str]
+) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+    """The functions `__getattr__` and `__dir__` of a package whose names are imported at first use.
+
+    Args:
+        package: its name.
+        homes: the module of each public name.
+    """
+
+    def get(name: str) -> object:
+        if name == "__version__":
+            from importlib.metadata import version
+
+            value: object = version(package)
+        elif name in homes:
+            value = getattr(_loaded(homes[name]), name)
+        else:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        vars(sys.modules[package])[name] = value
+        return value
+
+    return get, lambda: sorted(sys.modules[package].__all__)
+
+
+def call(target: str, *arguments: Any) -> Any:
+    """The result of a function or class that is named as "module:name"."""
+    module, _, name = target.partition(":")
+    return getattr(_loaded(module), name)(*arguments)

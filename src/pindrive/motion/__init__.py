@@ -1,0 +1,1 @@
+"""One drive: as data, its motion, the numbers of the motion, many motions at once."""

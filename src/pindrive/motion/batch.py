@@ -1,0 +1,289 @@
+"""Many drives at once: arrays of parameters in, the numbers of each motion out as a Dataset."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive import _core
+from pindrive.lazy import xr
+from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.drive import OR_INFINITE
+from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
+from pindrive.quantities.table import QUANTITIES, refusal, warn_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Values = ArrayLike | xr.DataArray
+
+__all__ = ["simulate_batch"]
+
+# The arguments in the order that the core takes them: the row of each in the table of quantities.
+_ARGUMENTS: Final = {
+    name.replace(".", "_"): QUANTITIES[name]
+    for name in (
+        "mass",
+        "stiffness",
+        "damping",
+        "plate.kinetic",
+        "plate.static",
+        "finger.kinetic",
+        "finger.static",
+        "finger.stiffness",
+        "mouse_velocity",
+        "displacement",
+        "velocity",
+        "duration",
+        "settling_band",
+    )
+}
+# What an argument is where it is left out: another one, infinite, or the usual value.
+_SAME_AS: Final = {
+    "plate_static": "plate_kinetic",
+    "finger_static": "finger_kinetic",
+    "velocity": "mouse_velocity",
+}
+_INFINITE: Final = ("finger_stiffness", "duration")
+_LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
+
+# In the order of `Status` and `End` in model.hpp.
+_FAILURES: Final = ("too_many_events", "standstill")
+_ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
+_BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "damping_ratio", "phase"))
+_FLAGS: Final = {
+    "status": {meaning: flag for flag, meaning in enumerate(("ok", *_FAILURES, *_BAD))},
+    "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
+}
+
+
+def simulate_batch(
+    *,
+    mass: Values,
+    stiffness: Values,
+    damping: Values,
+    plate_kinetic: Values,
+    plate_static: Values | None = None,
+    finger_kinetic: Values,
+    finger_static: Values | None = None,
+    finger_stiffness: Values | None = None,
+    mouse_velocity: Values,
+    displacement: Values,
+    velocity: Values | None = None,
+    duration: Values | None = None,
+    settling_band: Values | None = None,
+    energy: bool = False,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
+
+    The arguments broadcast as NumPy's do: numbers, arrays, or xarray DataArrays, whose dimensions
+    go by their names. No trajectory is stored. Python runs on meanwhile, and Ctrl-C ends a batch.
+
+    Args:
+        mass: m, kg, from 1e-12 to 1e12.
+        stiffness: k, N/m, from 1e-12 to 1e12.
+        damping: b, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
+        plate_kinetic: friction force of the sliding plate, N, at least 0.
+        plate_static: largest force of the plate without sliding, N, at least the kinetic one; None:
+            the kinetic one.
+        finger_kinetic: friction force of the sliding finger, N, at least 0.
+        finger_static: largest force of the finger without sliding, N, at least the kinetic one;
+            None: the kinetic one.
+        finger_stiffness: tangential stiffness of the finger's skin, N/m, greater than 0; infinite
+            or None: rigid.
+        mouse_velocity: v_p, m/s.
+        displacement: x(0), m.
+        velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
+        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; infinite or None:
+            long enough to see each ending.
+        settling_band: half the band about the end in which a motion counts as settled, a part of
+            |x(0) - x_end|, above 0 and at most 1; None: 0.05.
+        energy: the terms of the energy ledger too; a point then takes some ten times as long.
+        threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
+
+    Returns:
+        Variables in the shape that the arguments have together, with unit and meaning in their
+        attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
+        ending, and with `energy` those of the ledger; `ending`, how it ends, and `status`, both
+        with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
+        number of `events`. The arguments are the coordinates. A point that `simulate` would refuse
+        does not stop the others: its status says which argument is bad, and its numbers are NaN.
+
+    Raises:
+        ValueError: an argument holds something else than numbers, shapes do not fit together, or
+            `threads` is no count.
+
+    Warns:
+        ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
+    """
+    given: dict[str, Values | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
+    for name, argument in given.items():
+        if argument is not None:
+            _warn(name, argument)
+    return batched(given, energy=energy, threads=threads)
+
+
+def batched(
+    given: Mapping[str, Values | None], *, energy: bool = False, threads: int | None = None
+) -> xr.Dataset:
+    """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
+    from pindrive import __version__
+
+    workers = worker_count(threads)
+    named = {name: value for name, value in given.items() if value is not None}
+    sizes, arguments, coordinates = _shared_shape(named)
+    shape = tuple(sizes.values())
+
+    aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
+    for name in _ARGUMENTS.keys() - named.keys():
+        aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
+    status = _status(aligned, shape)
+    spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
+    table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
+    table["transient.settled"] = ~np.isnan(table["transient.settling_time"])
+
+    if np.isinf(aligned["duration"]).any():
+        arguments.pop("duration", None)  # what the column says instead: until the ending was seen
+    else:
+        del table["duration"]
+    coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
+    data = {
+        name.replace(".", "_"): (tuple(sizes), column.reshape(shape), _attributes(name))
+        for name, column in table.items()
+    }
+    return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+
+
+# ---- shapes --------------------------------------------------------------------------------------
+
+Shared = tuple[dict[str, int], dict[str, "xr.Variable"], dict[str, Any]]
+"""The dimensions that the arguments have together, each argument with its own, the coordinates."""
+
+
+def _shared_shape(given: Mapping[str, Values]) -> Shared:
+    """The arguments as variables, whose dimensions are named or, as arrays have none, counted."""
+    named = {k: v for k, v in given.items() if isinstance(v, xr.DataArray)}
+    arrays = {k: _floats(k, v) for k, v in given.items() if k not in named}
+    return _by_name(named, arrays) if named else _by_position(arrays)
+
+
+def _by_name(
+    named: Mapping[str, xr.DataArray], arrays: Mapping[str, NDArray[np.float64]]
+) -> Shared:
+    for name, array in arrays.items():
+        if array.ndim:
+            required = "a number or a DataArray where another argument is a DataArray"
+            raise ValueError(refusal(name, required, f"an array of shape {array.shape}"))
+    xr.align(*named.values(), join="exact", copy=False)  # raises where coordinates differ
+    coordinates = xr.merge([v.coords.to_dataset() for v in named.values()], join="exact").coords
+    variables = {k: xr.Variable(v.dims, _floats(k, v.values)) for k, v in named.items()}
+    sizes = {str(dim): n for v in variables.values() for dim, n in v.sizes.items()}
+    variables |= {k: xr.Variable((), array) for k, array in arrays.items()}
+    return sizes, variables, {str(k): v for k, v in coordinates.items()}
+
+
+def _by_position(arrays: Mapping[str, NDArray[np.float64]]) -> Shared:
+    shape = _common_shape(arrays)
+    sizes = {f"dim_{axis}": length for axis, length in enumerate(shape)}
+    variables = {}
+    for name, array in arrays.items():
+        axes = range(len(shape) - array.ndim, len(shape))
+        spread = tuple(i for i, axis in enumerate(axes) if array.shape[i] < shape[axis])
+        dims = [f"dim_{axis}" for i, axis in enumerate(axes) if i not in spread]
+        variables[name] = xr.Variable(dims, array.squeeze(spread))
+    return sizes, variables, {}
+
+
+def _common_shape(arrays: Mapping[str, NDArray[np.float64]]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise ValueError(refusal("arguments", "of shapes that broadcast", shapes)) from None
+
+
+def _aligned(variable: xr.Variable, dims: tuple[str, ...]) -> NDArray[np.float64]:
+    """Its values with all axes in order; one that it lacks is one long, as NumPy spreads it."""
+    own = [dim for dim in dims if dim in variable.dims]
+    values: NDArray[np.float64] = variable.transpose(*own).values
+    return np.expand_dims(values, [i for i, dim in enumerate(dims) if dim not in own])
+
+
+def _floats(name: str, values: object) -> NDArray[np.float64]:
+    """An argument as an array of floats, if it holds numbers."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+        return array.astype(np.float64, copy=False)
+    except (TypeError, ValueError):
+        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
+
+
+def _warn(name: str, given: Values) -> None:
+    """Warn of the largest or the smallest value that is computed, if no such device has it."""
+    quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
+    seen = quantity.seen
+    good = _within(quantity.bounds, values) & _within(quantity.limits, values) & np.isfinite(values)
+    sizes = np.abs(values[good])
+    if seen is None or not sizes.size:
+        return
+    for size in (sizes.max(), sizes.min()):
+        if float(size) not in seen:
+            warn_of(_ARGUMENTS[name].name, float(size), label=name, stacklevel=3)
+            return
+
+
+# ---- bad points, and what the numbers mean -------------------------------------------------------
+
+
+def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDArray[np.int8]:
+    """0, or the flag of the first argument that is bad, at every point."""
+    status = np.zeros(shape, np.int8)
+
+    def mark(name: str, bad: NDArray[np.bool_]) -> None:
+        if bad.any():
+            status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
+
+    for name, quantity in _ARGUMENTS.items():
+        bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
+        limits = OR_INFINITE if name in _INFINITE else quantity.limits
+        mark(name, ~(_within(bounds, a[name]) & _within(limits, a[name])))
+    for contact in ("plate", "finger"):
+        mark(f"{contact}_static", a[f"{contact}_static"] < a[f"{contact}_kinetic"])
+    with np.errstate(all="ignore"):
+        ratio = a["damping"] / (2.0 * np.sqrt(a["mass"]) * np.sqrt(a["stiffness"]))
+        phase = np.sqrt(a["stiffness"] / a["mass"]) * np.where(
+            np.isinf(a["duration"]), 0.0, a["duration"]
+        )
+    mark("damping_ratio", ~_within(QUANTITIES["damping_ratio"].limits, ratio))
+    mark("phase", ~_within(QUANTITIES["phase"].limits, phase))
+    return status
+
+
+def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of the values the bounds hold; NaN is never one."""
+    above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
+    below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
+    return (above & below) | np.isin(values, bounds.also) if bounds.also else above & below
+
+
+def _attributes(name: str) -> dict[str, Any]:
+    """Unit and meaning of an argument or a number, or the values and meanings of a flag."""
+    if name == "events":
+        return {"long_name": "changes at a contact; of a cycle, those of one round"}
+    if name in _FLAGS:
+        meanings = _FLAGS[name]
+        return {
+            "long_name": {"status": "what was wrong", "ending": "how the motion ends"}[name],
+            "flag_values": np.array([*meanings.values()], np.int8),
+            "flag_meanings": " ".join(meanings),
+        }
+    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[name]
+    attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
+    return attributes | ({"units": quantity.unit} if quantity.unit else {})

@@ -1,0 +1,394 @@
+"""A pin drive as data: the drive, its two contacts, and inputs that change over time. SI units."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from math import copysign, inf, isinf, isnan, sqrt
+from operator import lt
+from typing import TYPE_CHECKING, cast, overload
+
+from pindrive.quantities.quantity import brief, counted
+from pindrive.quantities.table import QUANTITIES, check, refusal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Contact", "Drive", "Profile"]
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Contact:
+    """Dry friction between the pin drive and a surface: the plate or the fingertip.
+
+    Args:
+        kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
+            contact at all. None with a curve: its first force.
+        static: largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
+            None.
+        curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
+            increasing from 0, linear between rows and on beyond the last; its first force is
+            `kinetic`. None: `kinetic` at every speed (Coulomb).
+        stiffness: tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
+
+    Raises:
+        ValueError: a value is no number or out of its range, static friction is below kinetic,
+            neither kinetic friction nor a curve is given, or they disagree.
+    """
+
+    kinetic: float
+    static: float | None
+    curve: tuple[tuple[float, float], ...] | None
+    stiffness: float
+
+    def __init__(
+        self,
+        kinetic: float | None = None,
+        static: float | None = None,
+        curve: Iterable[tuple[float, float]] | None = None,
+        stiffness: float = inf,
+    ) -> None:
+        """Validate, and keep plain floats and tuples."""
+        rows = None if curve is None else _checked_curve(curve)
+        if kinetic is None and rows is None:
+            raise ValueError(refusal("kinetic", "a number in N unless a curve is given", "None"))
+        at_rest = rows[0][1] if kinetic is None and rows else check("kinetic", cast(float, kinetic))
+        if rows:
+            check_curve(rows, at_rest)
+        if static is not None:
+            static = check("static", static)
+            check_static(static, at_rest)
+        object.__setattr__(self, "kinetic", at_rest)
+        object.__setattr__(self, "static", static)
+        object.__setattr__(self, "curve", rows)
+        object.__setattr__(
+            self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
+        )
+
+    @property
+    def static_friction(self) -> float:
+        """Largest friction force without sliding, N."""
+        return self.kinetic if self.static is None else self.static
+
+    @property
+    def frictionless(self) -> bool:
+        """Whether the contact carries no force at all: it is as good as absent."""
+        return self.static_friction == 0.0 and (
+            self.curve is None or not any(force for _, force in self.curve)
+        )
+
+    @property
+    def curved(self) -> bool:
+        """Whether friction depends on the sliding speed."""
+        return self.curve is not None and len(self.curve) > 1
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the surface gives way by sliding alone."""
+        return isinf(self.stiffness)
+
+
+def check_static(
+    static: float, kinetic: float, *, where: str = "", label: str = "static", given: str = ""
+) -> None:
+    """Refuse static friction below kinetic friction (both N)."""
+    if static < kinetic:
+        required = f"at least the kinetic friction, {kinetic!r} N"
+        raise ValueError(refusal(label, required, given or f"{static!r} N", where))
+
+
+def check_curve(
+    rows: Sequence[tuple[float, float]], kinetic: float, *, where: str = "", label: str = "curve"
+) -> None:
+    """Refuse rows (m/s, N) that do not start at speed 0 with the kinetic friction (N)."""
+    speed, force = rows[0]
+    if speed != 0.0:
+        raise ValueError(refusal(f"{label}[0] speed", "0 m/s", f"{speed!r} m/s", where))
+    if force != kinetic:
+        required = f"the kinetic friction, {kinetic!r} N"
+        raise ValueError(refusal(f"{label}[0] force", required, f"{force!r} N", where))
+
+
+def check_increasing(
+    values: Sequence[float], unit: str, *, where: str = "", label: str = "[{}]", why: str = ""
+) -> None:
+    """Refuse values of which one is not greater than the one before; `label` takes its index."""
+    if all(map(lt, values, islice(values, 1, None))):
+        return
+    for i in range(1, len(values)):
+        if not values[i - 1] < values[i]:
+            required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
+            raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}", where))
+
+
+def check_times(
+    times: Sequence[float],
+    *,
+    where: str = "",
+    label: str = "[{}]",
+    steps: bool = True,
+    why: str = "",
+) -> None:
+    """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
+
+    `label` takes the index of the one that is wrong, `why` says why there may be no step.
+    """
+    if not steps:
+        check_increasing(times, "s", where=where, label=label, why=why)
+        return
+    for i in range(1, len(times)):
+        before, given = f"the one before, {times[i - 1]!r} s", f"{times[i]!r} s"
+        if not times[i - 1] <= times[i]:
+            raise ValueError(refusal(label.format(i), f"at least {before}", given, where))
+        if i > 1 and times[i - 2] == times[i]:
+            required = f"greater than {before}: two rows at one time are a step, a third is none"
+            raise ValueError(refusal(label.format(i), required, given, where))
+
+
+def check_continuous(
+    profile: Profile, unit: str, *, where: str = "", label: str = "mouse_velocity"
+) -> None:
+    """Refuse a velocity (`unit`) with a step: it would take an infinite force."""
+    for t in profile.steps:
+        i = bisect_right(profile.times, t)
+        required = "without a step (a jump would take an infinite force)"
+        y, z = profile.values[i - 2 : i]
+        raise ValueError(
+            refusal(label, required, f"one from {y!r} {unit} to {z!r} {unit} at {t!r} s", where)
+        )
+
+
+def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
+    """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
+    if finger.curved and not finger.rigid:
+        required = "one row for a compliant finger, whose skin would lag behind it"
+        raise ValueError(refusal(label, required, counted(len(finger.curve or ()), "row"), where))
+
+
+def check_load(
+    plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
+) -> None:
+    """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
+    if plate.curved and isinstance(load, Profile) and load.changes:
+        required = "constant for a plate with a friction curve"
+        raise ValueError(refusal(label, required, "a profile that changes", where))
+
+
+def check_stretch(
+    stretch: float, finger: Contact, *, where: str = "", label: str = "skin_stretch"
+) -> None:
+    """Refuse a stretch (m) that the finger's skin cannot have."""
+    given = f"{stretch!r} m"
+    if finger.rigid:
+        raise ValueError(refusal(label, "left out for a rigid finger", given, where))
+    largest = finger.static_friction / finger.stiffness
+    if abs(stretch) > largest:
+        required = f"at most static friction over stiffness, {largest!r} m, either way"
+        raise ValueError(refusal(label, required, given, where))
+
+
+def _checked_curve(curve: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    try:
+        rows = [(speed, force) for speed, force in curve]
+    except (TypeError, ValueError):
+        raise ValueError(refusal("curve", "rows of (speed, force)", repr(curve))) from None
+    if not rows:
+        raise ValueError(refusal("curve", "at least one row of (speed, force)", "none"))
+    speeds = [
+        check("curve.speed", speed, label=f"curve[{i}] speed") for i, (speed, _) in enumerate(rows)
+    ]
+    forces = [
+        check("curve.force", force, label=f"curve[{i}] force") for i, (_, force) in enumerate(rows)
+    ]
+    check_increasing(speeds, "m/s", label="curve[{}] speed")
+    found = tuple(zip(speeds, forces, strict=True))
+    check_slopes(found, "curve.slope", label="curve")
+    return found
+
+
+def _slopes(rows: Sequence[tuple[float, float]]) -> list[float]:
+    """The slopes between rows but for steps; infinite where the quotient overflows."""
+    return [
+        (y1 - y0) / (x1 - x0) if x1 - x0 > abs(y1 - y0) * 1e-300 else copysign(inf, y1 - y0)
+        for (x0, y0), (x1, y1) in pairwise(rows)
+        if x1 > x0
+    ]
+
+
+def check_slopes(
+    rows: Sequence[tuple[float, float]], name: str, *, where: str = "", label: str
+) -> None:
+    """Refuse rows of which two lie so close that the slope between them is out of range."""
+    bounds = QUANTITIES[name].limits
+    slopes = _slopes(rows)
+    if all(bounds.lower <= slope <= bounds.upper for slope in slopes):
+        return
+    worst = max(slopes, key=abs)
+    unit = QUANTITIES[name].unit
+    shown = f"{worst:g} {unit}"
+    raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """A mass on a spring and a damper, rubbed by a plate and a fingertip.
+
+    Args:
+        mass: electromagnet and pin, kg, from 1e-12 to 1e12.
+        stiffness: of the spring, N/m, from 1e-12 to 1e12.
+        damping: viscous, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
+        plate: friction of the moving plate on the electromagnet.
+        finger: friction of the resting fingertip on the pin.
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    mass: float
+    stiffness: float
+    damping: float
+    plate: Contact
+    finger: Contact
+
+    def __post_init__(self) -> None:
+        """Validate, and keep plain floats."""
+        object.__setattr__(self, "mass", check("mass", self.mass))
+        object.__setattr__(self, "stiffness", check("stiffness", self.stiffness))
+        object.__setattr__(self, "damping", check("damping", self.damping))
+        ratios = QUANTITIES["damping_ratio"].limits
+        if (
+            float(f"{self.damping_ratio:.12g}") not in ratios
+        ):  # what a ratio was made from is rounded
+            required = f"such that the damping ratio is {ratios.words()}"
+            given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
+            raise ValueError(refusal("damping", required, given))
+        for label, contact in (("plate", self.plate), ("finger", self.finger)):
+            if not isinstance(contact, Contact):
+                raise ValueError(refusal(label, "a Contact", repr(contact)))
+            steepest = max(map(abs, _slopes(contact.curve or ())), default=0.0)
+            if steepest > ratios.upper * self._critical_damping:  # it acts as damping does
+                most = f"at most {brief(ratios.upper)} times critical damping"
+                raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
+
+    @classmethod
+    def with_damping_ratio(
+        cls,
+        *,
+        mass: float,
+        stiffness: float,
+        damping_ratio: float,
+        plate: Contact,
+        finger: Contact,
+    ) -> Drive:
+        """A drive whose damping is given as a fraction of the critical one, 0 or from 1e-11 to 1e6.
+
+        Raises:
+            ValueError: as for `Drive`.
+        """
+        mass, stiffness = check("mass", mass), check("stiffness", stiffness)
+        damping = 2.0 * check("damping_ratio", damping_ratio) * sqrt(mass) * sqrt(stiffness)
+        return cls(mass=mass, stiffness=stiffness, damping=damping, plate=plate, finger=finger)
+
+    @property
+    def natural_frequency(self) -> float:
+        """Undamped natural frequency sqrt(k/m), rad/s."""
+        return sqrt(self.stiffness / self.mass)
+
+    @property
+    def slowest_rate(self) -> float:
+        """Rate at which the slowest part of a free motion decays, 1/s; 0 without damping."""
+        ratio = self.damping_ratio
+        if ratio <= 1.0:
+            return ratio * self.natural_frequency
+        return self.natural_frequency / (ratio + sqrt(ratio - 1.0) * sqrt(ratio + 1.0))
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping over critical damping, b / (2 sqrt(m k)): below 1 the drive oscillates."""
+        return self.damping / self._critical_damping
+
+    @property
+    def _critical_damping(self) -> float:
+        return 2.0 * sqrt(self.mass) * sqrt(self.stiffness)
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A quantity over time: linear between its rows, constant before the first and after the last.
+
+    Two rows at one time are a step: from that time on the later one holds. A load may have steps, a
+    velocity may not.
+
+    Args:
+        times: s, from -1e12 to 1e12, none less than the one before, no three alike; at least one.
+        values: one for each time, SI, from -1e12 to 1e12, as is the rate between two rows.
+
+    Raises:
+        ValueError: lengths differ, times decrease, a number or a rate is out of range.
+    """
+
+    times: Sequence[float]
+    values: Sequence[float]
+
+    def __post_init__(self) -> None:
+        """Validate, and keep tuples of plain floats."""
+        times = _column(self.times, "profile.time", "times")
+        values = _column(self.values, "profile.value", "values")
+        if not times:
+            raise ValueError(refusal("times", "at least one", "none"))
+        if len(times) != len(values):
+            raise ValueError(refusal("values", f"as many as times, {len(times)}", len(values)))
+        check_times(times, label="times[{}]")
+        check_slopes(list(zip(times, values, strict=True)), "profile.rate", label="profile")
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "values", values)
+
+    @property
+    def changes(self) -> bool:
+        """Whether it takes more than one value."""
+        return any(value != self.values[0] for value in self.values)
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """The times at which its value jumps, s."""
+        return tuple(t for (t, y), (after, z) in pairwise(self.rows) if t == after and y != z)
+
+    @property
+    def rows(self) -> tuple[tuple[float, float], ...]:
+        """Its rows (time, value), SI."""
+        return tuple(zip(self.times, self.values, strict=True))
+
+    @overload
+    def __call__(self, t: float) -> float: ...
+    @overload
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
+    def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
+        """The value at time t (s): a float for a float, an array of the same shape for an array.
+
+        At a step it is the value after it.
+        """
+        if not isinstance(t, (float, int)):
+            import numpy as np
+
+            return np.interp(np.asarray(t, dtype=np.float64), self.times, self.values)
+        i = bisect_right(self.times, t)
+        if i == 0 or i == len(self.times):
+            return self.values[max(i - 1, 0)]
+        (t0, t1), (y0, y1) = self.times[i - 1 : i + 1], self.values[i - 1 : i + 1]
+        return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
+
+
+def _column(values: Iterable[float], name: str, label: str) -> tuple[float, ...]:
+    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
+    try:
+        listed = values.tolist() if hasattr(values, "tolist") else list(values)
+        bounds = QUANTITIES[name].limits
+        plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
+        if plain and min(listed) in bounds and max(listed) in bounds:
+            return tuple(listed)
+        return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(listed))
+    except TypeError:
+        raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None

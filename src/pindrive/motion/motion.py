@@ -1,0 +1,360 @@
+"""A simulated motion: closed forms that are evaluated at any time, events, and the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from pindrive import _core, lazy
+from pindrive.lazy import xr
+from pindrive.motion.drive import Drive, Profile
+from pindrive.motion.results import (
+    Certificate,
+    ContactName,
+    ContactUse,
+    CoreNumbers,
+    Ending,
+    Event,
+    Ledger,
+    Segment,
+    Side,
+    Table,
+    Transient,
+    events_of,
+    flattened,
+    segments_of,
+)
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import check, refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.motion.sensitivity import Sensitivity
+
+
+class Motion:
+    """What a pin does after its release, exactly: made by `simulate`.
+
+    Attributes:
+        drive: the drive that was simulated.
+        mouse_velocity: the plate's velocity in the housing, m/s, constant or a `Profile`.
+        displacement: x(0), m.
+        initial_velocity: x'(0), m/s.
+        plate_load: factor on the plate's friction, constant or a `Profile`.
+        skin_stretch: stretch of a compliant finger that gripped at the start, m; None: not given.
+        starts_with_plate: whether x'(0) is the plate's velocity because no other was given.
+        settling_band: half the band about the end that counts as settled, a part of
+            |x(0) - x_end|.
+        core_numbers: the same as the core takes them.
+        duration: s; the one asked for, or long enough to see the ending.
+    """
+
+    def __init__(
+        self,
+        numbers: CoreNumbers,
+        drive: Drive,
+        mouse_velocity: float | Profile,
+        displacement: float,
+        initial_velocity: float,
+        plate_load: float | Profile,
+        skin_stretch: float | None,
+        starts_with_plate: bool,
+        settling_band: float = _core.settling_band,
+    ) -> None:
+        self.core_numbers = numbers
+        self._core = core = _core.simulate(*numbers)
+        self.drive = drive
+        self.mouse_velocity = mouse_velocity
+        self.displacement = displacement
+        self.initial_velocity = initial_velocity
+        self.plate_load = plate_load
+        self.skin_stretch = skin_stretch
+        self.starts_with_plate = starts_with_plate
+        self.settling_band = settling_band
+        self.duration: float = core.duration(settling_band)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what was simulated: the rest follows from it."""
+        given = (self.mouse_velocity, self.displacement, self.initial_velocity, self.plate_load)
+        start = (self.skin_stretch, self.starts_with_plate, self.settling_band)
+        return Motion, (self.core_numbers, self.drive, *given, *start)
+
+    def __repr__(self) -> str:
+        """How it ends, and after how long, in a line."""
+        return (
+            f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
+            f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s>"
+        )
+
+    # ---- the motion over time --------------------------------------------------------------------
+
+    @overload
+    def position(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def position(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def position(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Deflection x of the pin from the spring's rest, m.
+
+        Args:
+            t: s, any shape, from 0 on; beyond `duration` where the ending is known.
+            side: which limit to take at an event.
+
+        Raises:
+            ValueError: a time is negative, NaN, or later than the motion is known.
+        """
+        return self._evaluate(self._core.position, t, side)
+
+    @overload
+    def velocity(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def velocity(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def velocity(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Velocity x' of the pin in the housing, m/s; arguments as for `position`."""
+        return self._evaluate(self._core.velocity, t, side)
+
+    @overload
+    def acceleration(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def acceleration(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def acceleration(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Acceleration x'' of the pin in the housing, m/s²; it jumps where friction does."""
+        return self._evaluate(self._core.acceleration, t, side)
+
+    @overload
+    def force(self, contact: ContactName, t: float, side: Side = ...) -> float: ...
+    @overload
+    def force(
+        self, contact: ContactName, t: ArrayLike, side: Side = ...
+    ) -> NDArray[np.float64]: ...
+    def force(
+        self, contact: ContactName, t: ArrayLike, side: Side = "right"
+    ) -> float | NDArray[np.float64]:
+        """Friction force of the plate or the finger on the pin, N; `t` and `side` as above."""
+        if contact not in ("plate", "finger"):
+            raise ValueError(refusal("contact", '"plate" or "finger"', repr(contact)))
+        of_contact = self._core.plate_force if contact == "plate" else self._core.finger_force
+        return self._evaluate(of_contact, t, side)
+
+    @overload
+    def stretch(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def stretch(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def stretch(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """Stretch of a compliant finger's skin, m, the way of x; 0 for a rigid finger.
+
+        The force on the skin is `-force("finger", t)`.
+        """
+        return self._evaluate(self._core.stretch, t, side)
+
+    @overload
+    def stretch_rate(self, t: float, side: Side = ...) -> float: ...
+    @overload
+    def stretch_rate(self, t: ArrayLike, side: Side = ...) -> NDArray[np.float64]: ...
+    def stretch_rate(self, t: ArrayLike, side: Side = "right") -> float | NDArray[np.float64]:
+        """How fast the skin of a compliant finger stretches, m/s."""
+        return self._evaluate(self._core.stretch_rate, t, side)
+
+    def plate_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
+        times = _times(t)
+        if isinstance(self.mouse_velocity, Profile):
+            return self.mouse_velocity(times)
+        return np.full_like(times, self.mouse_velocity)
+
+    def _evaluate(
+        self,
+        closed_form: Callable[[NDArray[np.float64], bool], NDArray[np.float64]],
+        t: ArrayLike,
+        side: Side,
+    ) -> float | NDArray[np.float64]:
+        if side not in ("left", "right"):
+            raise ValueError(refusal("side", '"left" or "right"', repr(side)))
+        times = _times(t)
+        known = self._core.known_until
+        good = (times >= 0.0) & (times <= known) & (times < inf)
+        if not good.all():
+            required = f"from 0 s to {known!r} s" if known < inf else "finite and at least 0 s"
+            raise ValueError(refusal("t", required, f"{float(times[~good].flat[0])!r} s"))
+        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
+        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+
+    # ---- what happened ---------------------------------------------------------------------------
+
+    @cached_property
+    def _table(self) -> Table:
+        return self._core.segments()
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
+        return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
+
+    @property
+    def segment_count(self) -> int:
+        """How many segments there are, without making them."""
+        return self._core.segment_count
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
+        return segments_of(self._table)
+
+    @cached_property
+    def status(self) -> str:
+        """Either "ok", or what stopped the simulation and what to do about it."""
+        if self._core.status == 0:
+            return "ok"
+        if self._core.status == 2:
+            return (
+                f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
+                "parameter by a little, and please report the drive"
+            )
+        return (
+            f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
+            "and damping are too weak to end the motion; give a shorter duration"
+        )
+
+    # ---- the numbers -----------------------------------------------------------------------------
+
+    @cached_property
+    def _numbers(self) -> dict[str, Any]:
+        return self._core.transient(self.duration, self.settling_band)
+
+    @cached_property
+    def transient(self) -> Transient:
+        """The transient's numbers, from the closed forms."""
+        numbers = {k: v for k, v in self._numbers.items() if k not in ("end_position", "amplitude")}
+        plate, finger = ContactUse(**numbers.pop("plate")), ContactUse(**numbers.pop("finger"))
+        return Transient(**numbers, plate=plate, finger=finger)
+
+    @cached_property
+    def ending(self) -> Ending:
+        """How the motion ends."""
+        return Ending.of(self._core, self._numbers)
+
+    def settling_time(self, band: float = _core.settling_band) -> float:
+        """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.
+
+        The band is above 0 and at most 1.
+        """
+        band = check("settling_band", band, label="band")
+        return float(self._core.transient(self.duration, band)["settling_time"])
+
+    @cached_property
+    def energy(self) -> Ledger:
+        """The energy ledger over [0, duration]."""
+        return Ledger(**self._core.ledger(self.duration))
+
+    def certificate(self) -> Certificate:
+        """The worst residual of each law over [0, duration], computed without the solver."""
+        return Certificate(**self._core.certificate(self.duration))
+
+    def plot(self) -> Figure:
+        """The motion over time and in the phase plane, as a figure that a notebook shows.
+
+        Returns:
+            A figure of 180 mm by 125 or, with skin, 150 mm; `figure.savefig(FILE)` writes it.
+        """
+        figure: Figure = lazy.call("pindrive.plot.motion:plot_motion", self)
+        return figure
+
+    # ---- for other programs ----------------------------------------------------------------------
+
+    def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
+        """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
+        if not count >= 2:
+            raise ValueError(refusal("count", "at least 2", repr(count)))
+        even = np.linspace(0.0, self.duration, count)
+        events = self._table["end"]
+        return np.union1d(even, events[events <= self.duration])
+
+    def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
+        """The motion over time, its events and its numbers, with units, as an xarray Dataset.
+
+        Args:
+            times: s, shape (n,); `sample_times()` unless given.
+
+        Returns:
+            Variables over `time` (right-hand limits) and over `event`; one scalar for each number;
+            the drive and the release in the attributes.
+        """
+        t = self.sample_times() if times is None else np.atleast_1d(_times(times))
+        if t.ndim != 1:
+            raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
+        made: xr.Dataset = lazy.call("pindrive.motion.dataset:dataset", self, t)
+        return made
+
+    def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:
+        """What was simulated, SI, by the names of the table of quantities.
+
+        A curve or an input that changes is its rows: (speed, force) or (time, value).
+        """
+        drive = self.drive
+        values: dict[str, float | tuple[tuple[float, float], ...]] = {
+            "mass": drive.mass,
+            "stiffness": drive.stiffness,
+            "damping": drive.damping,
+        }
+        for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
+            values[f"{name}.kinetic"] = contact.kinetic
+            values[f"{name}.static"] = contact.static_friction
+            if contact.curve:
+                values[f"{name}.curve"] = contact.curve
+        if not drive.finger.rigid:
+            values["finger.stiffness"] = drive.finger.stiffness
+        for name in ("mouse_velocity", "plate_load"):
+            given = getattr(self, name)
+            values[name] = given.rows if isinstance(given, Profile) else given
+        values |= {"displacement": self.displacement, "velocity": self.initial_velocity}
+        if self.skin_stretch is not None:
+            values["skin_stretch"] = self.skin_stretch
+        return values | {"duration": self.duration, "settling_band": self.settling_band}
+
+    def sensitivity(self, parameters: Sequence[str]) -> Sensitivity:
+        """Exact derivatives of the motion with respect to some of its parameters.
+
+        The motion is followed once more for each, in numbers that carry their derivative through
+        every event; nothing is differenced.
+
+        Args:
+            parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
+                `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
+                `plate_load` (all rows of a profile together), `displacement`, `velocity`,
+                `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
+                `mouse_velocity[2].value`, `plate_load[2].time`.
+
+        Returns:
+            The derivatives of position, velocity, events and all numbers, with NaN and the reason
+            where one does not exist.
+
+        Raises:
+            ValueError: a parameter is unknown, or this motion does not have it.
+        """
+        from pindrive.motion.sensitivity import Sensitivity
+
+        return Sensitivity(self, parameters)
+
+    def numbers(self) -> dict[str, float]:
+        """Every number of the transient, its ending and its energy, SI, by the table's names."""
+        groups = {
+            "transient": {**asdict(self.transient), "settled": self.transient.settled},
+            "ending": {k: v for k, v in asdict(self.ending).items() if k not in ("kind", "cycle")},
+            "energy": asdict(self.energy),
+        }
+        return dict(flattened(groups))
+
+
+def _times(t: ArrayLike) -> NDArray[np.float64]:
+    try:
+        return np.asarray(t, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(refusal("t", "numbers, in seconds", repr(t))) from None

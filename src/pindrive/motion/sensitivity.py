@@ -1,0 +1,379 @@
+"""Exact derivatives of a motion with respect to its parameters, and where they do not exist."""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from itertools import pairwise
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from pindrive import _core
+from pindrive.motion.results import flattened
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.results import CoreNumbers, Rows, Side
+
+__all__ = ["Sensitivity"]
+
+_STEP = 2.0**-26
+"""How far, as a part of a parameter, its neighbours lie that show whether a derivative exists."""
+_KINK = 1e-3
+"""A number whose change to a neighbour is off its derivative by this part jumps or bends there."""
+
+Place = tuple[int, ...]
+"""Where a number stands among the core's numbers (`CoreNumbers`)."""
+
+_PLACES: dict[str, Place] = {
+    "mass": (0,),
+    "stiffness": (1,),
+    "damping": (2,),
+    "plate_kinetic": (3, 0),
+    "plate_static": (3, 1),
+    "finger_kinetic": (4, 0),
+    "finger_static": (4, 1),
+    "finger_stiffness": (4, 2),
+    "mouse_velocity": (5,),
+    "plate_load": (6,),
+    "displacement": (7,),
+    "velocity": (8,),
+    "skin_stretch": (9,),
+}
+_TABLES: dict[str, Place] = {
+    "plate_curve": (3, 3),
+    "finger_curve": (4, 3),
+    "mouse_velocity": (5,),
+    "plate_load": (6,),
+}
+_ROW = re.compile(
+    r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
+    r"|(mouse_velocity|plate_load)\[(\d+)\]\.(time|value))"
+)
+
+
+class Simulated(Protocol):
+    """What is asked of a `Motion`, which itself hands out sensitivities."""
+
+    duration: float
+    settling_band: float
+    displacement: float
+    initial_velocity: float
+    starts_with_plate: bool
+    core_numbers: CoreNumbers
+    drive: Drive
+
+    def position(self, t: ArrayLike, side: Side) -> object: ...
+    def velocity(self, t: ArrayLike, side: Side) -> object: ...
+    def stretch(self, t: ArrayLike, side: Side) -> object: ...
+
+
+class Sensitivity:
+    """Derivatives of a motion, SI units of the quantity per SI unit of the parameter.
+
+    Attributes:
+        parameters: their names, in the order of the first axis of every array.
+        gaps: for each parameter whose smallest change gives the motion another course, from when
+            on, and why; derivatives after that time do not exist and are NaN.
+    """
+
+    def __init__(self, motion: Simulated, parameters: Sequence[str]) -> None:
+        if isinstance(parameters, str) or not parameters:
+            raise ValueError(refusal("parameters", "a list of names", repr(parameters)))
+        self._motion = motion
+        self.parameters = tuple(parameters)
+        self._derivatives = tuple(_Derivative(motion, given) for given in parameters)
+        self.gaps = {d.name: d.gap for d in self._derivatives if d.gap}
+
+    def __repr__(self) -> str:
+        """The parameters, and those without all derivatives."""
+        return f"<Sensitivity to {', '.join(self.parameters)}; gaps: {self.gaps or 'none'}>"
+
+    def position(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """∂x/∂p at fixed times t (s), shape (parameters, *t.shape)."""
+        self._motion.position(t, side)  # refuses what the motion would
+        return self._evaluate("position", t, side)
+
+    def velocity(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """∂x'/∂p at fixed times t (s), shape (parameters, *t.shape)."""
+        self._motion.velocity(t, side)
+        return self._evaluate("velocity", t, side)
+
+    def stretch(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
+        """The derivative of the skin's stretch at fixed times t (s), (parameters, *t.shape)."""
+        self._motion.stretch(t, side)
+        return self._evaluate("stretch", t, side)
+
+    def _evaluate(self, quantity: str, t: ArrayLike, side: Side) -> NDArray[np.float64]:
+        times = np.asarray(t, dtype=np.float64)
+        flat = np.ascontiguousarray(times).ravel()
+        rows = []
+        for d in self._derivatives:
+            values = getattr(d.core, quantity)(flat, side == "right")
+            rows.append(np.where(flat < d.course_until, values, nan))
+        return np.array(rows).reshape(len(rows), *times.shape)
+
+    @cached_property
+    def event_times(self) -> NDArray[np.float64]:
+        """∂t/∂p of each of the motion's events, shape (parameters, events)."""
+        table = _core.simulate(*self._motion.core_numbers).segments()
+        plate, finger = table["plate_event"], table["finger_event"]
+        # As `Motion.events` lists them: two at one instant are one if they are alike.
+        count = np.where(plate == finger, plate != 0, (plate != 0) + (finger != 0).astype(int))
+        return np.array(
+            [
+                np.repeat(
+                    np.where(table["end"] < d.course_until, d.core.segments()["end"], nan), count
+                )
+                for d in self._derivatives
+            ]
+        )
+
+    @cached_property
+    def numbers(self) -> dict[str, dict[str, float]]:
+        """The derivative of every number of `Motion.numbers()`: by its name, then by parameter."""
+        each = {d.name: d.numbers() for d in self._derivatives}
+        names = next(iter(each.values()))
+        return {name: {p: values[name] for p, values in each.items()} for name in names}
+
+
+class _Derivative:
+    """The derivative of a motion along one parameter, and how far it exists.
+
+    It exists while the motions of two close neighbours, simulated in plain numbers, go the same
+    way. Where they take another course, the motion stands on the edge between two.
+    """
+
+    def __init__(self, motion: Simulated, name: str) -> None:
+        numbers = motion.core_numbers
+        along, size = _direction(motion, name)
+        self.name, self._size = name, size
+        self._motion = motion
+        self._own = _core.simulate(*numbers)
+        self.core = _core.differentiate(numbers, along)
+        self._neighbours: list[tuple[float, _core.Motion]] = []
+        self.course_until, self._same_ending, self.gap = inf, True, ""
+        for step in (_STEP * size, -_STEP * size):
+            there = _mapped(lambda x, d, h=step: x + h * d if d else x, numbers, along)
+            if _in_range(there):
+                self._compare(step, _core.simulate(*there))
+
+    def _compare(self, step: float, neighbour: _core.Motion) -> None:
+        self._neighbours.append((step, neighbour))
+        parting = _parting(self._own, neighbour)
+        self.course_until = min(self.course_until, parting)
+        way = f"when it is {'greater' if step > 0 else 'smaller'} by {abs(step):.1e}"
+        if parting <= self._motion.duration:
+            self.gap = f"from {self.course_until:.6g} s on: other events {way}"
+        elif self._own.end != neighbour.end:
+            self._same_ending = False
+            self.gap = self.gap or f"in what depends on the ending: it is another {way}"
+
+    def numbers(self) -> dict[str, float]:
+        """The derivatives of the numbers, NaN where one does not exist."""
+        duration = self._motion.duration
+        band = self._motion.settling_band
+        at, slopes = _numbers(self._own, duration, band), _numbers(self.core, duration, band)
+        around = [(step, _numbers(core, duration, band)) for step, core in self._neighbours]
+
+        def exists(name: str) -> bool:
+            known = at.get(_KNOWN_AT.get(name, ""), duration)
+            ends = name.startswith("ending.") or name in _OF_THE_ENDING
+            if not (isfinite(at[name]) and known < self.course_until):
+                return False
+            if ends and not self._same_ending:
+                return False
+            # The neighbours' numbers lie where the derivative says that they do.
+            size = max(abs(slopes[name]), abs(at[name] / self._size))
+            changes = [(numbers[name] - at[name]) / step for step, numbers in around]
+            return all(abs(change - slopes[name]) <= _KINK * size for change in changes)
+
+        return {name: slope if exists(name) else nan for name, slope in slopes.items()}
+
+
+def _parting(one: _core.Motion, other: _core.Motion) -> float:
+    """From when on two motions go through other modes and events, s; infinite if they never do."""
+    a, b = one.segments(), other.segments()
+    common = min(len(a["end"]), len(b["end"]))
+
+    def first(edge: str, *names: str) -> float:
+        differ = np.any([a[name][:common] != b[name][:common] for name in names], axis=0)
+        # Of two cycles, one may have been recognised a round later.
+        if edge == "end" and one.cycle_begin == other.cycle_begin == 0.0:
+            differ[-1] |= len(a["end"]) != len(b["end"])
+        at = np.flatnonzero(differ)
+        return float(min(a[edge][at[0]], b[edge][at[0]])) if at.size else inf
+
+    return min(
+        first("begin", "plate", "finger", "plate_region", "finger_region"),
+        first("end", "plate_event", "finger_event"),
+    )
+
+
+_OF_THE_ENDING = ("transient.settling_time", "transient.rest_time", "transient.last_event_time")
+
+_KNOWN_AT = {
+    f"transient.{name}": f"transient.{time}"
+    for name, time in {
+        "peak_displacement": "peak_time",
+        "peak_time": "peak_time",
+        "trough_displacement": "trough_time",
+        "trough_time": "trough_time",
+        "swing": "trough_time",
+        "return_velocity": "trough_time",
+        "return_velocity_time": "trough_time",
+        "first_reversal_time": "first_reversal_time",
+    }.items()
+}
+"""The time from which a number no longer depends on the motion; of the others, its duration."""
+
+
+def _numbers(
+    core: _core.Motion | _core.Derivative, duration: float, band: float
+) -> dict[str, float]:
+    """The numbers of a motion over a fixed duration, by their names in `Motion.numbers()`."""
+    transient = core.transient(duration, band)
+    ending = {
+        "position": transient.pop("end_position"),
+        "steady_since": core.steady_since,
+        "amplitude": transient.pop("amplitude"),
+        "period": core.period,
+    }
+    energy = core.ledger(duration)
+    del energy["residual"]  # nothing but rounding
+    groups = {"transient": transient, "ending": ending, "energy": energy}
+    return dict(flattened(groups))
+
+
+# ---- parameters ----------------------------------------------------------------------------------
+
+
+def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
+    """How the core's numbers change with a parameter, and the size of the parameter."""
+    numbers = motion.core_numbers
+    places = _places(numbers, given)
+    size = max(abs(_entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
+    for contact, (kinetic, static, _, curve) in ((3, numbers[3]), (4, numbers[4])):
+        first_row = [(contact, 3, 0, 1)] if curve else []
+        if not {(contact, 0), *first_row}.isdisjoint(places):
+            # What is one number to the user: kinetic friction, the curve's force at rest, and
+            # static friction that is not greater.
+            tied = [(contact, 1)] if static == kinetic else []
+            places = [(contact, 0), *first_row, *tied]
+    along = _mapped(lambda _: 0.0, numbers)
+    for place in places:
+        along = _replaced(along, place, 1.0)
+    if motion.starts_with_plate:
+        along = _replaced(along, (8,), _start_slope(numbers[5], along[5]) + along[8])
+    return along, size
+
+
+def _places(numbers: CoreNumbers, given: str) -> list[Place]:
+    """Where the numbers stand that a parameter is."""
+    name = re.sub(r"^(plate|finger)\.", r"\1_", given)  # a device file's key is its name too
+    if row := _ROW.fullmatch(name):
+        table, index, column = (group for group in row.groups() if group)
+        rows = _entry(numbers, _TABLES[table])
+        if int(index) >= len(rows):
+            one = f"one of {counted(len(rows), 'row')} of {table}"
+            raise ValueError(refusal("parameter", one, name))
+        place = (*_TABLES[table], int(index), int(column in ("force", "value")))
+        if column != "time":
+            return [place]
+        # The time of a step is that of both its rows.
+        time = rows[int(index)][0]
+        return [(*_TABLES[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
+    if name not in _PLACES:
+        known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"
+        raise ValueError(refusal("parameter", known, repr(given)))
+    place = _PLACES[name]
+    if name in _TABLES:
+        return [(*place, i, 1) for i in range(len(_entry(numbers, place)))]
+    if not isfinite(_entry(numbers, place)):
+        raise ValueError(refusal("parameter", "one that this motion was given", repr(given)))
+    return [place]
+
+
+def _start_slope(rows: Rows, along: Rows) -> float:
+    """How the plate's velocity at t = 0 changes along a direction of its rows."""
+    times, values = np.transpose(rows)
+    d_times, d_values = np.transpose(along)
+    i = int(np.searchsorted(times, 0.0, side="right"))
+    slope = (values[i] - values[i - 1]) / (times[i] - times[i - 1]) if 0 < i < len(rows) else 0.0
+    return float(np.interp(0.0, times, d_values - slope * d_times))
+
+
+def _natural_size(motion: Simulated, place: Place) -> float:
+    """A size, in this motion, for a parameter that is zero."""
+    drive, omega = motion.drive, motion.drive.natural_frequency
+    speeds = (abs(v) for _, v in motion.core_numbers[5])
+    fastest = max(abs(motion.initial_velocity), *speeds)
+    length = max(abs(motion.displacement), fastest / omega) or 1e-3
+    match place:
+        case (0 | 1 | 2,):
+            return drive.mass * omega
+        case (5, _, 1) | (8,) | (3 | 4, 3, _, 0):
+            return length * omega
+        case (6, _, 1):
+            return 1.0
+        case (5 | 6, _, 0):
+            return 1.0 / omega
+        case (7 | 9,):
+            return length
+    return length * drive.stiffness
+
+
+def _in_range(numbers: CoreNumbers) -> bool:
+    """Whether the core may be asked for a motion; damping may be negative there."""
+
+    def increase(rows: Rows) -> bool:
+        return all(a[0] < b[0] for a, b in pairwise(rows))
+
+    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_, stretch, _ = numbers
+    contacts = all(
+        static >= kinetic >= 0.0
+        and give > 0.0
+        and increase(curve)
+        and all(f >= 0 for _, f in curve)
+        for kinetic, static, give, curve in (plate, finger)
+    )
+    return (
+        mass > 0.0
+        and stiffness > 0.0
+        and contacts
+        and increase(mouse_velocity)
+        and all(before[0] <= after[0] for before, after in pairwise(plate_load))
+        and all(load >= 0.0 for _, load in plate_load)
+        and not abs(stretch) * finger[2] > finger[1]
+    )
+
+
+# ---- nested numbers ------------------------------------------------------------------------------
+
+
+def _entry(numbers: Any, place: Place) -> Any:
+    for i in place:
+        numbers = numbers[i]
+    return numbers
+
+
+def _replaced(numbers: Any, place: Place, value: float) -> Any:
+    if not place:
+        return value
+    i, *rest = place
+    return (*numbers[:i], _replaced(numbers[i], tuple(rest), value), *numbers[i + 1 :])
+
+
+def _mapped(f: Callable[..., float], *numbers: Any) -> Any:
+    """The values of f at the corresponding numbers of several, nested like each of them."""
+    if isinstance(numbers[0], (tuple, list)):
+        return tuple(_mapped(f, *parts) for parts in zip(*numbers, strict=True))
+    return f(*numbers)

@@ -1,0 +1,423 @@
+"""The picture of a motion: displacement, velocity and acceleration over time, phase portrait.
+
+Drawn from the closed forms, phase by phase with the limits at both its ends, so that a corner is a
+corner and a jump is a jump. No global state of matplotlib is used or left behind.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from io import BytesIO
+from itertools import groupby
+from math import inf, isfinite, isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib.style
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from pindrive.motion.drive import Profile
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, save
+from pindrive.plot.trace import MM, Trace
+from pindrive.quantities.table import QUANTITIES, digits, duration, short
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from pindrive.motion.motion import Motion
+
+
+def write_figure(motion: Motion, path: Path, format: str) -> None:
+    """Draw the motion as "png", "svg" or "pdf"."""
+    file = BytesIO()
+    save(plot_motion(motion), file, format)
+    path.write_bytes(file.getvalue())
+
+
+_TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
+_GRIP_TINT: Final = 0.3
+_MARKER: Final = {"stick": "s", "slip": "^", "cross": "x"}
+
+_MOST_MARKERS = 100
+"""With more events their markers would hide the curve."""
+
+
+def plot_motion(motion: Motion) -> Figure:
+    """Draw a motion: x, v and a over time, and v over x, for a page 180 mm wide.
+
+    With a compliant finger also the stretch of its skin.
+
+    Args:
+        motion: any motion; of a very long one the first phases are drawn, and it says so.
+
+    Returns:
+        A figure that belongs to nobody else: `save` it, or show it in a notebook.
+    """
+    with matplotlib.style.context(STYLE, after_reset=True):
+        trace = Trace.of(motion)
+        skin = not motion.drive.finger.rigid
+        height = 150 if skin else 125
+        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
+        rows = columns[0].subgridspec(3 + skin, 1)
+        x = figure.add_subplot(rows[0], label="x")
+        v = figure.add_subplot(rows[1], label="v", sharex=x)
+        a = figure.add_subplot(rows[2], label="a", sharex=x)
+        s = figure.add_subplot(rows[3], label="s", sharex=x) if skin else None
+        rows = columns[1].subgridspec(2, 1, height_ratios=(2.6, 1.0))
+        portrait = figure.add_subplot(rows[0], label="portrait")
+        key = figure.add_subplot(rows[1], label="key")
+        _draw_over_time(motion, trace, x, v, a)
+        if s:
+            _draw_skin(trace, a, s)
+        _draw_portrait(motion, trace, portrait)
+        _draw_key(motion, trace, key)
+        figure.align_ylabels((x, v, a, s) if s else (x, v, a))
+        figure.suptitle(
+            f"{outcome(motion)}\n{parameters(motion)}", x=0.008, ha="left", fontsize=8.0
+        )
+    return figure
+
+
+# ---- the panels ----------------------------------------------------------------------------------
+
+
+def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> None:
+    panels = {x: "displacement $x$ (mm)", v: "velocity $v$ (mm/s)", a: "acceleration $a$ (m/s²)"}
+    for axes, label in panels.items():
+        axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+        for mode in ("carried", "resting"):
+            _shade(axes, trace.stuck(mode), mode, _TINT[mode])
+        axes.set_ylabel(label)
+        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is a)
+    x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
+    v.plot(trace.t, trace.v, color=PALETTE["curve"], gid="curve")
+    a.plot(trace.broken(trace.t), trace.broken(trace.a), color=PALETTE["curve"], gid="curve")
+    left, right = trace.a[trace.starts[1:] - 1], trace.a[trace.starts[1:]]
+    a.vlines(trace.t[trace.starts[1:]], left, right, color=PALETTE["curve"], lw=0.5, gid="jumps")
+    _mark_events(trace, x, [(e.time + d) * trace.scale for e, d in trace.events], "position")
+    _mark_events(trace, v, [(e.time + d) * trace.scale for e, d in trace.events], "velocity")
+    _draw_plate(motion, v, trace)
+    _mark_settling(motion, trace, x)
+    _mark_extremes(motion, trace, x)
+    x.set_ylim(_room(trace.x, 0.0))
+    v.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
+    a.set_ylim(_room(trace.a, 0.0))
+    a.set_xlabel(f"time after release ({trace.unit})")
+    a.set_xlim(0.0, trace.end * trace.scale)
+
+
+def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
+    """The stretch of a compliant finger's skin, and where it grips the pin."""
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+    _shade(axes, trace.gripping(), "gripping", _GRIP_TINT)
+    axes.plot(trace.t, trace.s, color=PALETTE["curve"], gid="curve")
+    axes.set_ylim(_room(trace.s, 0.0))
+    axes.set_ylabel("skin stretch $s$ (µm)")
+    axes.set_xlabel(above.get_xlabel())
+    above.set_xlabel("")
+    above.tick_params(labelbottom=False)
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+
+
+def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
+    """Tint stretches of time (begin, length) over the height of a panel."""
+    axes.broken_barh(
+        spans,
+        (0.0, 1.0),
+        transform=axes.get_xaxis_transform(),
+        color=PALETTE[name],
+        alpha=tint,
+        lw=0.0,
+        zorder=0.5,
+        gid=name,
+    )
+
+
+def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+    for mode in ("carried", "resting"):
+        axes.plot(
+            trace.only(mode, trace.x),
+            trace.only(mode, trace.v),
+            color=PALETTE[mode],
+            alpha=_TINT[mode],
+            lw=8.0,
+            solid_capstyle="round",
+            zorder=0.5,
+            gid=mode,
+        )
+    axes.plot(trace.x, trace.v, color=PALETTE["curve"], gid="curve")
+    _mark_events(trace, axes, [e.position * MM for e, _ in trace.events], "velocity")
+    if not isinstance(motion.mouse_velocity, Profile):
+        _draw_plate(motion, axes, trace)
+    _mark_ends(motion, trace, axes)
+    axes.set_xlabel("displacement $x$ (mm)")
+    axes.set_ylabel("velocity $v$ (mm/s)")
+    axes.set_xlim(_room(trace.x, margin=0.1))
+    axes.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+
+
+def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
+    """What the signs mean: those that occur."""
+    axes.set_axis_off()
+    handles: list[Artist] = []
+    notes: list[str] = []
+    kinds = {event.kind for event, _ in trace.events}
+    if len(trace.events) <= _MOST_MARKERS:
+        handles += [
+            Line2D([], [], **_marker(kind), label=NAME[kind]) for kind in _MARKER if kind in kinds
+        ]
+    else:
+        notes.append(f"{len(trace.events)} events: too many to mark")
+    if trace.end < motion.duration:
+        notes.append(f"drawn: the first {duration(trace.end)} of {duration(motion.duration)}")
+    handles += [
+        Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=stuck_name(motion, mode))
+        for mode in _TINT
+        if trace.stuck(mode)
+    ]
+    if not motion.drive.finger.rigid and trace.gripping():
+        colour = PALETTE["gripping"]
+        handles.append(Patch(color=colour, alpha=_GRIP_TINT, lw=0.0, label=NAME["gripping"]))
+    if _band(motion) > 0.0:
+        part = f"{100 * motion.settling_band:g} %"
+        label = rf"$x_\mathrm{{end}}$ ± {part} of $|x_0 - x_\mathrm{{end}}|$"
+        handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
+    handles += [Line2D([], [], ls="none", label=note) for note in notes]
+    axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
+
+
+# ---- the signs -----------------------------------------------------------------------------------
+
+
+def _room(values: NDArray[np.float64], *others: float, margin: float = 0.15) -> tuple[float, float]:
+    """Limits of an axis that shows all these with a margin; rounding is not blown up."""
+    low, high = min(float(values.min()), *others, inf), max(float(values.max()), *others, -inf)
+    span = high - low
+    if span <= 1e-9 * max(abs(low), abs(high)):
+        span = max(abs(low), abs(high)) or 1.0
+    return low - margin * span, high + margin * span
+
+
+def _marker(kind: str) -> dict[str, Any]:
+    fill = "white" if kind == "slip" else PALETTE[kind]
+    return {"ls": "none", "marker": _MARKER[kind], "color": PALETTE[kind], "mfc": fill, "mew": 0.9}
+
+
+def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -> None:
+    if len(trace.events) > _MOST_MARKERS:
+        return
+    for kind in _MARKER:
+        chosen = [i for i, (event, _) in enumerate(trace.events) if event.kind == kind]
+        if chosen:
+            up = [getattr(trace.events[i][0], ordinate) * MM for i in chosen]
+            axes.plot([across[i] for i in chosen], up, **_marker(kind), zorder=3, gid=kind)
+
+
+def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
+    dashed: dict[str, Any] = {
+        "color": PALETTE["plate"],
+        "lw": 0.8,
+        "ls": (0, (5, 3)),
+        "zorder": 1,
+        "gid": "plate",
+    }
+    level = float(motion.plate_velocity(trace.end)) * MM
+    if isinstance(motion.mouse_velocity, Profile):
+        rows = [t for t in motion.mouse_velocity.times if 0.0 < t < trace.end]
+        times = np.array([0.0, *rows, trace.end])
+        axes.plot(times * trace.scale, motion.plate_velocity(times) * MM, **dashed)
+    else:
+        axes.axhline(level, **dashed)
+    _note_level(axes, level, r"plate $v_\mathrm{p}$")
+
+
+def _plate_range(motion: Motion, trace: Trace) -> tuple[float, float]:
+    levels = motion.plate_velocity(trace.t / trace.scale) * MM
+    return float(levels.min()), float(levels.max())
+
+
+def _note_level(axes: Axes, level: float, text: str) -> None:
+    """Name a horizontal line where it meets the right edge."""
+    axes.annotate(
+        text,
+        (1.0, level),
+        (2, 0),
+        xycoords=axes.get_yaxis_transform(),
+        textcoords="offset points",
+        va="center",
+        fontsize=SMALL,
+        annotation_clip=True,  # a level that is not on the axis takes no room beside it
+    )
+
+
+def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
+    """Start and end of the portrait; a steady oscillation has no end."""
+    ends = {0: "start"}
+    if motion.ending.kind == "moving" or trace.end < motion.duration:
+        ends[-1] = duration(trace.end)
+    elif motion.ending.kind in ("resting", "decaying"):
+        ends[-1] = "end"
+    moving = trace.v[trace.v != 0.0]
+    comes_from_below = len(moving) > 0 and moving[-1] < 0.0
+    for i, text in ends.items():
+        place = (float(trace.x[i]), float(trace.v[i]))
+        fill = "white" if i == 0 else "black"
+        axes.plot(*place, "o", color="black", mfc=fill, mew=0.8, ms=3.5, zorder=4, gid="ends")
+        above = i == 0 or comes_from_below
+        axes.annotate(
+            text, place, (4, 4 if above else -9), textcoords="offset points", fontsize=SMALL
+        )
+
+
+def _band(motion: Motion) -> float:
+    """Half the band that counts as settled, mm; 0 where there is none to show."""
+    if motion.ending.kind not in ("resting", "decaying"):
+        return 0.0
+    return motion.settling_band * abs(motion.displacement - motion.ending.position) * MM
+
+
+def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
+    middle, time = motion.ending.position * MM, motion.transient.settling_time
+    if isnan(middle):
+        return
+    if motion.ending.kind == "steady":
+        axes.axhline(middle, color=GREY, lw=0.7, ls=":", zorder=1, gid="middle")
+    for level in {middle - _band(motion), middle + _band(motion)} - {middle}:
+        axes.axhline(level, color=GREY, lw=0.7, ls=":", zorder=1, gid="band")
+    _note_level(axes, middle, r"$x_\mathrm{end}$")
+    if 0.0 < time <= trace.end:
+        word = "steady from" if motion.ending.kind == "steady" else "settled at"
+        axes.axvline(time * trace.scale, color=GREY, lw=0.7, zorder=1, gid="settling")
+        side = ("left", "center", "right")[(time > 0.2 * trace.end) + (time > 0.8 * trace.end)]
+        axes.annotate(
+            f"{word} {duration(time)}",
+            (time * trace.scale, 1.0),
+            (0, 1),
+            xycoords=axes.get_xaxis_transform(),
+            textcoords="offset points",
+            ha=side,
+            va="bottom",
+            fontsize=SMALL,
+        )
+
+
+def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
+    numbers = motion.transient
+    for name, up in (("peak", _outward(motion)), ("trough", not _outward(motion))):
+        time, place = getattr(numbers, f"{name}_time"), getattr(numbers, f"{name}_displacement")
+        if not time <= trace.end or isnan(numbers.swing):
+            continue
+        late = time > 0.65 * trace.end
+        axes.annotate(
+            f"{name} {short('displacement', place)}",
+            (time * trace.scale, place * MM),
+            (-4 if late else 4, 1 if up else -2),
+            textcoords="offset points",
+            ha="right" if late else "left",
+            va="bottom" if up else "top",
+            fontsize=SMALL,
+        )
+
+
+def _outward(motion: Motion) -> bool:
+    """Whether the peak is above the trough."""
+    return not motion.transient.peak_displacement < motion.transient.trough_displacement
+
+
+NAME: Final = {
+    "stick": "sticks",
+    "slip": "breaks loose",
+    "cross": "reverses without sticking",
+    "carried": "carried by the plate",
+    "resting": "resting on the finger",
+    "gripping": "skin grips the pin",
+}
+
+_LINE: Final = 118
+"""Characters that fit side by side above the panels."""
+_MOST_TURNS: Final = 4
+"""Of a curve or an input that changes, how many values are told."""
+
+
+def _values(given: float | Profile) -> Sequence[float]:
+    return given.values if isinstance(given, Profile) else (given,)
+
+
+def _course(name: str, values: Sequence[float]) -> str:
+    """One value, or those that it takes in turn: "60 → 0 mm/s"; of many the first and the last."""
+    turns = [value for value, _ in groupby(values)]
+    if len(turns) > _MOST_TURNS:
+        turns = [turns[0], turns[-1]]
+        return " … ".join(short(name, value) for value in turns)
+    scale = QUANTITIES[name].display_scale
+    return " → ".join([*(digits(value * scale) for value in turns[:-1]), short(name, turns[-1])])
+
+
+def stuck_name(motion: Motion, mode: str) -> str:
+    """What a phase stuck in this way is called."""
+    if mode == "resting" and (
+        isinstance(motion.mouse_velocity, Profile) or not motion.drive.finger.rigid
+    ):
+        return "at rest"
+    if motion.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
+        return NAME[mode]
+    on_finger = "" if motion.drive.finger.frictionless else "finger and "
+    return f"at rest on {on_finger}plate"
+
+
+def outcome(motion: Motion) -> str:
+    """How it ends, how long the transient lasts and how far it swings."""
+    end, numbers = motion.ending, motion.transient
+    place = short("displacement", end.position)
+    words = {
+        "resting": f"At rest at {place} since {duration(numbers.rest_time)}",
+        "decaying": f"Decays towards {place}",
+        "steady": f"Steady {end.cycle} oscillation of ±{short('displacement', end.amplitude)}",
+        "moving": f"Still moving after {duration(motion.duration)}",
+    }[end.kind]
+    if end.kind == "steady" and isfinite(end.period):
+        words += f", period {duration(end.period)}"
+    if numbers.settled:
+        words += f"; settling time {duration(numbers.settling_time)}"
+    if not isnan(numbers.swing):
+        words += f"; swing {short('displacement', numbers.swing)}"
+    return words
+
+
+def parameters(motion: Motion) -> str:
+    """The drive and its release."""
+    drive, v_plate = motion.drive, motion.mouse_velocity
+    words = [
+        f"$m$ = {short('mass', drive.mass)}",
+        f"$k$ = {short('stiffness', drive.stiffness)}",
+        f"$ζ$ = {drive.damping_ratio:.4g}",
+    ]
+    for contact, index in ((drive.plate, "p"), (drive.finger, "f")):
+        kinetic, static = contact.kinetic, contact.static_friction
+        more = "" if static == kinetic else f" (static {short('plate.static', static)})"
+        along = [force for _, force in contact.curve or ()] or [kinetic]
+        words.append(rf"$F_\mathrm{{{index}}}$ = {_course('plate.kinetic', along)}{more}")
+    if not drive.finger.rigid:
+        words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
+    if isinstance(motion.plate_load, Profile) or motion.plate_load != 1.0:
+        words.append(f"$λ$ = {_course('plate_load', _values(motion.plate_load))}")
+    words.append(rf"$v_\mathrm{{p}}$ = {_course('mouse_velocity', _values(v_plate))}")
+    words.append(f"$x_0$ = {short('displacement', motion.displacement)}")
+    if motion.initial_velocity != float(motion.plate_velocity(0.0)):
+        words.append(f"$v_0$ = {short('velocity', motion.initial_velocity)}")
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]}, {word}"
+        if len(re.sub(r"[$\\{}_]|mathrm", "", longer)) <= _LINE:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return ",\n".join(lines)

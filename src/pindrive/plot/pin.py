@@ -1,0 +1,254 @@
+"""One pin's history in detail: what it saw, its magnet, its motion, and what the skin felt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from pindrive.device.trajectory import Course
+from pindrive.evaluation.line_crossings import printed
+from pindrive.plot.style import GREY, PALETTE, SMALL
+from pindrive.quantities.table import check_whole
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.gridspec import SubplotSpec
+    from numpy.typing import NDArray
+
+    from pindrive.device.scanning import PinScan
+    from pindrive.evaluation.results import Judgement, Line
+
+MS: Final = 1e3
+MM: Final = 1e3
+LINES: Final = 4
+"""Shown in the history, at most."""
+LONGEST: Final = 1.2
+"""Of the history, s, where it holds more than one line."""
+BEFORE: Final = 0.04
+AFTER: Final = 0.16
+"""Before the first line and after the last, s."""
+MARKERS: Final = {"stick": "s", "slip": "^", "cross": "x"}
+NAMES: Final = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A part of a scan: one pin, for a while."""
+
+    pin: int
+    begin: float
+    end: float
+    """s, on the path's clock."""
+
+
+def moment(judgement: Judgement, pin: int | None = None) -> Moment:
+    """A part worth a closer look: a few lines that passed under one pin.
+
+    Args:
+        judgement: of the scan.
+        pin: its number; None: of the pins that were shown most lines the nearest to the middle.
+
+    Raises:
+        ValueError: there is no such pin.
+    """
+    scan = judgement.scan
+    count = len(scan.pins)
+    if pin is not None:
+        pin = check_whole(pin, "pin", 0, count - 1)
+    else:
+        shown = np.bincount([line.pin for line in judgement.shown], minlength=count)
+        middle = np.hypot(*np.array(scan.device.array.places).T)
+        pin = int(np.lexsort((middle, -shown))[0])
+    lines = [line for line in judgement.lines if line.pin == pin]
+    begin, end = scan.path.begin, scan.path.end
+    if not lines:
+        return Moment(pin, begin, min(end, begin + LONGEST))
+    first, last = _closest(lines)
+    return Moment(
+        pin, max(begin, lines[first].begin.time - BEFORE), min(end, lines[last].end.time + AFTER)
+    )
+
+
+def _closest(lines: list[Line]) -> tuple[int, int]:
+    """The first and the last of the most lines that follow each other in a short time."""
+    best = (0, 0)
+    for first in range(len(lines)):
+        last = first
+        while (
+            last + 1 < min(len(lines), first + LINES)
+            and lines[last + 1].end.time - lines[first].begin.time < LONGEST
+        ):
+            last += 1
+        if last - first > best[1] - best[0]:
+            best = (first, last)
+    return best
+
+
+def draw_history(judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec) -> None:
+    """Draw it: four panels over one time axis, with a key."""
+    scan = judgement.scan
+    pin = scan.pins[chosen.pin]
+    rows = place.subgridspec(5, 1, height_ratios=(0.8, 0.8, 2.0, 1.2, 0.22))
+    seen = figure.add_subplot(rows[0], label="seen")
+    pull = figure.add_subplot(rows[1], label="pull", sharex=seen)
+    x = figure.add_subplot(rows[2], label="x", sharex=seen)
+    force = figure.add_subplot(rows[3], label="force", sharex=seen)
+    key = figure.add_subplot(rows[4], label="key")
+    t = _times(pin, chosen)
+    ms = MS * (t - chosen.begin)
+    for axes in (seen, pull, x, force):
+        _draw_bands(judgement, chosen, axes)
+        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is force)
+    _draw_seen(judgement, chosen, seen, t, ms)
+    pull.plot(ms, scan.device.magnet.pull(pin.current(t)), color=PALETTE["curve"], gid="pull")
+    pull.set_ylabel("pull (N)")
+    pull.set_ylim(0.0, 1.15 * scan.device.magnet.hold_force)
+    kinds = _draw_motion(pin, chosen, x, t, ms)
+    _draw_force(judgement, pin, force, t, ms)
+    number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
+    seen.set_title(
+        f"pin{number} from {chosen.begin:.3f} s on, along the green line above",
+        loc="left",
+        fontsize=SMALL + 0.5,
+        pad=3.0,
+        color=PALETTE["slip"],
+    )
+    force.set_xlabel("time (ms)")
+    force.set_xlim(0.0, MS * (chosen.end - chosen.begin))
+    figure.align_ylabels((seen, pull, x, force))
+    _draw_key(key, kinds)
+
+
+def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
+    """Close together, with every event and turning point, and just before each."""
+    even = np.linspace(chosen.begin, chosen.end, 3000)
+    knots = pin.begin + Course(pin.motion).knots
+    knots = knots[(knots > chosen.begin) & (knots < chosen.end)]
+    return np.union1d(even, np.concatenate([knots, np.nextafter(knots, -np.inf)]))
+
+
+def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
+    """Where a printed line is under the pin's spot."""
+    spans = [
+        (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))
+        for line in printed(judgement.scan)[chosen.pin]
+        if line.end > chosen.begin and line.begin < chosen.end
+    ]
+    axes.broken_barh(
+        spans,
+        (0.0, 1.0),
+        transform=axes.get_xaxis_transform(),
+        color="0.86",
+        lw=0.0,
+        zorder=0,
+        gid="printed",
+    )
+
+
+def _draw_seen(
+    judgement: Judgement,
+    chosen: Moment,
+    axes: Axes,
+    t: NDArray[np.float64],
+    ms: NDArray[np.float64],
+) -> None:
+    scan = judgement.scan
+    pin, control = scan.pins[chosen.pin], scan.device.control
+    spots = scan.spot(chosen.pin, t)
+    axes.axhline(control.threshold, color=GREY, lw=0.6, ls=":", gid="threshold")
+    axes.plot(ms, scan.scene.at(*spots.T), color="0.3", lw=0.9, gid="luminance")
+    for on, off in pin.energised:
+        if off > chosen.begin and on < chosen.end:
+            span = [(MS * (on - chosen.begin), MS * (off - on))]
+            axes.broken_barh(span, (-0.32, 0.2), color=PALETTE["stick"], lw=0.0, gid="command")
+    axes.set_ylim(-0.38, 1.12)
+    axes.set_yticks([0.0, 1.0])
+    axes.set_ylabel("luminance")
+
+
+def _draw_motion(
+    pin: PinScan, chosen: Moment, axes: Axes, t: NDArray[np.float64], ms: NDArray[np.float64]
+) -> list[str]:
+    """The deflection, where the plate carries the pin, and its events; the kinds that occur."""
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
+    carried = [
+        (MS * (pin.begin + begin - chosen.begin), MS * (end - begin))
+        for begin, end in Course(pin.motion).held()
+        if pin.begin + end > chosen.begin and pin.begin + begin < chosen.end
+    ]
+    axes.broken_barh(
+        carried,
+        (0.0, 1.0),
+        transform=axes.get_xaxis_transform(),
+        color=PALETTE["carried"],
+        alpha=0.4,
+        lw=0.0,
+        zorder=0.1,
+        gid="carried",
+    )
+    axes.plot(ms, MM * pin.position(t), color=PALETTE["curve"], lw=1.3, gid="curve")
+    kinds = []
+    for kind, marker in MARKERS.items():
+        events = [e for e in pin.events if e.kind == kind and chosen.begin < e.time < chosen.end]
+        if events:
+            kinds.append(kind)
+            axes.plot(
+                [MS * (e.time - chosen.begin) for e in events],
+                [MM * e.position for e in events],
+                **_marker(kind, marker),
+                zorder=3,
+                gid=kind,
+            )
+    axes.margins(y=0.12)
+    axes.set_ylabel("deflection $x$ (mm)")
+    return kinds
+
+
+def _draw_force(
+    judgement: Judgement,
+    pin: PinScan,
+    axes: Axes,
+    t: NDArray[np.float64],
+    ms: NDArray[np.float64],
+) -> None:
+    finger = judgement.scan.device.drive.finger
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
+    axes.plot(ms, 1e3 * pin.skin_force(t), color=PALETTE["curve"], lw=1.1, gid="force")
+    axes.margins(y=0.15)
+    axes.set_ylabel("skin force (mN)")
+    if not finger.rigid:
+        other = axes.twinx()
+        other.set_ylim(*(1e3 / finger.stiffness * force for force in axes.get_ylim()))
+        other.set_ylabel("stretch (µm)")
+        other.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+        other.spines["right"].set_visible(True)
+
+
+def _marker(kind: str, marker: str) -> dict[str, Any]:
+    fill = "white" if kind == "slip" else PALETTE[kind]
+    return {"ls": "none", "marker": marker, "color": PALETTE[kind], "mfc": fill, "mew": 0.9}
+
+
+def _draw_key(axes: Axes, kinds: list[str]) -> None:
+    axes.set_axis_off()
+    handles: list[Artist] = [
+        Patch(color="0.86", lw=0.0, label="printed line under the spot"),
+        Patch(color=PALETTE["stick"], lw=0.0, label="magnet switched on"),
+        Patch(color=PALETTE["carried"], alpha=0.4, lw=0.0, label="carried by the plate"),
+        *(Line2D([], [], **_marker(kind, MARKERS[kind]), label=NAMES[kind]) for kind in kinds),
+    ]
+    axes.legend(
+        handles=handles,
+        loc="center",
+        ncols=len(handles),
+        frameon=False,
+        borderaxespad=0.0,
+        handlelength=1.4,
+        columnspacing=1.4,
+    )

@@ -1,0 +1,279 @@
+"""The picture of a scan: the page, what the pins made of it, and one pin's history in detail."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib.style
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
+
+from pindrive.device.dataset import gap_words
+from pindrive.evaluation.line_crossings import turnings
+from pindrive.evaluation.tactile_image import Painting, paint, view
+from pindrive.plot.pin import Moment, draw_history, moment
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import QUANTITIES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.image import AxesImage
+
+    from pindrive.device.scanning import Scan
+    from pindrive.evaluation.results import Judgement
+
+MM: Final = 1e3
+WIDTH: Final = 180.0
+"""Of the page that it is drawn for, mm."""
+WIDE: Final = 1.7
+"""A scene so many times as wide as it is high stands above its tactile image, not beside it."""
+MOST: Final = 99.0
+"""Percent of the tactile image within the scale of colours."""
+LABELS: Final = {"lag_on": "lag on", "lag_off": "lag off"}
+BAR: Final = 0.022
+"""Width of the scale of colours, a part of the page's."""
+TALLEST: Final = 1000.0
+"""Height of a page as drawn at most, mm: a longer one is drawn smaller."""
+RELIEF: Final = LinearSegmentedColormap.from_list(
+    "relief",
+    [
+        (0.0, "#A84300"),
+        (0.2, "#D55E00"),
+        (0.5, "#FFFFFF"),
+        (0.8, "#0072B2"),
+        (1.0, "#00263F"),
+    ],
+)
+"""Back is orange, at rest is white, forward is blue."""
+
+
+def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
+    """Draw a scan: the page and the way over it, the tactile image, and one pin's history.
+
+    Args:
+        judgement: of the scan.
+        pin: whose history, its number; None: one that was shown many lines, near the middle.
+
+    Returns:
+        A figure that belongs to nobody else.
+
+    Raises:
+        ValueError: there is no such pin.
+    """
+    scan = judgement.scan
+    left, right, top, bottom = view(scan)
+    wide = right - left > WIDE * (bottom - top)
+    chosen = moment(judgement, pin)
+    with matplotlib.style.context(STYLE, after_reset=True):
+        scale = (WIDTH - 32.0) / (1 if wide else 2) / (right - left)
+        scale = min(scale, TALLEST / (bottom - top))
+        page = scale * (bottom - top) + 9.0
+        pages = (2.0 * page if wide else page) + 6.0
+        figure = Figure(figsize=(WIDTH / 25.4, (pages + 112.0) / 25.4), dpi=250)
+        figure.set_layout_engine(
+            "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
+        )
+        rows = figure.add_gridspec(2, 1, height_ratios=(pages, 100.0))
+        if wide:
+            cells = rows[0].subgridspec(2, 2, width_ratios=(1.0, BAR))
+            places = cells[0, 0], cells[1, 0], cells[:, 1]
+        else:
+            cells = rows[0].subgridspec(1, 3, width_ratios=(1.0, 1.0, 2.0 * BAR))
+            places = cells[0, 0], cells[0, 1], cells[0, 2]
+        printed = figure.add_subplot(places[0], label="print")
+        felt = figure.add_subplot(places[1], label="felt", sharex=printed, sharey=printed)
+        key = figure.add_subplot(places[2], label="scale")
+        _draw_print(scan, printed, chosen)
+        image = _draw_felt(scan, felt, chosen)
+        printed.set_xlim(MM * left, MM * right)
+        printed.set_ylim(MM * bottom, MM * top)
+        _scale(figure, image, key)
+        if wide:
+            printed.set_xlabel("")
+            printed.tick_params(labelbottom=False)
+        else:
+            felt.set_ylabel("")
+            felt.tick_params(labelleft=False)
+        draw_history(judgement, chosen, figure, rows[1])
+        figure.suptitle(_title(judgement), x=0.008, ha="left", fontsize=8.0)
+    return figure
+
+
+def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
+    """Draw what several scans of one scene showed, side by side in one scale, beside the print.
+
+    Args:
+        judgements: of the scans, at least one; what is drawn of the page is as the first has it.
+
+    Returns:
+        A figure that belongs to nobody else.
+    """
+    first = judgements[0].scan
+    left, right, top, bottom = view(first, around=True)
+    with matplotlib.style.context(STYLE, after_reset=True):
+        side = (WIDTH - 26.0) / (len(judgements) + 1)
+        height = min(side * (bottom - top) / (right - left), TALLEST) + 28.0
+        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4), dpi=250)
+        figure.set_layout_engine(
+            "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
+        )
+        count = len(judgements) + 1
+        cells = figure.add_gridspec(1, count + 1, width_ratios=(*[1.0] * count, 2.0 * BAR))
+        panels = [figure.add_subplot(cells[0, 0], label="print")]
+        panels += [
+            figure.add_subplot(cells[0, i], label=f"felt {i}", sharex=panels[0], sharey=panels[0])
+            for i in range(1, count)
+        ]
+        _draw_print(first, panels[0], None)
+        size = max(_size(paint(judgement.scan)) for judgement in judgements)
+        for axes, judgement in zip(panels[1:], judgements, strict=True):
+            image = _draw_felt(judgement.scan, axes, None, size)
+            axes.set_title(_relief_title(judgement), loc="left", fontsize=SMALL, pad=3.0)
+            axes.set_ylabel("")
+            axes.tick_params(labelleft=False)
+        panels[0].set_xlim(MM * left, MM * right)
+        panels[0].set_ylim(MM * bottom, MM * top)
+        _scale(figure, image, figure.add_subplot(cells[0, count], label="scale"))
+    return figure
+
+
+def _relief_title(judgement: Judgement) -> str:
+    """How fast the hand was, and what came of it."""
+    counts = judgement.counts
+    speed = f"{MM * judgement.scan.path.peak_speed:.4g} mm/s"
+    lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
+    found = f"{counts['judged.shown']} of {counted(counts['judged.lines'], 'line')} shown"
+    smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
+    gap = judgement.scan.smallest_gap
+    overlap = f"\npins overlap by {-MM * gap.size:.2g} mm" if gap and gap.size < 0.0 else ""
+    return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm\n{smeared}{overlap}"
+
+
+def _draw_print(scan: Scan, axes: Axes, chosen: Moment | None) -> None:
+    left, right, top, bottom = (MM * edge for edge in scan.scene.extent)
+    axes.imshow(
+        scan.scene.luminance,
+        cmap="gray",
+        vmin=-0.35,  # a dark grey, so that the way is seen on it
+        vmax=1.0,
+        extent=(left, right, bottom, top),
+        interpolation="antialiased",
+        gid="scene",
+    )
+    _draw_way(scan, axes)
+    _frame(axes, f"printed: {scan.scene.title}")
+    spots = MM * scan.spots([scan.path.begin])[:, 0]
+    axes.plot(*spots.T, "o", ms=2.6, mfc="white", mec=PALETTE["stick"], mew=0.7, gid="spots")
+    if chosen:
+        _draw_moment(scan, axes, chosen)
+
+
+def _draw_way(scan: Scan, axes: Axes) -> None:
+    """The hand's strokes: reading solid with an arrow, back dotted."""
+    path = scan.path
+    cuts = np.unique([path.begin, *turnings(scan).tolist(), path.end])
+    plate = path.plate_velocity(scan.device.array.axis)
+    longest = max(np.diff(cuts), default=0.0)
+    for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
+        t = np.linspace(begin, end, 200)
+        x, y = path.position(t)
+        if np.hypot(np.ptp(x), np.ptp(y)) < 1e-9:
+            continue
+        back = float(plate(0.5 * (begin + end) - path.begin)) < 0.0
+        style: dict[str, Any] = {"ls": (0, (1, 2)), "lw": 0.7} if back else {"lw": 0.9}
+        axes.plot(MM * x, MM * y, color=PALETTE["stick"], alpha=0.8, gid="way", **style)
+        if not back and end - begin > 0.1 * longest:
+            axes.annotate(
+                "",
+                (MM * x[-1], MM * y[-1]),
+                (MM * x[-12], MM * y[-12]),
+                arrowprops={"arrowstyle": "-|>", "color": PALETTE["stick"], "lw": 0.9},
+            )
+
+
+def _draw_felt(
+    scan: Scan, axes: Axes, chosen: Moment | None, size: float | None = None
+) -> AxesImage:
+    painting = paint(scan)
+    size = _size(painting) if size is None else size
+    left, right, top, bottom = (MM * edge for edge in painting.extent)
+    image = axes.imshow(
+        MM * painting.deflection,
+        cmap=RELIEF,
+        norm=TwoSlopeNorm(0.0, -size, size),
+        extent=(left, right, bottom, top),
+        interpolation="nearest",
+        gid="relief",
+    )
+    dark = scan.scene.luminance
+    if dark.min() < scan.device.control.threshold < dark.max():
+        rows, columns = dark.shape
+        x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+        y = top + (np.arange(rows) + 0.5) * (bottom - top) / rows
+        outline = axes.contour(
+            x, y, dark, [scan.device.control.threshold], colors="0.35", linewidths=0.5
+        )
+        outline.set_gid("outline")
+    axes.set_facecolor("0.94")
+    _frame(axes, "shown to the finger (outline: the print)")
+    if chosen:
+        _draw_moment(scan, axes, chosen)
+    return image
+
+
+def _size(painting: Painting) -> float:
+    """The deflection at the ends of the scale of colours, mm."""
+    painted = np.abs(painting.deflection[~np.isnan(painting.deflection)])
+    return max(MM * float(np.percentile(painted, MOST)), 1e-6) if painted.size else 1.0
+
+
+def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
+    bar = figure.colorbar(image, cax=place, extend="both")
+    bar.set_label("deflection, forward (mm)", fontsize=SMALL)
+    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+
+
+def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
+    """Where on the page the history below takes place."""
+    t = np.linspace(chosen.begin, chosen.end, 200)
+    x, y = MM * scan.spots(t)[chosen.pin].T
+    axes.plot(x, y, color=PALETTE["slip"], lw=1.6, solid_capstyle="butt", gid="moment")
+    axes.plot(x[:1], y[:1], "o", color=PALETTE["slip"], ms=3.5, gid="moment")
+
+
+def _frame(axes: Axes, title: str) -> None:
+    axes.set_title(title, loc="left", fontsize=SMALL + 0.5, pad=3.0)
+    axes.set_xlabel("across the page (mm)")
+    axes.set_ylabel("down (mm)")
+    axes.set_aspect("equal")
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    for spine in axes.spines.values():
+        spine.set_visible(True)
+        spine.set_linewidth(0.4)
+        spine.set_color("0.6")
+
+
+def _title(judgement: Judgement) -> str:
+    """What was scanned, and how well it was shown."""
+    scan, counts = judgement.scan, judgement.counts
+    lines, shown = counts["judged.lines"], counts["judged.shown"]
+    pins = f"{len(scan.pins)} pin{'s' if len(scan.pins) > 1 else ''}"
+    speed = QUANTITIES["hand_speed"].text(scan.path.peak_speed)
+    what = f"{pins}, {scan.path.end - scan.path.begin:.3g} s, hand at up to {speed}"
+    if not lines:
+        return "\n".join([f"{what}; no line passed whole under a pin.", *gap_words(scan)])
+    medians = []
+    for name in ("lag_on", "lag_off", "smear", "overshoot", "contrast"):
+        value, unit = judgement.spread(f"line.{name}")[1], QUANTITIES[f"line.{name}"].unit
+        if not isnan(value):
+            label = LABELS.get(name, name)
+            medians.append(
+                f"{label} {value:.2f}" if unit == "1" else f"{label} {MM * value:.2g} mm"
+            )
+    found = f"{shown} of {counted(lines, 'line')} shown, {counts['judged.echoes']} false"
+    told = [*([f"Medians: {', '.join(medians)}."] if medians else []), *gap_words(scan)]
+    return "\n".join([f"{what}: {found}.", *told])

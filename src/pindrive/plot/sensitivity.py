@@ -1,0 +1,136 @@
+"""Which parameter matters, as a chart: numbers down, keys across, near and over the ranges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib.style
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure
+from pindrive.study.design import variable
+from pindrive.study.distributions import as_distribution
+from pindrive.study.slices import QUANTITY, elasticity, symbol, words
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+    from pindrive.study.local_sensitivity import Elasticities
+    from pindrive.study.sensitivity import Influence
+
+_SIGNED: Final = LinearSegmentedColormap.from_list(
+    "signed", [PALETTE["stick"], "#F6C6A8", "white", "#A9CFE8", PALETTE["curve"]]
+)
+_FIRST: Final = PALETTE["curve"]
+_TOTAL: Final = "#A9CFE8"
+_FULL: Final = 2.0
+"""The elasticity at which the colour is full."""
+_BAR: Final = 0.84
+"""Of a column, what a whole variance takes."""
+
+
+def plot_influence(found: Influence, name: str) -> Figure:
+    """Draw elasticities as a table of colours, and Sobol' indices as bars beside them.
+
+    Args:
+        found: what `influence` found.
+        name: of the study, for the title.
+    """
+    numbers = [
+        n
+        for n, indices in found.over.items()
+        if n != "transient_settled" and (indices.spread > 0.0 or _known(found, n))
+    ]
+    with matplotlib.style.context(STYLE, after_reset=True):
+        height = 30 + 5.6 * len(numbers)
+        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        if found.near:
+            near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
+            _draw_near(near, found, found.near, numbers)
+        else:
+            near = over = figure.subplots()
+        _draw_over(over, found, numbers)
+        near.set_yticks(range(len(numbers)), [words(n) for n in numbers])
+        near.set_ylim(len(numbers) - 0.5, -0.5)
+        for axes in {near, over}:
+            ticks = [f"{symbol(variable(key))}" for key in found.keys]
+            axes.set_xticks(range(len(found.keys)), ticks)
+            axes.set_xlim(-0.5, len(found.keys) - 0.5)
+            axes.tick_params(labelsize=SMALL, length=0.0, labeltop=True, labelbottom=False)
+            axes.spines[["left", "bottom"]].set_visible(False)
+        bars: list[Any] = [
+            Patch(color=_FIRST, label="by itself"),
+            Patch(color=_TOTAL, label="with interactions"),
+            Line2D([], [], color="black", lw=0.6, label="its 95 % interval"),
+        ]
+        figure.legend(handles=bars, loc="outside lower right", ncols=3, frameon=False)
+        figure.suptitle(
+            f"{name}: which parameter matters\n{_ranges(found)}", x=0.008, ha="left", fontsize=8.0
+        )
+    return figure
+
+
+def _known(found: Influence, number: str) -> bool:
+    near = found.near.table[number] if found.near else {}
+    return any(not np.isnan(x) for x in near.values())
+
+
+def _ranges(found: Influence) -> str:
+    """What varied: "m 9.4 … 10.6 g, k …"."""
+    said = []
+    for key, axis in found.ranges.scatter.items():
+        quantity = QUANTITY[variable(key)]
+        low, high = (f"{quantity.display_scale * x:.3g}" for x in as_distribution(axis).span)
+        said.append(f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip())
+    lines = [", ".join(said[i : i + 5]) for i in range(0, len(said), 5)]
+    return ",\n".join(lines)
+
+
+def _draw_near(axes: Axes, found: Influence, near: Elasticities, numbers: Sequence[str]) -> None:
+    """Elasticities: blue where a number grows with the key, red where it falls."""
+    values = np.array([[near.table[n][key] for key in found.keys] for n in numbers])
+    strength = np.sign(values) * np.sqrt(np.abs(values) / _FULL)
+    axes.imshow(strength, cmap=_SIGNED, vmin=-1.0, vmax=1.0, aspect="auto")
+    for edge in range(1, max(values.shape)):
+        axes.axhline(edge - 0.5, color="white", lw=1.0)
+        axes.axvline(edge - 0.5, color="white", lw=1.0)
+    for (row, column), value in np.ndenumerate(values):
+        text = elasticity(value)
+        dark = abs(value) > 1.2
+        axes.text(
+            column,
+            row,
+            text.replace("-", "\N{MINUS SIGN}"),
+            ha="center",
+            va="center",
+            fontsize=5.8,
+            color="white" if dark else "0.55" if text in ("-", "·") else "black",
+        )
+    axes.set_title("near: % of change for 1 % more of", fontsize=8.0)
+
+
+def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
+    """Sobol' indices: a bar for each key, as long as its column where it explains everything."""
+    for column in range(len(found.keys)):
+        left = column - 0.5 * _BAR
+        axes.axvline(left, color="0.8", lw=0.5, zorder=0)
+        axes.axvline(left + _BAR, color="0.9", lw=0.5, ls=":", zorder=0)
+        for row, number in enumerate(numbers):
+            first, total = found.over[number].first, found.over[number].total
+            if np.isnan(total.value[column]):
+                continue
+            for interval, colour, thick in ((total, _TOTAL, 0.62), (first, _FIRST, 0.3)):
+                length = _BAR * float(np.clip(interval.value[column], 0.0, 1.0))
+                axes.barh(row, length, thick, left=left, color=colour, lw=0.0)
+            ends = np.clip([total.low[column], total.high[column]], 0.0, 1.0)
+            axes.hlines(row, *(left + _BAR * ends), color="black", lw=0.6)
+    for row, number in enumerate(numbers):
+        if not found.over[number].spread > 0.0:
+            words_for = "constant" if found.over[number].spread == 0.0 else "does not exist"
+            axes.text(-0.4, row, words_for, va="center", fontsize=5.8, color="0.55")
+    axes.set_title("over the ranges: part of the variance due to", fontsize=8.0)

@@ -1,0 +1,245 @@
+"""The pictures of a study: maps over two keys, curves over one, slices side by side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib.style
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from pindrive._core import settling_band
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure
+from pindrive.study.outputs import MEASURED, is_stepped
+from pindrive.study.slices import QUANTITY, axis_label, value, values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+
+    from pindrive.study.slices import Panel, View
+
+_MAP: Final = "viridis"
+_HATCH: Final[dict[str, Any]] = {
+    "facecolor": "0.93",
+    "edgecolor": "0.55",
+    "hatch": "/////",
+    "lw": 0.0,
+}
+_REFUSED: Final = "0.72"
+_ORDER: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+"""Okabe and Ito's colours for curves side by side."""
+_LEVELS: Final = 8
+
+
+def plot_study(
+    view: View, numbers: Sequence[str], x: str, y: str, held: Mapping[str, float]
+) -> Figure:
+    """Draw numbers of a study: a row for each, slices side by side.
+
+    Args:
+        view: the open study.
+        numbers: variables of the file.
+        x: the key along the abscissa.
+        y: the key along the ordinate; empty for curves.
+        held: values, SI, at which other keys are held.
+
+    Returns:
+        A figure 180 mm wide, or 90 mm with a single panel.
+    """
+    rows = [list(view.panels(number, x, y, held)) for number in numbers]
+    with matplotlib.style.context(
+        {**STYLE, "hatch.linewidth": 0.5, "hatch.color": "0.55"}, after_reset=True
+    ):
+        columns = len(rows[0]) if y else 1
+        width = 110 if columns == 1 else 180
+        each = 58 if not y else 78 if columns == 1 else 62 if columns == 2 else 52
+        height = 24 + len(rows) * each
+        figure = Figure(figsize=(width / 25.4, height / 25.4), dpi=250, layout="constrained")
+        grid = figure.subplots(len(rows), columns, squeeze=False, sharex=True, sharey="row")
+        for panels, axes in zip(rows, grid, strict=True):
+            if y:
+                _draw_maps(figure, panels, list(axes))
+            else:
+                _draw_curves(panels, axes[0], named=panels is rows[0])
+        for axes in grid[-1]:
+            axes.set_xlabel(axis_label(x))
+        for axes in grid.flat:
+            _scale(axes, view, x, y)
+            axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+        handles = _key([panel for row in rows for panel in row])
+        if handles:
+            figure.legend(
+                handles=handles, loc="outside lower left", ncols=len(handles), frameon=False
+            )
+        still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
+        _title(figure, view, {**view.told, **still}, int(width * 0.66))
+    return figure
+
+
+def _common(panels: Sequence[Panel]) -> dict[str, float]:
+    """What all panels hold at the same value."""
+    first = panels[0].at
+    return {k: v for k, v in first.items() if all(panel.at[k] == v for panel in panels)}
+
+
+def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -> None:
+    shown = {
+        name: number
+        for name, number in fixed.items()
+        if (name, number) not in (("plate_load", 1.0), ("settling_band", settling_band))
+    }
+    name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
+    said = [name, values(shown, width), *view.links]
+    figure.suptitle("\n".join(filter(None, said)), x=0.008, ha="left", fontsize=8.0)
+
+
+def _scale(axes: Axes, view: View, x: str, y: str) -> None:
+    for key, axis in ((x, "x"), (y, "y")):
+        if key and view.data[key].attrs.get("spacing") == "log":
+            getattr(axes, f"set_{axis}scale")("log")
+            ticks = getattr(axes, f"{axis}axis")
+            ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            ticks.set_major_formatter("{x:g}")
+            ticks.set_minor_formatter(NullFormatter())
+
+
+# ---- maps ----------------------------------------------------------------------------------------
+
+
+def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> None:
+    """One number on one scale of colours."""
+    quantity = QUANTITY[panels[0].number]
+    shown = [quantity.display_scale * panel.values for panel in panels]
+    finite = np.concatenate([values[np.isfinite(values)] for values in shown])
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
+    stepped = is_stepped(panels[0].number)
+    levels = ticks[(ticks > low) & (ticks < high) & (not stepped)]
+    if low == high:  # one colour, the middle one
+        low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
+    drawn: ScalarMappable | None = None
+    for panel, values_shown, axes in zip(panels, shown, row, strict=True):
+        drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
+        differs = {k: v for k, v in panel.at.items() if k not in _common(panels)}
+        if differs:
+            axes.set_title(", ".join(value(k, v) for k, v in differs.items()), fontsize=SMALL)
+    row[0].set_ylabel(axis_label(panels[0].keys[0]))
+    if drawn is not None:
+        bar = figure.colorbar(drawn, ax=list(row), pad=0.015, fraction=0.05, aspect=24)
+        for level in levels if panels[0].low is None else ():
+            bar.ax.axhline(level, color="white", lw=0.5)
+        said = "median " if panels[0].number in MEASURED else "median of draws:\n"
+        median = said if panels[0].low is not None else ""
+        bar.set_label(median + axis_label(panels[0].number))
+        bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+        bar.outline.set_linewidth(0.0)
+
+
+def _draw_map(
+    axes: Axes,
+    panel: Panel,
+    shown: Any,
+    ends: tuple[float, float],
+    levels: Any,
+) -> ScalarMappable:
+    (y, x) = (
+        QUANTITY[key].display_scale * along
+        for key, along in zip(panel.keys, panel.along, strict=True)
+    )
+    missing = np.isnan(shown)
+    drawn = axes.pcolormesh(
+        x, y, shown, cmap=_MAP, vmin=ends[0], vmax=ends[1], shading="nearest", rasterized=True
+    )
+    if panel.low is None and min(shown.shape) > 1 and (~missing).any() and len(levels):
+        axes.contour(x, y, shown, levels=levels, colors="white", linewidths=0.5, alpha=0.8)
+    axes.patch.set(**_HATCH)
+    refused = np.where(panel.refused, 1.0, np.nan)
+    if panel.refused.any():
+        axes.pcolormesh(
+            x,
+            y,
+            refused,
+            cmap=ListedColormap([_REFUSED]),
+            shading="nearest",
+            rasterized=True,
+        )
+    over = panel.unsettled & ~missing
+    if over.any() and min(shown.shape) > 1:
+        axes.contourf(x, y, over, levels=[0.5, 1.5], colors="none", hatches=["/////"])
+    if (panel.unsettled & ~panel.refused).any() and min(shown.shape) > 1:
+        border = (panel.unsettled | panel.refused).astype(float)
+        axes.contour(x, y, border, levels=[0.5], colors="black", linewidths=0.7)
+    return drawn
+
+
+# ---- curves --------------------------------------------------------------------------------------
+
+
+def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
+    """One number over x, a curve for each slice; gaps where it does not exist."""
+    quantity = QUANTITY[panels[0].number]
+    scale = quantity.display_scale
+    common = _common(panels)
+    for panel, colour in zip(panels, _ORDER, strict=False):
+        x = QUANTITY[panel.keys[0]].display_scale * panel.along[0]
+        differs = {k: v for k, v in panel.at.items() if k not in common}
+        label = ", ".join(value(k, v) for k, v in differs.items())
+        if panel.low is not None and panel.high is not None:
+            band: dict[str, Any] = {"color": colour, "alpha": 0.18, "lw": 0.0}
+            axes.fill_between(x, scale * panel.low, scale * panel.high, **band)
+        few = len(x) <= 40
+        marker = "." if few else ""
+        settled = np.where(panel.unsettled, np.nan, scale * panel.values)
+        axes.plot(x, settled, color=colour, label=label, marker=marker, gid="settled")
+        if panel.unsettled.any() and len(panels) > 1:
+            loose: dict[str, Any] = {"color": colour, "lw": 0.7, "ls": (0, (1, 1.5)), "zorder": 1}
+            axes.plot(x, scale * panel.values, **loose, gid="unsettled")
+        if len(panels) == 1:
+            axes.plot(x, scale * panel.values, color=colour, zorder=1, gid="unsettled")
+            _shade_gaps(axes, x, panel)
+    axes.margins(x=0.0)
+    axes.set_ylabel(axis_label(panels[0].number))
+    if named and len(panels) > 1:
+        axes.legend(frameon=False, loc="best")
+
+
+def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:
+    """Where the motion did not settle, or could not be simulated."""
+    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
+    for i in np.flatnonzero(panel.unsettled):
+        axes.axvspan(edges[i], edges[i + 1], **_HATCH, zorder=0)
+    for i in np.flatnonzero(panel.refused):
+        axes.axvspan(edges[i], edges[i + 1], color=_REFUSED, lw=0.0, zorder=0)
+
+
+def _key(panels: Sequence[Panel]) -> list[Artist]:
+    """What grey areas and bands mean: those that occur."""
+    handles: list[Artist] = []
+    maps = len(panels[0].keys) == 2
+    median = panels[0].low is not None
+    motions = panels[0].number in MEASURED
+    marked = maps or len(panels) == len({panel.number for panel in panels})
+    if marked and any(panel.unsettled.any() for panel in panels):
+        most = " by most draws" if median else ""
+        words = f"not settled{most} in the time followed" if motions else f"has no value{most}"
+        handles.append(Patch(**_HATCH, label=words))
+    if marked and any(panel.refused.any() for panel in panels):
+        what = "motion" if motions else "scan"
+        handles.append(Patch(color=_REFUSED, label=f"no {what}: contradictory values"))
+    if not marked and any((p.unsettled & ~np.isnan(p.values)).any() for p in panels):
+        handles.append(
+            Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled in the time followed")
+        )
+    if median and not maps:
+        handles.append(Line2D([], [], color=GREY, label="median"))
+        handles.append(
+            Patch(color=PALETTE["curve"], alpha=0.18, lw=0.0, label="5 % to 95 % of draws")
+        )
+    return handles

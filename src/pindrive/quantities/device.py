@@ -1,0 +1,411 @@
+"""The table of quantities, second part: the whole device and how a hand moves it over a page.
+
+Bounds are far outside of what any such device has, and such that nothing computed from values
+within them overflows or vanishes. How much work they ask for together is another matter: budgets.
+"""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Any, Final
+
+from pindrive.quantities.electromagnet import COIL, FINE, MAGNET, SHARE
+from pindrive.quantities.evaluation import CRITERIA
+from pindrive.quantities.quantity import NON_NEGATIVE, Quantity, between
+
+LUMINANCE: Final = between(0.0, 1.0)
+ACUTE: Final = between(0.0, radians(90.0))
+SPEED: Final = between(1e-4, 100.0)
+"""Of a hand."""
+PLACE: Final = between(-1e3, 1e3)
+"""On the page."""
+TURN: Final = radians(720.0)
+
+CONTROL: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "sample_rate",
+        "f_s",
+        "Hz",
+        "how often the control block looks at the scene",
+        between(0.1, 1e6),
+        1000.0,
+        "mice report 125 to 1000 times a second (USB HID)",
+        "control",
+        optional=True,
+        remark="1000 Hz unless given",
+    ),
+    Quantity(
+        "latency",
+        "t_l",
+        "s",
+        "from looking to switching the coil",
+        between(0.0, 100.0),
+        0.005,
+        "assumed: a few reports of a mouse",
+        "control",
+        optional=True,
+        remark="5 ms unless given",
+    ),
+    Quantity(
+        "threshold",
+        "L_0",
+        "1",
+        "luminance below which there is information; 0 is black, 1 is white",
+        LUMINANCE,
+        0.5,
+        "assumed: the middle",
+        "control",
+        optional=True,
+        remark="0.5 unless given",
+    ),
+    Quantity(
+        "hysteresis",
+        "ΔL",
+        "1",
+        "switches on this half below the threshold, off this half above it: the whole width",
+        LUMINANCE,
+        0.1,
+        "assumed",
+        "control",
+        optional=True,
+        remark="0.1 unless given; the whole band within 0 and 1",
+    ),
+)
+
+ARRAY: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "columns",
+        "n_x",
+        "1",
+        "pins side by side along the drive axis",
+        between(1.0, 1000.0),
+        4.0,
+        "assumed",
+        "array",
+        optional=True,
+        remark="1 unless given",
+    ),
+    Quantity(
+        "rows",
+        "n_y",
+        "1",
+        "rows of them",
+        between(1.0, 1000.0),
+        4.0,
+        "assumed",
+        "array",
+        optional=True,
+        remark="1 unless given",
+    ),
+    Quantity(
+        "pitch",
+        "p",
+        "m",
+        "distance between neighbouring pins",
+        between(1e-6, 1.0),
+        0.005,
+        "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
+        "array",
+        optional=True,
+        remark="5 mm unless given",
+    ),
+    Quantity(
+        "pin_diameter",
+        "d_p",
+        "m",
+        "diameter of a pin: two pins meet where their axes come as close as that",
+        between(1e-6, 1.0),
+        0.0015,
+        "as a Braille dot at its base, 1.4-1.6 mm",
+        "array",
+        optional=True,
+        remark="1.5 mm unless given",
+    ),
+    Quantity(
+        "places",
+        "(x_i, y_i)",
+        "m",
+        "places of the pins in the mouse instead: along the drive axis and across it",
+        between(-10.0, 10.0),
+        source="assumed: three pins in a triangle",
+        section="array",
+        optional=True,
+        remark="in place of columns, rows and pitch",
+        rows_of="places",
+        rows=((0.0, -0.002), (0.0, 0.002), (0.0035, 0.0)),
+    ),
+    Quantity(
+        "spot_scale",
+        "s",
+        "1",
+        "the pins' spots stand on the scene as the pins do in the mouse, times this",
+        between(0.0, 1000.0),
+        1.0,
+        "assumed: the scene is felt in its own size",
+        "array",
+        optional=True,
+        remark="1 unless given",
+    ),
+    Quantity(
+        "axis",
+        "φ",
+        "rad",
+        "direction of the drive axis on the page, from its x towards its y",
+        between(-TURN, TURN),
+        0.0,
+        "the paper keeps drive and motion parallel, along the lines of the page",
+        "array",
+        optional=True,
+        remark="0 deg unless given",
+    ),
+)
+
+SCAN: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "hand_speed",
+        "v_h",
+        "m/s",
+        "peak speed of the hand while it reads; a minimum-jerk stroke takes 1.875 length / speed",
+        SPEED,
+        0.060,
+        "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
+        "scan",
+        optional=True,
+        remark="60 mm/s unless given",
+    ),
+    Quantity(
+        "return_speed",
+        "v_r",
+        "m/s",
+        "the same on the way back to the next line",
+        SPEED,
+        0.1,
+        "the upper end of hand speed in finger studies (arXiv 2505.11162)",
+        "scan",
+        optional=True,
+        remark="100 mm/s unless given",
+    ),
+    Quantity(
+        "pause",
+        "t_p",
+        "s",
+        "rest of the hand after each stroke",
+        between(0.0, 3600.0),
+        0.2,
+        "assumed",
+        "scan",
+        optional=True,
+        remark="200 ms unless given",
+    ),
+    Quantity(
+        "line_pitch",
+        "h_l",
+        "m",
+        "distance between the lines of text, and between the hand's strokes",
+        between(1e-5, 10.0),
+        None,
+        "assumed: twice the height of the text",
+        "scan",
+        optional=True,
+        example=0.020,
+        remark="of text twice its height, over an image one stroke along its middle, unless given",
+    ),
+    Quantity(
+        "text_height",
+        "h_t",
+        "m",
+        "height of capital letters in text",
+        between(1e-5, 10.0),
+        0.010,
+        "assumed: letters that a pin can follow",
+        "scan",
+        optional=True,
+        remark="10 mm unless given",
+    ),
+    Quantity(
+        "pixel",
+        "p_s",
+        "m",
+        "size of a pixel of the scene",
+        between(1e-7, 1.0),
+        None,
+        "assumed: 254 pixels an inch",
+        "scan",
+        optional=True,
+        example=1e-4,
+        remark="of an image its own resolution, of text and lines 0.1 mm, unless given",
+    ),
+    Quantity(
+        "max_angle",
+        "γ_max",
+        "rad",
+        "angle between motion and drive axis beyond which a warning is given",
+        ACUTE,
+        radians(20.0),
+        "assumed: 6 % of the speed is lost at 20 deg, of the force as much",
+        "scan",
+        optional=True,
+        remark="20 deg unless given",
+    ),
+    Quantity(
+        "hand_acceleration",
+        "a_max",
+        "m/s^2",
+        "acceleration of the hand beyond which its recorded speed is taken to jump",
+        between(1e-3, 1e6),
+        30.0,
+        "assumed: five times that of a minimum-jerk stroke of 100 mm in 0.3 s",
+        "scan",
+        optional=True,
+        remark="30 m/s^2 unless given",
+    ),
+    Quantity(
+        "path_deviation",
+        "ε_v",
+        "1",
+        "largest deviation of the piecewise-linear speed from minimum jerk, a part of its peak",
+        FINE,
+        1e-4,
+        "its slope, which is the force of inertia, is then within 3 % of its peak",
+        "scan",
+        optional=True,
+        remark="1e-4 unless given",
+    ),
+)
+
+DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
+"""What a device file may give beyond the drive, in its order."""
+
+DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
+    Quantity("place.x", "x", "m", "place of a pin along the drive axis", between(-10.0, 10.0)),
+    Quantity("place.y", "y", "m", "place of a pin across the drive axis", between(-10.0, 10.0)),
+    Quantity("scene.origin", "x_0", "m", "place of the scene's top left corner", PLACE),
+    Quantity("scene.luminance", "L", "1", "luminance of a pixel, black 0, white 1", LUMINANCE),
+    Quantity("stroke.length", "D", "m", "length of a stroke", between(1e-9, 2e3)),
+    Quantity("stroke.duration", "T", "s", "duration of a stroke", between(1e-12, 1e8)),
+    Quantity("hand.time", "t", "s", "time in a recorded path", between(-1e6, 1e6)),
+    Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
+    Quantity(
+        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
+    ),
+    Quantity(
+        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
+    ),
+    Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
+    Quantity(
+        "coil.field",
+        "B",
+        "T",
+        "field in the gap at full current, without saturation",
+        between(1e-12, 1e12),
+    ),
+    Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
+    Quantity(
+        "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
+    ),
+    Quantity(
+        "rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)
+    ),
+    Quantity(
+        "fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)
+    ),
+    Quantity(
+        "friction_coefficient",
+        "μ",
+        "1",
+        "kinetic friction of the plate over what presses",
+        NON_NEGATIVE,
+    ),
+    Quantity(
+        "pin_gap",
+        "g_p",
+        "m",
+        "smallest gap between neighbouring pins along the drive axis; negative where they overlap",
+    ),
+    Quantity("pin_gap.time", "t_g", "s", "when it is so small"),
+)
+"""What the parts of a device are made of in Python, and what follows from them."""
+
+PIN: Final[tuple[Quantity, ...]] = (
+    Quantity("pin.energised", "t_on", "s", "time its magnet was switched on"),
+    Quantity("pin.switchings", "n_on", "", "times its magnet was switched on"),
+    Quantity("pin.slips", "n_slip", "", "times it broke loose from the plate while switched on"),
+    Quantity("pin.captures", "n_stick", "", "times the plate caught it"),
+    Quantity("pin.carried", "t_c", "s", "time the plate carried it"),
+    Quantity("pin.peak_displacement", "x_max", "m", "largest deflection, either way"),
+    Quantity("pin.peak_skin_force", "R_max", "N", "largest force on the skin, either way"),
+    Quantity("pin.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"),
+)
+"""What each pin did in a scan."""
+
+# One pin of a tactile mouse may be heavy. Sixteen under a finger have magnets a few millimetres wide,
+# and springs so stiff that none of them reaches the next.
+READER: Final[dict[str, dict[str, Any]]] = {
+    "drive.mass": {
+        "default": 0.001,
+        "source": "assumed: 0.12 cm3 of iron and copper at 8.4 g/cm3, a cylinder 3.5 mm wide and "
+        "12.4 mm high",
+    },
+    "drive.stiffness": {
+        "default": 250.0,
+        "source": "assumed: the magnet below carries the pin 1 mm against it, and neighbours 5 mm "
+        "apart do not meet; a natural frequency of 80 Hz",
+    },
+    "drive.damping": {
+        "example": 0.5,
+        "source": "the damping ratio 0.5 below, with m = 1 g and k = 250 N/m",
+    },
+    "drive.damping_ratio": {
+        "default": 0.5,
+        "source": "assumed, an elastic sleeve: half as much again as the largest of 0.04, 0.16, "
+        '0.32 in Fig. 4 of "Dynamics of tactile device drive", read as ratios; it settles sooner',
+    },
+    "plate.kinetic": {
+        "default": 0.0022,
+        "source": "steel on steel, friction coefficient 0.15-0.30 (handbook tables), 0.225 (the "
+        "middle) of a weight of 9.8 mN",
+    },
+    "plate.static": {
+        "default": 0.00265,
+        "source": "steel on steel, 0.27 (oxidised, handbook tables) of a weight of 9.8 mN",
+    },
+    "plate.curve": {
+        "source": "steel on steel, 0.225 falling to 0.15 of a weight of 9.8 mN",
+        "remark": "for `pindrive simulate` alone: not where a magnet changes the load",
+        "rows": ((0.0, 0.0022), (0.05, 0.0015)),
+    },
+    "finger.kinetic": {
+        "default": 0.030,
+        "source": "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 60 mN of touch: "
+        "1 N of a finger on sixteen pins, assumed",
+    },
+    "finger.static": {"default": 0.045},
+    "finger.curve": {
+        "remark": "speeds from 0 m/s up; kinetic and stiffness are left out then",
+        "rows": ((0.0, 0.030), (0.05, 0.024)),
+    },
+    "finger.stiffness": {
+        "default": 300.0,
+        "example": None,
+        "source": "1000 N/m of the whole finger pad (ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, "
+        "Table 1); a pin touches a part of it, assumed: a third",
+    },
+    "array.spot_scale": {
+        "default": 0.5,
+        "source": "assumed: sixteen spots on letters 10 mm high; the page is felt twice as large",
+    },
+    "motion.plate_load": {
+        "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, lets go in "
+        "5 ms",
+        "rows": ((0.0, 103.0), (0.005, 1.0)),
+    },
+    "motion.displacement": {
+        "default": 0.0009,
+        "source": "assumed: the pin was carried nearly as far as its magnet can hold it",
+    },
+    "motion.skin_stretch": {
+        "example": 7.5e-5,
+        "source": "assumed: half of what static friction holds, 45 mN / (300 N/m)",
+    },
+}
+"""What differs, by the keys of a device file: fields of a `Quantity`."""

@@ -1,0 +1,367 @@
+"""The table of quantities, first part: the drive, its inputs, and what follows from them.
+
+Only the standard library is imported here and in the other parts, so that a command starts fast.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Final
+
+from pindrive.quantities.electromagnet import SHARE
+from pindrive.quantities.quantity import (
+    FINITE,
+    NON_NEGATIVE,
+    POSITIVE,
+    POSITIVE_OR_RIGID,
+    Bounds,
+    Quantity,
+)
+
+PAPER: Final = '"Dynamics of tactile device drive"'
+STEEL: Final = (
+    "steel on steel, friction coefficient 0.15-0.30 (handbook tables), {} of a weight of 98 mN"
+)
+FINGER: Final = "ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, Table 1"
+
+# What the core is given stays within 1e±12 SI, beyond any device by far. Then rates, sqrt(k/m) and
+# b/m, stay within 1e±24, forces under load below 1e24, lengths F/k below 1e36, energies k x² below
+# 1e84, and what the certificate bounds, the fifth derivative of a length, below 1e156: in doubles,
+# which end at 1e308, nothing overflows, nor does what matters vanish below 1e-308. A friction or a
+# start that is still smaller (a velocity of 1e-17, rounded from 0) acts as 0 where its square does.
+#
+# A phase ω t is known to 1e-16 of itself: after 1e12 rad to four digits, beyond 1e16 to none. So a
+# duration ends there, and a damping ratio, by whose inverse a motion outlasts its period, is 0 or
+# above 1e-11. Beyond 1e6 the two rates of a mode, ω/(2ζ) and 2ζω, lie so far apart that a velocity
+# has lost four of its digits beside the other wave's.
+LARGEST: Final = 1e12
+SMALLEST: Final = 1e-12
+EITHER_WAY: Final = Bounds(-LARGEST, LARGEST, True, True)
+FROM_ZERO: Final = Bounds(0.0, LARGEST, True, True)
+ABOVE_ZERO: Final = Bounds(SMALLEST, LARGEST, True, True)
+OR_INFINITE: Final = Bounds(SMALLEST, LARGEST, True, True, also=(inf,))
+RATIOS: Final = Bounds(1e-11, 1e6, True, True, also=(0.0,))
+PHASES: Final = Bounds(0.0, 1e12, True, True)
+
+
+def _seen(lowest: float, highest: float) -> Bounds:
+    return Bounds(lowest, highest, True, True)
+
+
+INPUTS: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "mass",
+        "m",
+        "kg",
+        "moving mass: electromagnet and pin",
+        POSITIVE,
+        0.010,
+        "assumed: 1.2 cm3 of iron and copper, 8.4 g/cm3",
+        "drive",
+        seen=_seen(1e-6, 5.0),
+        limits=ABOVE_ZERO,
+    ),
+    Quantity(
+        "stiffness",
+        "k",
+        "N/m",
+        "stiffness of the spring that holds the electromagnet",
+        POSITIVE,
+        100.0,
+        "assumed: a natural frequency of 16 Hz with a mass of 10 g",
+        "drive",
+        seen=_seen(1e-5, 1e7),
+        limits=ABOVE_ZERO,
+    ),
+    Quantity(
+        "damping",
+        "b",
+        "N*s/m",
+        "viscous damping of the drive",
+        NON_NEGATIVE,
+        None,
+        "the damping ratio 0.16 below, with m = 10 g and k = 100 N/m",
+        "drive",
+        optional=True,
+        example=0.32,
+        remark="give this or damping_ratio",
+        seen=_seen(0.0, 1e5),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "damping_ratio",
+        "ζ",
+        "1",
+        "damping over critical damping, b / (2 sqrt(m k))",
+        NON_NEGATIVE,
+        0.16,
+        f"{PAPER}, Fig. 4: 0.04, 0.16, 0.32, read as ratios; the middle one",
+        "drive",
+        optional=True,
+        remark="give this or damping",
+        seen=_seen(0.0, 1e3),
+        limits=RATIOS,
+    ),
+    Quantity(
+        "plate.kinetic",
+        "F_p",
+        "N",
+        "friction force of the plate while sliding, magnet off",
+        NON_NEGATIVE,
+        0.022,
+        STEEL.format("0.225 (the middle)"),
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "plate.static",
+        "F_p,s",
+        "N",
+        "largest friction force of the plate without sliding",
+        NON_NEGATIVE,
+        0.0265,
+        STEEL.format("0.27 (oxidised)"),
+        optional=True,
+        remark="the kinetic one unless given",
+        follows=("plate.kinetic",),
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "plate.curve",
+        "F_p(|u|)",
+        "N",
+        "friction force of the plate over sliding speed, linear between rows",
+        NON_NEGATIVE,
+        source=STEEL.format("0.225 falling to 0.15 (the lowest)"),
+        optional=True,
+        remark="speeds from 0 m/s up; kinetic may then be left out",
+        rows_of="curve",
+        rows=((0.0, 0.022), (0.05, 0.015)),
+        follows=("plate.kinetic",),
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "finger.kinetic",
+        "F_f",
+        "N",
+        "friction force of the finger while sliding",
+        NON_NEGATIVE,
+        0.005,
+        "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 10 mN of touch, assumed",
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "finger.static",
+        "F_f,s",
+        "N",
+        "largest friction force of the finger without sliding",
+        NON_NEGATIVE,
+        0.0075,
+        f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
+        optional=True,
+        remark="the kinetic one unless given",
+        follows=("finger.kinetic",),
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "finger.curve",
+        "F_f(|u|)",
+        "N",
+        "friction force of a rigid finger over sliding speed, linear between rows",
+        NON_NEGATIVE,
+        source="assumed: by a fifth less at 50 mm/s",
+        optional=True,
+        remark="speeds from 0 m/s up; kinetic may then be left out",
+        rows_of="curve",
+        rows=((0.0, 0.005), (0.05, 0.004)),
+        follows=("finger.kinetic",),
+        seen=_seen(0.0, 1e3),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "finger.stiffness",
+        "k_f",
+        "N/m",
+        "tangential stiffness of the finger's skin, which stretches before it slips",
+        POSITIVE,
+        None,
+        FINGER,
+        optional=True,
+        example=1000.0,
+        remark="rigid unless given",
+        seen=_seen(1e-2, 1e12),
+        limits=ABOVE_ZERO,
+    ),
+    Quantity(
+        "mouse_velocity",
+        "v_p",
+        "m/s",
+        "velocity of the plate under the mouse",
+        FINITE,
+        0.060,
+        "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
+        "motion",
+        remark="its sign is the direction; one value, or rows over time",
+        rows_of="profile",
+        rows=((0.0, 0.060), (0.1, 0.0)),
+        seen=_seen(0.0, 5.0),
+        limits=EITHER_WAY,
+    ),
+    Quantity(
+        "plate_load",
+        "λ",
+        "1",
+        "factor on the plate's friction, as the magnet pulls or lets go",
+        NON_NEGATIVE,
+        None,
+        "assumed: a magnet that held the pin with four times its weight lets go in 5 ms",
+        "motion",
+        optional=True,
+        remark="1 unless given; one value, or rows over time",
+        example=1.0,
+        rows_of="profile",
+        rows=((0.0, 5.0), (0.005, 1.0)),
+        seen=_seen(0.0, 1e4),
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "displacement",
+        "x_0",
+        "m",
+        "deflection of the pin from the spring's rest at release",
+        FINITE,
+        0.002,
+        "assumed: the pin was carried along a line 2 mm wide",
+        "motion",
+        optional=True,
+        remark="0 m unless given",
+        seen=_seen(0.0, 0.1),
+        limits=EITHER_WAY,
+    ),
+    Quantity(
+        "velocity",
+        "v_0",
+        "m/s",
+        "velocity of the pin in the mouse at release",
+        FINITE,
+        None,
+        f"{PAPER}: the pin is released while the plate carries it",
+        "motion",
+        optional=True,
+        example=0.060,
+        remark="the plate's velocity unless given",
+        seen=_seen(0.0, 50.0),
+        limits=EITHER_WAY,
+    ),
+    Quantity(
+        "skin_stretch",
+        "s_0",
+        "m",
+        "stretch of a compliant finger's skin that grips the pin at release",
+        FINITE,
+        None,
+        "assumed: half of what static friction holds, 7.5 mN / (1000 N/m)",
+        "motion",
+        optional=True,
+        example=3.75e-6,
+        remark="that of skin slid along, for a pin at rest none, unless given",
+        follows=("finger.static", "finger.stiffness"),
+        seen=_seen(0.0, 0.05),
+        limits=EITHER_WAY,
+    ),
+    Quantity(
+        "duration",
+        "T",
+        "s",
+        "how long the motion is followed",
+        POSITIVE,
+        None,
+        "a few periods of the slow decay",
+        "motion",
+        optional=True,
+        example=0.3,
+        remark="long enough to see how it ends unless given",
+        seen=_seen(1e-6, 1e7),
+        limits=ABOVE_ZERO,
+    ),
+    Quantity(
+        "settling_band",
+        "ε",
+        "1",
+        "half the band about the end in which the motion counts as settled, of |x(0) - x_end|",
+        SHARE,
+        0.05,
+        "usual beside 2 % in control engineering",
+        "motion",
+        optional=True,
+        remark="0.05 unless given",
+    ),
+)
+"""What a device file may give, in its order."""
+
+PARTS: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE, limits=FROM_ZERO
+    ),
+    Quantity(
+        "static",
+        "F_s",
+        "N",
+        "largest friction force without sliding",
+        NON_NEGATIVE,
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "contact.stiffness",
+        "k_c",
+        "N/m",
+        "tangential stiffness of a contact",
+        POSITIVE_OR_RIGID,
+        limits=OR_INFINITE,
+    ),
+    Quantity(
+        "curve.speed",
+        "|u|",
+        "m/s",
+        "sliding speed in a friction curve",
+        NON_NEGATIVE,
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "curve.force",
+        "F(|u|)",
+        "N",
+        "kinetic friction in a friction curve",
+        NON_NEGATIVE,
+        limits=FROM_ZERO,
+    ),
+    Quantity(
+        "curve.slope",
+        "dF/d|u|",
+        "N*s/m",
+        "slope of a friction curve between rows",
+        FINITE,
+        limits=EITHER_WAY,
+    ),
+    Quantity("profile.time", "t", "s", "time of a profile's row", FINITE, limits=EITHER_WAY),
+    Quantity("profile.value", "y", "1", "value of a profile's row", FINITE, limits=EITHER_WAY),
+    Quantity(
+        "profile.rate", "dy/dt", "1/s", "rate of a profile between rows", FINITE, limits=EITHER_WAY
+    ),
+    Quantity("natural_frequency", "ω_0", "rad/s", "undamped natural frequency, sqrt(k/m)"),
+    Quantity(
+        "phase", "ω_0 T", "rad", "natural frequency times duration", NON_NEGATIVE, limits=PHASES
+    ),
+)
+"""What the parts of a drive are made of in Python, and what follows from them."""
+
+COLUMNS: Final[dict[str, tuple[str, str]]] = {
+    "curve": ("curve.speed", "curve.force"),
+    "profile": ("profile.time", "profile.value"),
+    "places": ("place.x", "place.y"),
+}
+"""What stands in the rows of a curve, of a profile and of places, by the names of the parts."""

@@ -1,0 +1,154 @@
+"""The table of quantities, last part: the numbers of a motion."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pindrive.quantities.drive import PAPER
+from pindrive.quantities.quantity import Quantity
+
+_USE: Final[tuple[tuple[str, str, str, str], ...]] = (
+    ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
+    ("time_stuck", "t_{},stuck", "s", "time stuck, {}"),
+    ("distance_slid", "s_{}", "m", "distance slid, {}"),
+    ("dissipated", "W_{}", "J", "energy turned into heat, {}"),
+    ("peak_force", "R_{},max", "N", "largest friction force on the pin, {}"),
+)
+
+TRANSIENT: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "transient.peak_displacement",
+        "x_m,a",
+        "m",
+        "displacement at the first turning point on the way out",
+        source=f"{PAPER}, (14)",
+    ),
+    Quantity(
+        "transient.peak_time",
+        "t_a",
+        "s",
+        "time of the peak displacement",
+        source=f"{PAPER}, (13)",
+    ),
+    Quantity(
+        "transient.trough_displacement",
+        "x_m,c",
+        "m",
+        "displacement at the turning point that follows the peak",
+        source=f"{PAPER}, (16)",
+    ),
+    Quantity(
+        "transient.trough_time",
+        "t_c",
+        "s",
+        "time of the trough",
+        source=f"{PAPER}, (15)",
+    ),
+    Quantity(
+        "transient.swing",
+        "x_m,a - x_m,c",
+        "m",
+        "from peak to trough",
+        source=f"{PAPER}, (17)",
+    ),
+    Quantity(
+        "transient.return_velocity",
+        "v_m,b",
+        "m/s",
+        "extreme velocity on the way back",
+        source=f"{PAPER}, (20)",
+    ),
+    Quantity(
+        "transient.return_velocity_time",
+        "t_b",
+        "s",
+        "time of the extreme return velocity",
+        source=f"{PAPER}, (19)",
+    ),
+    Quantity(
+        "transient.first_reversal_time",
+        "t_1",
+        "s",
+        "first time the pin stops sliding on the plate",
+        source=f"{PAPER}, (21)",
+    ),
+    Quantity(
+        "transient.settling_time",
+        "t_s",
+        "s",
+        "from then on within the settling band about the resting place",
+        source=f"{PAPER}, the time of the transitional period",
+    ),
+    Quantity(
+        "transient.rest_time",
+        "t_r",
+        "s",
+        "from then on at rest for good; infinite for a motion that never comes to rest",
+    ),
+    Quantity(
+        "transient.last_event_time",
+        "t_e",
+        "s",
+        "last change at a contact; 0 without any, infinite where they go on for ever",
+    ),
+    Quantity(
+        "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"
+    ),
+    Quantity(
+        "transient.peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched"
+    ),
+    Quantity("transient.settled", "", "", "whether the motion settled in its duration"),
+    *(
+        Quantity(
+            f"transient.{contact}.{name}",
+            symbol.format(contact[0]),
+            unit,
+            meaning.format(where),
+        )
+        for contact, where in (("plate", "at the plate"), ("finger", "at the finger"))
+        for name, symbol, unit, meaning in _USE
+    ),
+)
+"""The numbers of a transient."""
+
+ENDING: Final[tuple[Quantity, ...]] = (
+    Quantity("ending.position", "x_end", "m", "resting place, or middle of the final oscillation"),
+    Quantity("ending.steady_since", "t_end", "s", "when the final oscillation began"),
+    Quantity("ending.amplitude", "X_end", "m", "amplitude of the final oscillation"),
+    Quantity("ending.period", "T_end", "s", "period of the final oscillation"),
+)
+"""How a motion ends, in numbers."""
+
+ENERGY: Final[tuple[Quantity, ...]] = (
+    Quantity("energy.kinetic_start", "E_k,0", "J", "kinetic energy at release"),
+    Quantity("energy.kinetic_end", "E_k", "J", "kinetic energy at the end"),
+    Quantity("energy.spring_start", "E_s,0", "J", "energy in the spring at release"),
+    Quantity("energy.spring_end", "E_s", "J", "energy in the spring at the end"),
+    Quantity("energy.skin_start", "E_f,0", "J", "energy in a compliant finger at release"),
+    Quantity("energy.skin_end", "E_f", "J", "energy in a compliant finger at the end"),
+    Quantity("energy.plate_work", "W_in", "J", "work that the moving plate puts in"),
+    Quantity("energy.inertia_work", "W_a", "J", "work of the accelerating housing"),
+    Quantity("energy.damper_dissipated", "W_b", "J", "energy turned into heat in the damper"),
+    Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
+    Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),
+    Quantity("energy.residual", "W_res", "J", "what the terms leave over: rounding alone"),
+)
+"""The energy ledger of a motion."""
+
+CERTIFICATE: Final[tuple[Quantity, ...]] = (
+    Quantity("certificate.motion_law", "r_a", "1", "equation of motion between events"),
+    Quantity("certificate.kinematics", "r_v", "1", "velocity is the rate of position"),
+    Quantity("certificate.friction_law", "r_k", "1", "kinetic friction where a contact slides"),
+    Quantity("certificate.force_bound", "r_F", "1", "friction within its bounds"),
+    Quantity("certificate.sliding_sign", "r_s", "1", "friction opposes sliding"),
+    Quantity("certificate.sticking", "r_0", "1", "a stuck contact does not slide"),
+    Quantity("certificate.continuity", "r_c", "1", "position and velocity without jumps"),
+    Quantity(
+        "certificate.transitions", "r_t", "1", "breaks loose or crosses only where it cannot hold"
+    ),
+    Quantity("certificate.energy", "r_E", "1", "the energy ledger closes"),
+    Quantity("certificate.dissipation", "r_D", "1", "friction and damper never feed energy in"),
+)
+"""The largest residual of each law, relative to the size of its terms."""
+
+OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE

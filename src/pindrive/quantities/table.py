@@ -1,0 +1,130 @@
+"""The table of quantities: every number that goes in or comes out, named, bounded and sourced once.
+
+Command-line flags, device files, error messages, table headings and file attributes read it.
+Only the standard library is imported, so that a command starts fast.
+"""
+
+from __future__ import annotations
+
+import warnings
+from operator import index
+from typing import Final, SupportsFloat, SupportsIndex, cast
+
+from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
+from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.evaluation import JUDGE
+from pindrive.quantities.quantity import Quantity, Rows
+from pindrive.quantities.results import OUTPUTS
+
+DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
+"""What the whole device adds."""
+
+QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
+
+
+def refusal(label: str, required: str, given: object, where: str = "") -> str:
+    """The one wording of a refused value: place, quantity, what it must be, what it was."""
+    return f"{where}: {label} must be {required}, got {given}".removeprefix(": ")
+
+
+def check(
+    name: str,
+    value: SupportsFloat,
+    *,
+    where: str = "",
+    label: str | None = None,
+    given: str | None = None,
+) -> float:
+    """`value` as a float, if it is a number that the quantity called `name` may take.
+
+    Args:
+        name: a name of the table.
+        value: SI value.
+        where: the place it was written, said first in the message: file and key.
+        label: what the message calls the quantity; its name unless given.
+        given: how the value was written, for the message; `value` with its SI unit unless given.
+
+    Raises:
+        ValueError: no number, not finite, or out of bounds.
+    """
+    quantity = QUANTITIES[name]
+    label = name if label is None else label
+    if type(value) is float:
+        number = value
+    elif isinstance(value, (list, tuple)) or getattr(value, "shape", None):
+        many = "one number; simulate_batch takes arrays"
+        if quantity.rows_of == "profile":
+            many = "a number or a Profile of what changes over time; simulate_batch takes arrays"
+        size = getattr(value, "shape", None)
+        shown = f"{len(cast(list[object], value))} values" if size is None else f"an array {size}"
+        raise ValueError(refusal(label, many, shown, where))
+    else:
+        try:
+            if isinstance(value, (str, bytes, bool)):
+                raise TypeError
+            number = float(value)
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(refusal(label, quantity.kind, repr(value), where)) from None
+    if required := quantity.required(number):
+        unit = "" if quantity.unit == "1" else quantity.unit
+        shown = given if given is not None else f"{number!r} {unit}".rstrip()
+        raise ValueError(refusal(label, required, shown, where))
+    return number
+
+
+def check_whole(
+    value: object, label: str, least: int = 1, most: int | None = None, *, where: str = ""
+) -> int:
+    """`value` as an int, if it is a whole number from `least` up, to `most` where that is given.
+
+    Truth values are none, nor are floats; NumPy's integers are.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    upper = f"from {least} to {most}" if most is not None else f"of at least {least}"
+    try:
+        number = least - 1 if isinstance(value, bool) else index(cast(SupportsIndex, value))
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        raise ValueError(refusal(label, f"a whole number {upper}", repr(value), where))
+    return number
+
+
+class ImplausibleValueWarning(UserWarning):
+    """A value is far from that of any tactile device; it may be in another unit."""
+
+
+def warn_of(name: str, value: float | Rows, *, label: str = "", stacklevel: int = 1) -> None:
+    """Warn if a value of the quantity called `name`, SI, or one in its rows, is implausible.
+
+    Args:
+        name: a name of the table of quantities.
+        value: a number, or rows of which the second column is of that quantity.
+        label: what the warning calls it; its name unless given.
+        stacklevel: as for `warnings.warn`, from the caller on.
+    """
+    values = (value,) if isinstance(value, (float, int)) else [y for _, y in value]
+    for y in values:
+        words = QUANTITIES[name].doubt(y, label)
+        if words:
+            warnings.warn(words, ImplausibleValueWarning, stacklevel=stacklevel + 1)
+            return
+
+
+def short(name: str, value: float) -> str:
+    """A value as a caption gives it: "26.5 mN"."""
+    quantity = QUANTITIES[name]
+    return f"{digits(value * quantity.display_scale)} {quantity.display_unit}".rstrip()
+
+
+def duration(value: float) -> str:
+    """A time (s), long ones in seconds."""
+    return short("duration", value) if value < 2.0 else f"{digits(value)} s"
+
+
+def digits(value: float) -> str:
+    """Four digits, or all before the point where they are few more."""
+    text = f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
+    return text.replace("-", "\N{MINUS SIGN}")

@@ -1,0 +1,110 @@
+"""Text with a unit to an SI number: "12 g" is 0.012 kg, to the last bit.
+
+The registry holds the units in which a pin drive is described, no more: pint's own takes a
+hundred times as long to build. Conversion is decimal, so that "22 mN" and 0.022 are one number.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from decimal import Decimal
+from functools import cache
+
+from pindrive.lazy import pint
+
+DEFINITIONS = """
+kilo- = 1e3 = k-
+centi- = 1e-2 = c-
+milli- = 1e-3 = m-
+micro- = 1e-6 = µ- = μ- = u-
+nano- = 1e-9 = n-
+meter = [length] = m = metre
+inch = 0.0254 * meter = in
+gram = [mass] = g
+pound = 453.59237 * gram = lb
+second = [time] = s
+minute = 60 * second = min
+newton = kilogram * meter / second ** 2 = N
+gram_force = 0.00980665 * newton = gf
+pound_force = 4.4482216152605 * newton = lbf
+percent = 0.01
+radian = [] = rad
+degree = 0.0174532925199432957692 * radian = deg = °
+hertz = 1 / second = Hz
+joule = newton * meter = J
+watt = joule / second = W
+ampere = [current] = A
+volt = watt / ampere = V
+ohm = volt / ampere = Ω = Ω
+henry = ohm * second = H
+tesla = volt * second / meter ** 2 = T
+kelvin = [temperature] = K
+"""
+
+_NUMBER_AND_UNIT = re.compile(
+    r"\s*(?P<number>[+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))(?P<unit>.*)",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?![\d,])")
+_PLAIN = str.maketrans({"·": "*", "⋅": "*", "×": "*", "−": "-", "²": "^2"})
+
+
+class UnitError(ValueError):
+    """Text that is no number with a unit of the expected kind; says what is expected."""
+
+
+def to_si(text: str, unit: str, example: str) -> float:
+    """The number in `text`, a number and a unit, in the SI unit `unit`.
+
+    Args:
+        text: "12 g", "1.5e-3 m", "20 %"; a bare number only where `unit` is "1".
+        unit: SI unit, "1" for dimensionless.
+        example: how such a quantity may be written, for the message.
+
+    Raises:
+        UnitError: no number, no unit, an unknown unit or one of another dimension.
+    """
+    plain = text.translate(_PLAIN)
+    if _DECIMAL_COMMA.match(plain):
+        point = text.strip().replace(",", ".", 1)
+        raise UnitError(f"a number whose decimal sign is a point, like {quoted(point)}")
+    match = _NUMBER_AND_UNIT.fullmatch(plain)
+    if match is None:
+        kind = "a number" if unit == "1" else "a number with its unit"
+        raise UnitError(f'{kind}, like "{example}"')
+    number, written = match["number"], match["unit"].strip().replace("%", "percent")
+    if not written and unit != "1":
+        raise UnitError(f'a number with its unit (give a unit, like "{example}")')
+    try:
+        return float(Decimal(number) * _factor(written, unit))
+    except ArithmeticError:  # beyond even decimal's range; infinite or 0 as a float
+        return float(number)
+    except LookupError:
+        kind = "a plain number or a percentage" if unit == "1" else f"in {unit} or a unit alike"
+        raise UnitError(f'{kind}, like "{example}"') from None
+
+
+def quoted(value: object) -> str:
+    """`value` as one short piece of a message: text in quotes, all on one line."""
+    text = json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+@cache
+def _factor(written: str, unit: str) -> Decimal:
+    """How many of the SI unit `unit` one `written` is; LookupError if they are not of a kind."""
+    registry = _registry()
+    try:
+        source = registry.parse_units(written)
+        target = registry.parse_units("" if unit == "1" else unit)
+        return Decimal(registry.convert(Decimal(1), source, target))
+    except Exception:  # pint lets through whatever goes wrong in the parts of its parser
+        raise LookupError(written) from None
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Decimal]:
+    registry: pint.UnitRegistry[Decimal] = pint.UnitRegistry(None, non_int_type=Decimal)
+    registry.load_definitions(DEFINITIONS.strip().splitlines())
+    return registry

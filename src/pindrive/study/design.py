@@ -1,0 +1,188 @@
+"""What a study is: a device, the axes along which it changes, and every point in one order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from functools import cache
+from math import prod
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.files.device import Setting, device_of
+from pindrive.files.ratios import written
+from pindrive.files.template import DRIVE, NUMBERS
+from pindrive.motion.batch import batched
+from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from pindrive.files.device import DeviceFile
+    from pindrive.study.outputs import Demand
+    from pindrive.study.page import StudyPage
+
+    Columns = dict[str, NDArray[np.float64]]
+
+
+CHUNK: Final = 1 << 16
+"""Points of a chunk: half a second's work, 15 MB of numbers."""
+SCANS: Final = 16
+"""The same of scans: from a quarter of a second's work with one pin to some with sixteen."""
+COUNTS: Final = ("array.columns", "array.rows")
+"""Keys that are whole numbers."""
+
+
+def variable(key: str) -> str:
+    """What a key of the device file is called in Python and in a NetCDF file."""
+    return NUMBERS[key].name.replace(".", "_")
+
+
+def has_part(key: str, scans: bool) -> bool:
+    """Whether a key of the device file has a part in scans, or else in releases."""
+    return not key.startswith("motion.") if scans else key in DRIVE
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """Keys that change together: one grid axis, several in a zip, or all sampled ones."""
+
+    name: str
+    size: int
+    axes: Mapping[str, Grid | Distribution]
+    sample: Sample | None = None
+
+    def at(self, index: NDArray[np.int64]) -> Columns:
+        """The value of each key at these places."""
+        if self.sample:
+            parts = self.sample.parts(index)
+            return {
+                key: axis.ppf(part)
+                for part, (key, axis) in zip(parts, self.axes.items(), strict=True)
+                if isinstance(axis, Distribution)
+            }
+        return {
+            key: axis.at(index)
+            for key, axis in self.axes.items()
+            if not isinstance(axis, Distribution)
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """A study: its points are the product of its dimensions, the last one changing fastest."""
+
+    path: Path
+    name: str
+    text: str
+    """The study file, and the device file where it names one."""
+    device: DeviceFile
+    dimensions: tuple[Dimension, ...]
+    links: Mapping[str, Linked]
+    outputs: tuple[str, ...]
+    """Variables to keep, in the order of the file."""
+    chunk: int = CHUNK
+    tolerances: Mapping[str, Distribution]
+    tolerance_links: Mapping[str, Linked]
+    demands: tuple[Demand, ...] = ()
+    page: StudyPage | None = None
+    """What is scanned at every point; None: every point is a release."""
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from, or reads when it is worked out."""
+        page = self.page.page.files.values() if self.page else ()
+        return (self.path, self.device.path, *page)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many points along each dimension."""
+        return tuple(dimension.size for dimension in self.dimensions)
+
+    @property
+    def size(self) -> int:
+        """How many points there are."""
+        return prod(self.shape)
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks they make."""
+        return -(-self.size // self.chunk)
+
+    def bounds(self, chunk: int) -> tuple[int, int]:
+        """The first point of a chunk, and the first of the next."""
+        return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
+
+    @property
+    def at_a_time(self) -> int:
+        """How many points are worked out between two looks at how far it has come."""
+        return 16 * SCANS if self.page else CHUNK
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The device's value of each key that has a part in this study, SI; None: not given."""
+        derived = "drive.damping" if self.device.by_ratio else "drive.damping_ratio"
+        return {
+            key: value
+            for key, value in self.device.values().items()
+            if has_part(key, self.page is not None) and key != derived
+        }
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Every swept key with its values, those that follow another last."""
+        found: dict[str, Axis] = {}
+        for dimension in self.dimensions:
+            found.update(dimension.axes)
+        return found | dict(self.links)
+
+    def columns(self, begin: int, end: int) -> Columns:
+        """The value of every swept key at the points from `begin` up to `end`."""
+        places = np.unravel_index(np.arange(begin, end), self.shape)
+        found: Columns = {}
+        for dimension, index in zip(self.dimensions, places, strict=True):
+            found |= dimension.at(index)
+        return with_links(self.device, found, self.links)
+
+    def identity(self) -> dict[str, Any]:
+        """All that its numbers follow from: two studies with one identity have one answer."""
+        from pindrive import __version__
+
+        page = {"page": self.page.identity()} if self.page else {}
+        found: dict[str, Any] = json.loads(
+            json.dumps(
+                {
+                    "pindrive": __version__,
+                    "device": self.values,
+                    **page,
+                    "dimensions": [asdict(dimension) for dimension in self.dimensions],
+                    "links": {key: asdict(link) for key, link in self.links.items()},
+                    "outputs": self.outputs,
+                    "chunk": self.chunk,
+                }
+            )
+        )
+        return found
+
+
+def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
+    """The device at one point, which the keys' values (SI) say.
+
+    Raises:
+        ConfigError: there is none, the values do not go together.
+    """
+    given = [Setting(key, written(key, value), "") for key, value in at.items()]
+    return device_of(plan.device.path, plan.device.tables, given, whole=plan.page is not None)
+
+
+@cache
+def flags(name: str) -> tuple[str, ...]:
+    """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
+    names = ("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic", "mouse_velocity")
+    one = batched({**dict.fromkeys(names, 1.0), "displacement": 0.0})
+    refused = ("refused",) if name == "status" else ()
+    return (*one[name].attrs["flag_meanings"].split(), *refused)

@@ -1,0 +1,102 @@
+"""Which parameter matters at the device's own values: exact derivatives as elasticities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Final
+
+from pindrive.files.device import motion_of
+from pindrive.study.design import variable
+from pindrive.study.distributions import base_value, exponents
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from pindrive.study.design import Plan
+    from pindrive.study.distributions import Linked
+
+_WITHOUT: Final = ("motion.duration", "motion.settling_band")
+"""Keys along which the core has no derivatives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Elasticities:
+    """By how many per cent each number changes when a key grows by one per cent."""
+
+    keys: tuple[str, ...]
+    values: Mapping[str, float]
+    """The numbers themselves, by their variables, SI."""
+    table: Mapping[str, Mapping[str, float]]
+    """d ln N / d ln p by number and key; NaN where it does not exist."""
+    duration: float
+    """The time over which they hold, s: it does not change with the keys."""
+    gaps: Mapping[str, str]
+    """Why, for each key with numbers that have no derivative."""
+
+
+def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
+    """The elasticity of every number to each key at the device's own values.
+
+    What follows a key changes with it: damping, where the device file gives its ratio, curves, and
+    keys that are linked. The derivatives are the core's own, on dual numbers.
+
+    Args:
+        plan: whose device.
+        keys: of device files, each with a value in the device.
+        links: keys that follow others.
+    """
+    motion = motion_of(plan.device)
+    changes, gaps = {}, {}
+    for key in keys:
+        followed = [key, *exponents(key, links)]
+        if key in _WITHOUT:
+            gaps[key] = "the core has none along it"
+        elif not base_value(plan.device, key) or not all(
+            isinstance(base_value(plan.device, name), float) for name in followed
+        ):
+            gaps[key] = "it is zero or not given"
+        else:
+            changes[key] = _changes(plan, key, links)
+    parameters = list(dict.fromkeys(name for change in changes.values() for name in change))
+    numbers = {k.replace(".", "_"): v for k, v in motion.numbers().items()}
+    slopes: dict[str, dict[str, float]] = {}
+    if parameters:
+        found = motion.sensitivity(parameters)
+        slopes = {k.replace(".", "_"): v for k, v in found.numbers.items()}
+        for key, change in changes.items():
+            reasons = [found.gaps[name] for name in change if name in found.gaps]
+            if reasons:
+                gaps[key] = reasons[0]
+
+    def elasticity(number: str, key: str) -> float:
+        value = numbers[number]
+        if key not in changes or number not in slopes or not isfinite(value) or value == 0.0:
+            return nan
+        slope = slopes[number]
+        return sum(slope[name] * change for name, change in changes[key].items()) / value
+
+    table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps)
+
+
+def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
+    """By how much each parameter of the motion changes, SI, where a key grows by its own size."""
+    drive = plan.device.drive
+    if key == "drive.damping_ratio":
+        return {"damping": drive.damping}
+    shares = exponents(key, links)
+    if plan.device.by_ratio and key in ("drive.mass", "drive.stiffness"):
+        shares["drive.damping"] = 0.5  # b = 2 ζ sqrt(m k)
+    found = {}
+    for name, share in shares.items():
+        table, _, part = name.rpartition(".")
+        contact = {"plate": drive.plate, "finger": drive.finger}.get(table)
+        tied = contact and part == "static" and contact.static_friction == contact.kinetic
+        if tied and name != key:
+            continue  # one number with the kinetic friction: the core changes it along
+        found[variable(name)] = share * base_value(plan.device, name)
+        if contact and part == "kinetic":  # its curve keeps its shape
+            rows = enumerate(contact.curve or ())
+            found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}
+    return found

@@ -1,0 +1,261 @@
+"""How a design fares in all its tolerances: spread, yield against a specification, worst case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.files.device import motion_of
+from pindrive.lazy import optimize, stats
+from pindrive.quantities import budgets
+from pindrive.quantities.quantity import counted
+from pindrive.study.distributions import Sample
+from pindrive.study.evaluate import evaluate, follow
+from pindrive.study.refusals import Refusal, exist, refusals
+from pindrive.study.sensitivity import Ranges, ranges_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from pindrive.motion.motion import Motion
+    from pindrive.study.design import Plan
+    from pindrive.study.outputs import Demand
+
+    Values = NDArray[np.float64]
+
+USUAL_COUNT: Final = 100_000
+USUAL_COUNT_OF_SCANS: Final = 1000
+"""A scan takes some ten thousand times as long as a release."""
+WATCHED: Final = ("transient_settling_time", "transient_swing")
+WATCHED_OF_SCANS: Final = ("judged_shown_part", "median_lag_on")
+_CONFIDENCE: Final = 0.95
+_POPULATION: Final = 15
+"""Members for each key of the search for the worst case."""
+_GENERATIONS: Final = 60
+_POPULATION_OF_SCANS: Final = 5
+_GENERATIONS_OF_SCANS: Final = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A part of the designs that exist, with its exact 95 % confidence interval.
+
+    The interval is that of Clopper and Pearson 1934.
+    """
+
+    met: int
+    of: int
+    low: float
+    high: float
+    without: int = 0
+    """How many have no number to meet the demand with, such as one that never settles."""
+
+    @property
+    def text(self) -> str:
+        """The part for a person: "97.482 %", never all nor none by rounding."""
+        shown = f"{100.0 * self.met / self.of:.3f}"
+        if shown == "100.000" and self.met < self.of:
+            return "> 99.999 %"
+        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
+
+    @classmethod
+    def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
+        """Of so many independent draws of designs that exist, at least 1."""
+        interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
+        return cls(met, of, float(interval.low), float(interval.high), without)
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase:
+    """Where a demand is missed by the most, or met by the least."""
+
+    demand: Demand
+    keys: Mapping[str, float]
+    """SI."""
+    value: float
+    """The number there, NaN where it does not exist."""
+    sampled: float
+    """The worst among the draws, before the search."""
+    motion: Motion | None
+    """The same point followed by itself; None of a scan."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """What `robustness` found."""
+
+    ranges: Ranges
+    draws: int
+    seed: int
+    own: Mapping[str, float]
+    """Numbers of the design itself."""
+    values: Mapping[str, Values]
+    """Watched numbers of every design that exists; NaN where it has none."""
+    refusals: tuple[Refusal, ...]
+    """Draws that cannot exist, as their values contradict each other: no designs."""
+    stopped: int
+    """Designs whose motion was stopped early, after too many events."""
+    shares: tuple[tuple[Demand, Share], ...]
+    """For each demand, how many designs meet it; without a number a design does not."""
+    all_met: Share | None
+    """How many meet all of them: the yield."""
+    worst: tuple[WorstCase, ...]
+
+    @property
+    def designs(self) -> int:
+        """Draws that exist."""
+        return self.draws - self.refused
+
+    @property
+    def refused(self) -> int:
+        """Draws that cannot exist."""
+        return sum(refusal.count for refusal in self.refusals)
+
+
+def robustness(
+    plan: Plan,
+    *,
+    count: int | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+    tell: Callable[[int, int], None] = lambda done, total: None,
+) -> Robustness:
+    """Draw designs within the tolerances of a study and hold them against its specification.
+
+    What keeps its ratio to another value varies with it unless it has a tolerance of its own (see
+    `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted apart.
+
+    Args:
+        plan: a study with tolerances.
+        count: independent random draws, at least 1; the confidence interval rests on them. 100 000
+            unless given, of scans 1000.
+        seed: of the draws and of the search for the worst case.
+        threads: all cores unless given.
+        tell: called with the points done and the points in all.
+
+    Raises:
+        ValueError: there are no tolerances, no draw can exist, or there are too many to keep.
+    """
+    ranges = ranges_of(plan, tolerances=True)
+    if count is None:
+        count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
+    usual = WATCHED_OF_SCANS if plan.page else WATCHED
+    watched = tuple(dict.fromkeys((*usual, *(demand.name for demand in plan.demands))))
+    each = len(ranges.scatter) + len(watched) + 1
+    of = f"{count} draws of {len(ranges.scatter)} keys and {len(watched) + 1} results"
+    budgets.DESIGN_VALUES.check(count * each, of)
+    sample = Sample(tuple(ranges.scatter), count, seed)
+
+    def numbers(points: Values) -> dict[str, Values]:
+        columns = ranges.columns(plan, points)
+        return evaluate(plan, columns, points.shape[1], (*watched, "status", "reason"), threads)
+
+    parts, drawn = [], []
+    for begin in range(0, count, plan.at_a_time):
+        end = min(begin + plan.at_a_time, count)
+        portions = zip(sample.parts(np.arange(begin, end)), ranges.scatter.values(), strict=True)
+        points = np.array([scatter.ppf(portion) for portion, scatter in portions])
+        drawn.append(points)
+        parts.append(numbers(points))
+        tell(end, count)
+    table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    points = np.concatenate(drawn, axis=1)
+
+    refused = refusals(plan, ranges.columns(plan, points), table["reason"])
+    designs = exist(table["status"])
+    if not designs.any():
+        words, reason = counted(count, "draw"), refused[0].reason
+        raise ValueError(f"{plan.path}: of {words} none can exist: {reason}")
+    points, table = points[:, designs], {name: values[designs] for name, values in table.items()}
+
+    met = {demand: demand.met(table[demand.name]) for demand in plan.demands}
+    every = np.logical_and.reduce([*met.values()]) if met else None
+    size = points.shape[1]
+    return Robustness(
+        ranges,
+        count,
+        seed,
+        _own(plan, watched),
+        {name: table[name] for name in watched},
+        refused,
+        int(np.count_nonzero(table["status"])),
+        tuple(
+            (d, Share.of_designs(int(m.sum()), size, int(np.isnan(table[d.name]).sum())))
+            for d, m in met.items()
+        ),
+        None if every is None else Share.of_designs(int(every.sum()), size),
+        tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
+    )
+
+
+def _own(plan: Plan, watched: tuple[str, ...]) -> dict[str, float]:
+    """Numbers of the design itself."""
+    if plan.page:
+        return {name: float(values[0]) for name, values in evaluate(plan, {}, 1, watched).items()}
+    return {k.replace(".", "_"): v for k, v in motion_of(plan.device).numbers().items()}
+
+
+def _worst(
+    plan: Plan,
+    ranges: Ranges,
+    demand: Demand,
+    points: Values,
+    table: Mapping[str, Values],
+    numbers: Callable[[Values], Mapping[str, Values]],
+    seed: int,
+) -> WorstCase:
+    """The worst of the draws, made worse by differential evolution within the ranges.
+
+    A range ends where its distribution does, or three standard deviations off.
+    """
+    spans = np.array([scatter.span for scatter in ranges.scatter.values()])
+    low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
+
+    def badness(excess: Values, status: Values) -> Values:
+        """Lower is worse; what never happens is worst, what cannot exist does not count."""
+        far = 1e6 * abs(demand.limit or 1.0)
+        return np.where(exist(status), -np.minimum(excess, far), far)
+
+    def at(parts: Values) -> Values:
+        found = numbers(low + width * parts.reshape(len(spans), -1))
+        return badness(demand.excess(found[demand.name]), found["status"])
+
+    inside = ((points >= spans[:, :1]) & (points <= spans[:, 1:])).all(axis=0)
+    first = badness(demand.excess(table[demand.name]), table["status"])
+    order = np.argsort(np.where(inside, first, np.inf), kind="stable")
+    population = _POPULATION_OF_SCANS if plan.page else _POPULATION
+    members = points[:, order[: max(5, population * len(spans))]]
+    started = ((members - low) / width).T
+    if len(started) < 5:
+        rng = np.random.default_rng(seed)
+        started = np.concatenate([started, rng.random((5 - len(started), len(spans)))])
+    search = optimize.differential_evolution(
+        at,
+        [(0.0, 1.0)] * len(spans),
+        init=np.clip(started, 0.0, 1.0),
+        maxiter=_GENERATIONS_OF_SCANS if plan.page else _GENERATIONS,
+        vectorized=True,
+        updating="deferred",
+        polish=False,
+        tol=1e-10,
+        rng=np.random.default_rng(seed),
+    )
+    best = members[:, :1] if first[order[0]] <= search.fun else low + width * search.x[:, None]
+    columns = {key: values.item() for key, values in ranges.columns(plan, best).items()}
+    sampled = float(table[demand.name][order[0]])
+    if plan.page:
+        return WorstCase(demand, columns, float(numbers(best)[demand.name][0]), sampled, None)
+    motion = follow(plan, columns)
+    value = motion.numbers()[_table_name(demand.name)]
+    return WorstCase(demand, columns, value, sampled, motion)
+
+
+def _table_name(name: str) -> str:
+    """The name in the table of quantities of a variable."""
+    from pindrive.study.outputs import NUMBERS
+
+    return NUMBERS[name].name

@@ -1,0 +1,352 @@
+"""A study worked off chunk by chunk into one file; interrupted, it goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pindrive.files.output import (
+    STUDY_NETCDF,
+    Output,
+    OutputError,
+    check_outputs,
+    check_unread,
+    naming,
+)
+from pindrive.lazy import h5py
+from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import refusal
+from pindrive.study.checkpoint import Journal, Tally, difference
+from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
+from pindrive.study.workers import DIED, workers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from pindrive.study.design import Plan
+
+
+Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
+"""Works out chunks of a plan, and hands over each when it is done, in any order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a sweep came to."""
+
+    path: Path
+    points: int
+    """Of the study that are in the file."""
+    worked_out: int
+    """Of them, those of this run."""
+    refused: int
+    settled: int
+    """-1 where the settling time is not among the outputs."""
+    seconds: float
+    complete: bool
+
+
+def sweep(
+    plan: Plan,
+    target: Path,
+    *,
+    resume: bool = False,
+    restart: bool = False,
+    stop_after: int | None = None,
+    work: Work | None = None,
+    tell: Callable[[int, int], None] = lambda done, total: None,
+) -> Result:
+    """Work off all points of a study into the NetCDF file `target`.
+
+    Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
+
+    Args:
+        plan: the study.
+        target: a NetCDF file.
+        resume: go on with what an interrupted run left, if there is any.
+        restart: throw away what an interrupted run left; an earlier study at `target` is replaced
+            when the new one is whole.
+        stop_after: stop when at least so many points are done; `resume` goes on.
+        work: how chunks are worked out; on all cores unless given.
+        tell: called after each chunk with the points done and the points in all.
+
+    Raises:
+        OutputError: an interrupted run or an earlier study is there and neither `resume` nor
+            `restart` is given, it is of another study, another file is there, or the disk is full
+            or cannot be written. Finished chunks are kept.
+    """
+    started = perf_counter()
+    if target.exists() and not target.is_file():
+        raise OutputError(f"{target}: cannot be written: not a regular file")
+    part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
+    check_outputs([Output(target, STUDY_NETCDF)], plan.inputs, consent=resume or restart)
+    for path in (part, notes):
+        check_unread(path, plan.inputs)
+    if resume and not notes.exists() and _is_complete(target, plan):
+        return Result(target, plan.size, 0, *_counted(target, plan), 0.0, True)
+    _check_target(target, notes, resume or restart)
+    with _journal(notes, part, plan, restart) as journal:
+        if not (journal.done and part.exists()):
+            journal.done.clear()
+            _begin(part, plan, target)
+        with Store(part, plan) as store, _keeping(part, journal):
+            _drop_damaged(journal, store, plan)
+            done = before = sum(tally.points for _, tally in journal.done.values())
+            tell(done, plan.size)
+            todo = [chunk for chunk in range(plan.chunks) if chunk not in journal.done]
+            if stop_after is not None:
+                todo = todo[: max(0, -(-(stop_after - done) // plan.chunk))]
+            for chunk, pieces in (work or on_threads())(plan, todo):
+                store.put(pieces)
+                tally = _tally(pieces)
+                journal.note(chunk, checksum(pieces), tally)
+                done += tally.points
+                tell(done, plan.size)
+            complete = done == plan.size
+            if complete:
+                store.sync()
+        tallies = [tally for _, tally in journal.done.values()]
+        if complete:
+            with naming(target):
+                os.replace(part, target)
+    if complete:
+        notes.unlink(missing_ok=True)
+    refused, settled = (sum(column) for column in list(zip(*tallies, strict=True))[1:] or ((), ()))
+    return Result(
+        target if complete else part,
+        done,
+        done - before,
+        refused,
+        settled if settled >= 0 else -1,
+        perf_counter() - started,
+        complete,
+    )
+
+
+def on_threads(threads: int | None = None) -> Work:
+    """Chunks side by side on the cores of this machine, as many at a time as there are threads.
+
+    Scans are worked out by as many processes instead: a script that sweeps them does so under
+    `if __name__ == "__main__":`, as all that begin processes.
+    """
+    count = worker_count(threads)
+
+    def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+        pool = workers(plan, min(count, len(chunks) or 1))
+        try:
+            yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
+        except BrokenProcessPool:
+            raise OutputError(f"{DIED}; finished chunks are kept, --resume goes on") from None
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+    return work
+
+
+def in_flight(
+    chunks: Iterable[int], most: int, submit: Callable[[int], Future[list[Piece]]]
+) -> Iterator[tuple[int, list[Piece]]]:
+    """The chunks as they get done, never more than `most` begun and not handed over."""
+    waiting = iter(chunks)
+    begun: dict[Future[list[Piece]], int] = {}
+    while True:
+        for chunk in waiting:
+            begun[submit(chunk)] = chunk
+            if len(begun) >= most:
+                break
+        if not begun:
+            return
+        ready, _ = wait(begun, return_when=FIRST_COMPLETED)
+        for future in ready:
+            chunk = begun.pop(future)
+            yield chunk, future.result()
+
+
+# ---- beginning and going on ----------------------------------------------------------------------
+
+
+def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
+    if not target.parent.is_dir():
+        raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
+    if notes.exists() and not may_be_there:
+        raise OutputError(
+            f"{notes}: an unfinished run is there; --resume goes on with it, --restart begins anew"
+        )
+
+
+@contextmanager
+def _journal(notes: Path, part: Path, plan: Plan, restart: bool) -> Iterator[Journal]:
+    """The study's journal; where it ends without a finished chunk nothing is left behind."""
+    empty = False
+    try:
+        with Journal(notes, plan.identity(), restart) as journal:
+            try:
+                yield journal
+            finally:
+                empty = not journal.done
+    finally:
+        if empty:
+            for path in (part, notes):
+                path.unlink(missing_ok=True)
+
+
+def _begin(part: Path, plan: Plan, target: Path) -> None:
+    """Lay the file out, where there is room for it."""
+    needed, free = bytes_of(plan), shutil.disk_usage(target.parent).free
+    if needed > free:
+        raise OutputError(
+            f"{target}: needs {human_bytes(needed)}, and the disk has {human_bytes(free)}; "
+            "take fewer points, or fewer outputs"
+        )
+    with naming(part):
+        part.unlink(missing_ok=True)
+        lay_out(part, plan)
+
+
+@contextmanager
+def _keeping(part: Path, journal: Journal) -> Iterator[None]:
+    """Says of a disk that fails which chunks are kept."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            f"{part}: cannot be written: {reason}; {_kept(len(journal.done))}"
+        ) from error
+
+
+def _kept(chunks: int) -> str:
+    """What an interrupted run leaves."""
+    if not chunks:
+        return "no chunk was finished yet"
+    finished = counted(chunks, "finished chunk is", "finished chunks are")
+    return f"{finished} kept, --resume goes on with {'it' if chunks == 1 else 'them'}"
+
+
+def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
+    """Forget chunks whose bytes are not those that were written."""
+    for chunk, (noted, _) in list(journal.done.items()):
+        if not 0 <= chunk < plan.chunks or checksum(store.read(plan, chunk)) != noted:
+            del journal.done[chunk]
+
+
+def _is_complete(target: Path, plan: Plan) -> bool:
+    """Whether the file is the whole of this study; one of another study is refused."""
+    if not target.is_file():
+        return False
+    try:
+        with h5py.File(target, "r") as file:
+            found: Any = file.attrs.get("identity")
+        written = json.loads(found)
+    except (OSError, ValueError, TypeError):
+        raise OutputError(f"{target}: is damaged; --restart replaces it") from None
+    if written != plan.identity():
+        what = difference(written, plan.identity())
+        raise OutputError(f"{target}: holds another study: {what}; --restart replaces it")
+    return True
+
+
+def _counted(target: Path, plan: Plan) -> tuple[int, int]:
+    """Refused and settled points of a finished file."""
+    with Store(target, plan) as store:
+        tallies = [_tally(_typed(store.read(plan, k))) for k in range(plan.chunks)]
+    settled = sum(tally.settled for tally in tallies)
+    return sum(tally.refused for tally in tallies), settled if settled >= 0 else -1
+
+
+def _typed(pieces: list[Piece]) -> list[Piece]:
+    from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, dtype
+
+    numbers = {*OUTPUTS, *SCAN_OUTPUTS}
+    return [
+        Piece(name, start, values.view(dtype(name)) if name in numbers else values)
+        for name, start, values in pieces
+    ]
+
+
+def _tally(pieces: list[Piece]) -> Tally:
+    values = {piece.name: piece.values for piece in pieces}
+    time = values.get("transient_settling_time")
+    settled = -1 if time is None else int(np.count_nonzero(~np.isnan(time)))
+    status = values["status"]
+    return Tally(len(status), int(np.count_nonzero(status)), settled)
+
+
+def human_bytes(number: int) -> str:
+    """Bytes for a person: "2.4 GB"."""
+    value = float(number)
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if value < 1000.0:
+            return f"{value:.3g} {unit}"
+        value /= 1000.0
+    return f"{value:.3g} TB"
+
+
+_PATIENCE = "20s"
+"""How long a scheduler may take to answer."""
+
+
+def on_cluster(address: str) -> Work:
+    """Chunks on the workers of a Dask scheduler, such as tcp://10.0.0.1:8786.
+
+    A worker that dies loses what it was at, and the scheduler gives it to another. The workers need
+    the same version of pindrive.
+
+    Raises:
+        ValueError: Dask's distributed is not installed, or nothing answers at the address.
+    """
+    try:
+        from distributed import Client, KilledWorker
+    except ImportError:
+        raise ValueError(
+            "--cluster needs Dask's distributed; pip install 'pindrive[cluster]'"
+        ) from None
+
+    def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
+        try:
+            client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        except (OSError, ValueError) as error:
+            required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786"
+            given = f"{address}: {str(error) or type(error).__name__}"
+            raise ValueError(refusal("--cluster", required, given)) from None
+        with client, client.get_executor(pure=False) as executor:
+            _check_versions(client.run(_version))
+            most = 2 * max(1, sum(client.nthreads().values()))
+            try:
+                yield from in_flight(chunks, most, lambda k: executor.submit(work_out, plan, k))
+            except KilledWorker as error:
+                raise OutputError(
+                    f"--cluster {address}: workers died one after the other: {error}; finished "
+                    "chunks are kept, --resume goes on with them"
+                ) from None
+
+    return work
+
+
+def _version() -> str:
+    """The version that a worker has."""
+    from pindrive import __version__
+
+    return __version__
+
+
+def _check_versions(of_workers: Mapping[str, str]) -> None:
+    """Refuse workers that would compute with another version."""
+    for worker, version in of_workers.items():
+        if version != _version():
+            given = f"{version} on {worker}"
+            raise ValueError(refusal("the workers' pindrive", f"version {_version()}", given))

@@ -1,0 +1,431 @@
+"""Slices of a study's file: one number over one key or two; and how figures name both."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import product
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.files import template
+from pindrive.files.device import keys_meant
+from pindrive.files.template import WHOLE, usual
+from pindrive.lazy import xr
+from pindrive.quantities.table import short
+from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.study.design import variable
+from pindrive.study.outputs import (
+    MEASURED,
+    NUMBERS,
+    OUTPUTS,
+    SCAN_MEASURED,
+    SCAN_OUTPUTS,
+    known_output,
+    label,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from pindrive.quantities.quantity import Quantity
+
+    Values = NDArray[np.float64]
+
+
+QUANTITY: Final[dict[str, Quantity]] = {
+    variable(key): q for key, q in template.NUMBERS.items()
+} | NUMBERS
+"""Inputs and numbers by the names of their variables."""
+
+_WORDS: Final = {
+    "plate_kinetic": "plate friction",
+    "plate_static": "static plate friction",
+    "finger_kinetic": "finger friction",
+    "finger_static": "static finger friction",
+    "finger_stiffness": "skin stiffness",
+    "velocity": "release velocity",
+    "latency": "latency of the control block",
+    "fall_time": "fall time of the pull",
+    "rise_time": "rise time of the pull",
+    "judged_shown_part": "part of the lines shown",
+    "judged_shown": "lines shown",
+    "judged_unseen": "lines unseen",
+    "judged_merged": "lines merged",
+    "judged_faint": "lines too faint",
+    "judged_echoes": "false lines",
+    "judged_unsettled": "lines not settled",
+    "judged_direction": "lines with a direction",
+    "judged_sure": "lines with a sure direction",
+    "median_skin": "median skin motion",
+    "worst_skin": "least skin motion",
+    "hand_duration": "time of the hand's way",
+    "magnet_on_part": "part of the time a magnet is on",
+    "coil_warming": "warming of the coil",
+}
+_TALL: Final = re.compile(r"([A-Za-z'α-ωΑ-Ω]+)_(.+)")
+
+
+def words(name: str) -> str:
+    """A variable in words: "plate friction", "settling time", "median lag at a line's end"."""
+    if name in SCAN_MEASURED and name.endswith(("_on", "_off")):
+        name, _, edge = name.rpartition("_")
+        return f"{words(name)} at a line's {'begin' if edge == 'on' else 'end'}"
+    return _WORDS.get(name, label(name).replace("_", " "))
+
+
+def symbol(name: str) -> str:
+    r"""Its symbol for mathtext: "$F_\mathrm{p}$"; empty where it has none."""
+    text = QUANTITY[name].symbol
+    parts = _TALL.fullmatch(text)
+    if parts is None:
+        return f"${text}$" if text else ""
+    if " " in text:
+        return ""
+    return rf"${parts[1]}_\mathrm{{{parts[2].replace('_', ' ')}}}$"
+
+
+def axis_label(name: str) -> str:
+    r"""What stands along an axis: "plate friction $F_\mathrm{p}$ (mN)"."""
+    unit = QUANTITY[name].display_unit
+    said = " ".join(filter(None, (words(name), symbol(name))))
+    return f"{said} ({unit})" if unit else said
+
+
+def value(name: str, number: float) -> str:
+    """A value with its symbol: "$m$ = 10 g"."""
+    return f"{symbol(name) or words(name)} = {short(QUANTITY[name].name, number)}"
+
+
+def values(given: Mapping[str, float], width: int) -> str:
+    """Values one after the other, broken into lines of about so many characters."""
+    lines = [""]
+    for name, number in given.items():
+        said = value(name, number)
+        shown = re.sub(r"[$\\{}_]|mathrm", "", f"{lines[-1]}, {said}")
+        if lines[-1] and len(shown) > width:
+            lines.append(said)
+        else:
+            lines[-1] = f"{lines[-1]}, {said}" if lines[-1] else said
+    return ",\n".join(lines)
+
+
+_MOST_SLICES: Final = 3
+_MOST_CURVES: Final = 5
+_BINS: Final = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One number over x, or over y and x, SI; NaN where it does not exist."""
+
+    number: str
+    keys: Sequence[str]
+    """x alone, or y and x: the axes of `values`."""
+    at: Mapping[str, float]
+    """What else was varied, and is held here."""
+    along: Sequence[Values]
+    """The values of each key."""
+    values: Values
+    unsettled: NDArray[np.bool_]
+    refused: NDArray[np.bool_]
+    low: Values | None = None
+    """Of many draws the 5 % quantile, where `values` are their median."""
+    high: Values | None = None
+    """The 95 % quantile."""
+
+
+class View:
+    """An open study: which keys it varies, and slices of it."""
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        """Open the file of a sweep.
+
+        Raises:
+            ValueError: it cannot be read, or is no study.
+        """
+        self.path = str(path)
+        try:
+            with open(path, "rb") as file:  # says more of what is wrong than HDF5 does
+                if not file.read(4) == b"\x89HDF":
+                    raise ValueError("it is no NetCDF file; `pindrive sweep` writes one of a study")
+            self.data: xr.Dataset = xr.open_dataset(path, engine="h5netcdf")
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
+            raise ValueError(f"{self.path}: cannot be read: {reason}") from None
+        if self.path.endswith(".partial"):
+            self.data.close()
+            raise ValueError(f"{self.path}: is not finished; `pindrive sweep --resume` goes on")
+        if "identity" not in self.data.attrs:
+            self.data.close()
+            raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
+        self.keys = [
+            str(name)
+            for name, c in self.data.coords.items()
+            if c.dims and self.data.sizes[c.dims[0]] > 1
+        ]
+        self.sampled = [k for k in self.keys if self.data[k].dims == ("sample",)]
+        self.page = str(self.data.attrs.get("page", ""))
+        """What was scanned; empty of a study of releases."""
+        known = SCAN_MEASURED if self.page else MEASURED
+        self.numbers = [name for name in known if name in self.data]
+        self.fixed = {
+            str(name): c.item()
+            for name, c in self.data.coords.items()
+            if c.size == 1 and str(name) in QUANTITY
+        }
+
+        links = json.loads(self.data.attrs["identity"])["links"]
+        self.links = [
+            f"{words(variable(key))} = {link['times']:g} × {words(variable(link['of']))}"
+            + (f" / {words(variable(link['over']))}" if link["over"] else "")
+            for key, link in links.items()
+        ]
+
+    def __enter__(self) -> View:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.data.close()
+
+    # ---- what is asked for -----------------------------------------------------------------------
+
+    def key(self, given: str, option: str) -> str:
+        """The varied key that is meant.
+
+        Raises:
+            ValueError: it is unknown, or was not varied.
+        """
+        names = [variable(key) for key in keys_meant(given) if key in template.NUMBERS]
+        names = [name for name in (*names, given.replace(".", "_")) if name in self.keys]
+        if names:
+            return names[0]
+        near = get_close_matches(given.replace(".", "_"), self.keys, 1)
+        hint = f"did you mean {near[0]}?" if near else f"it varies {', '.join(self.keys)}"
+        raise ValueError(f"{option} {given}: {self.path} does not vary it; {hint}")
+
+    def number(self, given: str) -> str:
+        """The number that is meant, if the file holds it."""
+        name = known_output(given, "--number", SCAN_OUTPUTS if self.page else OUTPUTS)
+        if name not in self.numbers:
+            held = ", ".join(self.numbers)
+            raise ValueError(f"--number {given}: {self.path} does not hold it; it holds {held}")
+        return name
+
+    def usual_numbers(self) -> list[str]:
+        """The settling time, of scans the part of lines shown; or the first that the file holds."""
+        usual = "transient_settling_time"
+        if not self.numbers:
+            raise ValueError(f"{self.path}: holds no number to draw")
+        return [usual if usual in self.numbers else self.numbers[0]]
+
+    @property
+    def told(self) -> dict[str, float]:
+        """What of the device is told beside a picture: what its file must say, or says otherwise.
+
+        Of a study of releases all that was not varied.
+        """
+        standard = {variable(key): quantity.default for key, quantity in WHOLE.items()}
+        return {
+            name: value
+            for name, value in self.fixed.items()
+            if name not in standard or value != standard[name]
+        }
+
+    def held(self, given: Sequence[str]) -> dict[str, float]:
+        """The values, SI, of "key=value" each."""
+        found = {}
+        for text in given:
+            name, equals, written = (part.strip() for part in text.partition("="))
+            if not equals:
+                raise ValueError(f"--at {quoted(text)}: must be key=value")
+            key = self.key(name, "--at")
+            if key in self.sampled:
+                raise ValueError(f"--at {name}: is sampled, and cannot be held at one value")
+            quantity = QUANTITY[key]
+            try:
+                found[key] = to_si(written, quantity.unit, usual(quantity))
+            except UnitError as error:
+                raise ValueError(f"--at {name}: must be {error}, got {quoted(written)}") from None
+        return found
+
+    def axes(self, x: str | None, y: str | None, held: Mapping[str, float]) -> tuple[str, str]:
+        """The keys to draw over: those asked for, or the first two that are free.
+
+        Raises:
+            ValueError: there are none, or the two change together.
+        """
+        if not self.keys:
+            raise ValueError(f"{self.path}: holds a single point, there is nothing to draw over")
+        if x and y and not self._independent(x, y):
+            raise ValueError(f"--y {y}: does not change independently of {x} in this study")
+        chosen = [key for key in (x, y) if key]
+        for key in self.keys:
+            if len(chosen) < (2 if x is None else len(chosen)) and all(
+                self._independent(key, other) for other in (*chosen, *held)
+            ):
+                chosen.append(key)
+        if x is None and y:
+            chosen = [*[key for key in chosen if key != y][:1], y]
+        if not chosen or (x is None and chosen == [y]):
+            raise ValueError(f"{self.path}: nothing is left to draw over; leave out --at or --y")
+        return chosen[0], chosen[1] if len(chosen) > 1 else ""
+
+    def _independent(self, one: str, other: str) -> bool:
+        """Whether two keys take all combinations of their values, or are drawn each by itself."""
+        return one != other and (
+            self.dimension(one) != self.dimension(other) or one in self.sampled
+        )
+
+    def dimension(self, key: str) -> str:
+        """Along which dimension of the file a key changes."""
+        return str(self.data[key].dims[0])
+
+    # ---- slices ----------------------------------------------------------------------------------
+
+    def panels(self, number: str, x: str, y: str, held: Mapping[str, float]) -> Iterator[Panel]:
+        """Slices of one number: for some values of the first key left, the middle of others.
+
+        Draws that are not drawn over are summed up by their median.
+        """
+        used = {"sample", *(self.dimension(key) for key in (x, y) if key)}
+        most = _MOST_SLICES if y else _MOST_CURVES
+        picks: dict[str, list[int]] = {}
+        for key in (*held, *self.keys):
+            dimension, along = self.dimension(key), self.data[key].values
+            if dimension in {*used, *picks}:
+                continue
+            if key in held:
+                picks[dimension] = [int(np.argmin(np.abs(along - held[key])))]
+            else:
+                ends = (0, len(along) - 1) if most > 1 else (len(along) // 2,) * 2
+                even = np.linspace(*ends, min(most, len(along)))
+                picks[dimension] = np.unique(even.round().astype(int)).tolist()
+                most = 1
+        for choice in product(*picks.values()):
+            yield self._panel(number, x, y, dict(zip(picks, choice, strict=True)))
+
+    def _panel(self, number: str, x: str, y: str, choice: Mapping[str, int]) -> Panel:
+        names = {number, "transient_settling_time", "transient_settled", "status"}
+        part = self.data[sorted(name for name in names if name in self.data)].isel(choice)
+        keys = [key for key in (y, x) if key]
+        dims = list(dict.fromkeys(self.dimension(key) for key in keys))
+        if "sample" in part.dims and "sample" not in dims:
+            dims.append("sample")
+        part = part.squeeze([d for d in part.dims if d not in dims]).load().transpose(*dims)
+        values, refused = part[number].values, part["status"].values != 0
+        unsettled = _unsettled(part, number) & ~refused
+        at = {
+            key: float(self.data[key][choice[self.dimension(key)]])
+            for key in self.keys
+            if self.dimension(key) in choice
+        }
+        along = [part[key] for key in keys]
+        if any(key in self.sampled for key in keys):
+            spread = [np.broadcast_to(_beside(c, dims), values.shape).ravel() for c in along]
+            return _binned(
+                number, keys, at, spread, values.ravel(), unsettled.ravel(), refused.ravel()
+            )
+        places = [c.values for c in along]
+        if "sample" in dims:
+            return _summed_up(number, keys, at, places, values, unsettled, refused)
+        return Panel(number, keys, at, places, values, unsettled, refused)
+
+
+def _unsettled(part: xr.Dataset, number: str) -> NDArray[np.bool_]:
+    """Where the motion did not settle, or the number does not exist."""
+    if "transient_settled" in part:
+        found = ~part["transient_settled"].values
+    elif "transient_settling_time" in part:
+        found = np.isnan(part["transient_settling_time"].values)
+    else:
+        found = np.zeros(part[number].shape, np.bool_)
+    return np.asarray(found | np.isnan(part[number].values))
+
+
+def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> Values:
+    """A coordinate's values, so that they spread over the others of these dimensions."""
+    shape = [coordinate.size if d == coordinate.dims[0] else 1 for d in dims]
+    return np.asarray(coordinate.values).reshape(shape)
+
+
+def _summed_up(
+    number: str,
+    keys: Sequence[str],
+    at: Mapping[str, float],
+    places: Sequence[Values],
+    values: Values,
+    unsettled: NDArray[np.bool_],
+    refused: NDArray[np.bool_],
+) -> Panel:
+    """Quantiles over the draws, which are the last axis."""
+    shape = values.shape[:-1]
+    group = np.repeat(np.arange(values[..., 0].size), values.shape[-1])
+    low, middle, high = quantiles(group, values.ravel(), values[..., 0].size).reshape(3, *shape)
+    draws = (unsettled.mean(axis=-1) > 0.5, refused.mean(axis=-1) > 0.5)
+    return Panel(number, keys, at, places, middle, *draws, low, high)
+
+
+def _binned(
+    number: str,
+    keys: Sequence[str],
+    at: Mapping[str, float],
+    along: Sequence[Values],
+    values: Values,
+    unsettled: NDArray[np.bool_],
+    refused: NDArray[np.bool_],
+) -> Panel:
+    """Quantiles over the draws that fall into each of many bins."""
+    most = _BINS if len(keys) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
+    group, middles, shape = np.zeros(len(values), np.int64), [], []
+    for places in along:
+        different = np.unique(places[: 10 * most])
+        if len(different) <= most and np.isin(places, different).all():
+            number_of, middle = np.searchsorted(different, places), different
+        else:
+            edges = np.linspace(places.min(), places.max(), most + 1)
+            number_of = np.clip(np.searchsorted(edges, places, "right") - 1, 0, most - 1)
+            middle = 0.5 * (edges[1:] + edges[:-1])
+        group = group * len(middle) + number_of
+        middles.append(middle)
+        shape.append(len(middle))
+    count = int(np.prod(shape))
+    low, middle, high = quantiles(group, values, count).reshape(3, *shape)
+    drawn = np.maximum(np.bincount(group, minlength=count), 1)
+    parts = [
+        (np.bincount(group, weights=flag, minlength=count) / drawn > 0.5).reshape(shape)
+        for flag in (unsettled, refused)
+    ]
+    return Panel(number, keys, at, middles, middle, parts[0], parts[1], low, high)
+
+
+def quantiles(group: NDArray[np.int64], values: Values, count: int) -> Values:
+    """The 5, 50 and 95 % quantiles of the values in each of `count` groups without NaN, (3, n)."""
+    exists = ~np.isnan(values)
+    group, values = group[exists], values[exists]
+    order = np.lexsort((values, group))
+    values = values[order]
+    sizes = np.bincount(group, minlength=count)
+    first = np.cumsum(sizes) - sizes
+    found = np.full((3, count), np.nan)
+    full = sizes > 0
+    for row, part in zip(found, (0.05, 0.5, 0.95), strict=True):
+        place = part * (sizes[full] - 1)
+        below = np.floor(place).astype(np.int64)
+        above = np.minimum(below + 1, sizes[full] - 1)
+        left, right = values[first[full] + below], values[first[full] + above]
+        row[full] = left + (place - below) * (right - left)
+    return found
+
+
+def elasticity(value: float) -> str:
+    """An elasticity to two decimals with its sign: "+0.57"; a point for none to speak of."""
+    if np.isnan(value):
+        return "-"
+    return "·" if abs(value) < 0.005 else f"{value:+.2f}"

@@ -1,0 +1,214 @@
+"""Checks of a study before anything is computed: contradictions, and the range of friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.coil import check_one_way
+from pindrive.device.pin_array import check_count
+from pindrive.files.template import NUMBERS
+from pindrive.motion.friction import GRAVITY, KINETIC, within
+from pindrive.quantities import budgets
+from pindrive.study.design import COUNTS
+from pindrive.study.distributions import (
+    Axis,
+    Distribution,
+    Linked,
+    Listed,
+    base_value,
+    circle,
+    with_links,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from pindrive.files.device import DeviceFile
+    from pindrive.study.design import Columns, Plan
+
+_MOST_COMPARED = 1 << 20
+"""Points of one dimension that are compared one by one."""
+
+
+def conflicts(plan: Plan, file: str) -> list[str]:
+    """A line for each contradiction among the axes, and between them and the device."""
+    problems = []
+    tolerances: dict[str, Axis] = {**plan.tolerances, **plan.tolerance_links}
+    for table, axes in (("axes", plan.axes), ("tolerances", tolerances)):
+        if keys := circle({k: axis for k, axis in axes.items() if isinstance(axis, Linked)}):
+            problems.append(f"{file}: {table}: {_in_words(keys)}")
+            continue
+        problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
+        if plan.page:
+            problems += [f"{file}: {table}: {words}" for words in _around(plan, axes)]
+        for contact in ("plate", "finger"):
+            if words := _static_below_kinetic(plan, axes, contact):
+                problems.append(f"{file}: {table}: {words}")
+    if plan.page and not any(_sizes(key) for key in (*plan.axes, *tolerances)):
+        problems += [f"{file}: page: {words}" for words in _unreadable(plan)]
+    return problems
+
+
+def _sizes(key: str) -> bool:
+    """Whether the size of a page, or a way over it, follows from a key."""
+    return key.startswith(("array.", "scan."))
+
+
+def _unreadable(plan: Plan) -> Iterator[str]:
+    """Of a page that is the same at every point."""
+    if plan.page and plan.device.whole:
+        reading, array = plan.device.whole.reading(), plan.device.whole.array.array()
+        try:
+            plan.page.hand(reading, plan.page.scene(reading, array), array)
+        except ValueError as error:
+            yield str(error)
+
+
+def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
+    if {"drive.damping", "drive.damping_ratio"} <= axes.keys():
+        yield "vary drive.damping or drive.damping_ratio, not both"
+    drive = device.drive
+    if drive.finger.curved and "finger.stiffness" in axes:
+        yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
+    if "motion.skin_stretch" in axes and drive.finger.rigid and "finger.stiffness" not in axes:
+        yield "motion.skin_stretch cannot be varied for a rigid finger; give finger.stiffness"
+    for key, link in axes.items():
+        if not isinstance(link, Linked) or link.of in axes:
+            continue
+        if not isinstance(base_value(device, link.of), float):
+            yield f"{key} follows {link.of}, which has no value"
+
+
+def _in_words(keys: tuple[str, ...]) -> str:
+    """Keys that follow each other in a circle."""
+    first, *others = keys
+    return f"{first} follows {', which follows '.join((*others, first))}; give one of them values"
+
+
+def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
+    """Of the tables around the drive."""
+    magnet = {name for table, _, name in (key.partition(".") for key in axes) if table == "magnet"}
+    if magnet:
+        try:
+            check_one_way(magnet | plan.device.tables["magnet"].keys(), table="magnet")
+        except ValueError as error:
+            yield str(error)
+    if "places" in plan.device.tables["array"]:
+        for key in ("array.columns", "array.rows", "array.pitch"):
+            if key in axes:
+                yield f"{key} cannot be varied beside array.places"
+    for key in COUNTS:
+        axis = axes.get(key)
+        if isinstance(axis, Distribution):
+            yield f"{key} counts pins; give a list of whole numbers"
+        elif axis is not None and not isinstance(axis, Linked):
+            try:
+                budgets.AXIS_VALUES.check(axis.count, key)
+                few = axis.values if isinstance(axis, Listed) else axis.at(np.arange(axis.count))
+                for value in few:
+                    check_count(key.partition(".")[2], float(value), label=key)
+            except ValueError as error:
+                yield str(error)
+
+
+def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], contact: str) -> str:
+    """Words for static friction that is below kinetic friction at every point."""
+    static, kinetic = f"{contact}.static", f"{contact}.kinetic"
+    if not {static, kinetic} & axes.keys():
+        return ""
+    if static not in axes and plan.device.values()[static] is None:
+        return ""
+    largest, smallest = _span(plan, axes, static)[1], _span(plan, axes, kinetic)[0]
+    if largest >= smallest and not _below_along(plan, static, kinetic):
+        return ""
+    unit = NUMBERS[static]
+    return (
+        f"{static} is below {kinetic} at every point: at most {unit.written(largest)}, "
+        f"{kinetic} at least {unit.written(smallest)}"
+    )
+
+
+def _span(plan: Plan, axes: Mapping[str, Axis], key: str) -> tuple[float, float]:
+    """The smallest and the largest value of a key."""
+    axis = axes.get(key)
+    if axis is None:
+        value = float(base_value(plan.device, key))
+        return value, value
+    if isinstance(axis, Linked):
+        of = _span(plan, axes, axis.of)
+        over = _span(plan, axes, axis.over) if axis.over else (1.0, 1.0)
+        ends = sorted(axis.times * end / part for end in of for part in over)
+        return ends[0], ends[-1]
+    return axis.span
+
+
+def _below_along(plan: Plan, static: str, kinetic: str) -> bool:
+    """Whether two keys that go together never fit, though their ranges overlap."""
+    for dimension in plan.dimensions:
+        if {static, kinetic} <= dimension.axes.keys() and dimension.size <= _MOST_COMPARED:
+            values = dimension.at(np.arange(dimension.size))
+            return bool((values[static] < values[kinetic]).all())
+    return False
+
+
+_MASS: Final = "drive.mass"
+_KINETIC: Final = "plate.kinetic"
+_PRESSING: Final = "magnet.pressing"
+_PARTS: Final = (_MASS, _KINETIC, _PRESSING)
+
+
+def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | None:
+    """The least and the largest kinetic coefficient of the plate; None where it does not change.
+
+    Args:
+        plan: the study.
+        tolerances: over its tolerances, not over its axes.
+    """
+    links = plan.tolerance_links if tolerances else plan.links
+    followed = list(_PARTS)
+    for key in followed:  # and what they follow, and so on
+        if key in links:
+            followed += [of for of in (links[key].of, links[key].over) if of and of not in followed]
+    groups = [plan.tolerances] if tolerances else [d.axes for d in plan.dimensions]
+    columns: list[Columns] = []
+    for i, axes in enumerate(groups):
+        here = [key for key in axes if key in followed]
+        zipped = not tolerances and plan.dimensions[i].sample is None
+        if len(here) > 1 and zipped:
+            every = plan.dimensions[i].at(np.arange(plan.dimensions[i].size))
+            columns.append({key: every[key] for key in here})
+        else:  # each by itself; the coefficient is monotone in it, so that its ends tell
+            columns += [{key: np.array(axes[key].span)} for key in here]
+    lengths = [len(next(iter(column.values()))) for column in columns]
+    places = np.meshgrid(*(np.arange(length) for length in lengths), indexing="ij")
+    spread = {
+        key: values[index.ravel()]
+        for column, index in zip(columns, places, strict=True)
+        for key, values in column.items()
+    }
+    found = plan.values | with_links(plan.device, spread, links)
+    pressing = found.get(_PRESSING)
+    force = found[_MASS] * GRAVITY if pressing is None else pressing
+    # A spread that goes down to no mass has no upper end.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        coefficient = np.asarray(found[_KINETIC] / np.maximum(force, 0.0))
+    low, high = float(coefficient.min()), float(coefficient.max())
+    return (low, high) if high > low * (1.0 + 1e-9) else None
+
+
+def coefficient_words(plan: Plan, *, tolerances: bool = False) -> str | None:
+    """The same in a sentence, a warning where it leaves what handbooks say; None: no change."""
+    found = coefficient_range(plan, tolerances=tolerances)
+    if found is None:
+        return None
+    low, high = found
+    over = "the tolerances" if tolerances else "the study"
+    known = all(within(value, KINETIC) for value in found)
+    warning = "" if known else "warning: "
+    doubt = f"; steel on steel has {KINETIC[0]:.2f} to {KINETIC[1]:.2f} in handbooks"
+    return (
+        f"{warning}the plate's friction coefficient, plate.kinetic over what presses, goes from "
+        f"{low:.3g} to {high:.3g} over {over}{'' if known else doubt}"
+    )

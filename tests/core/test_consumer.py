@@ -1,0 +1,123 @@
+"""An outside CMake project uses the core, installed or as a subfolder; and the C++ tests pass."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CONSUMER = ROOT / "tests" / "consumer"
+PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+
+
+def attempt(*command: str | Path) -> subprocess.CompletedProcess[str]:
+    program = shutil.which(str(command[0]), path=PATH)
+    assert program, f"{command[0]} is missing: it comes with the extra `test`"
+    return subprocess.run(
+        [program, *map(str, command[1:])],
+        env={**os.environ, "PATH": PATH},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def run(*command: str | Path) -> str:
+    """The program's output; its complaints, if it fails."""
+    result = attempt(*command)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result.stdout
+
+
+def build(source: Path, folder: Path, *settings: str) -> None:
+    run("cmake", "-S", source, "-B", folder, "-G", "Ninja", *settings)
+    run("cmake", "--build", folder)
+
+
+def check(consumer: Path) -> None:
+    """The program ran the core and got the answer that Python gets."""
+    pindrive = pytest.importorskip("pindrive")
+    drive = pindrive.Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=0.40,
+        plate=pindrive.Contact(kinetic=0.020),
+        finger=pindrive.Contact(kinetic=0.005),
+    )
+    motion = pindrive.simulate(drive, mouse_velocity=0.10, displacement=1.5e-3)
+    expected = [f"{segment.begin:.9f} s" for segment in motion.segments]
+    assert run(consumer).split("\n") == [*expected, motion.ending.kind, ""]
+
+
+def test_the_core_stands_alone() -> None:
+    """Headers of the standard library alone; nothing that allocates, throws or prints."""
+    headers = {path.name: path.read_text("utf-8") for path in ROOT.glob("include/pindrive/*.hpp")}
+    assert headers
+    allowed = {
+        "algorithm",
+        "array",
+        "cmath",
+        "cstddef",
+        "iterator",
+        "limits",
+        "type_traits",
+        "utility",
+    }
+    for name, text in headers.items():
+        code = re.sub(r"//.*", "", text)
+        assert set(re.findall(r"#include <(.*)>", code)) <= allowed, name
+        assert not re.search(r"\b(new|delete|malloc|throw|try)\b", code), name
+
+
+def test_find_package(tmp_path: Path) -> None:
+    run("cmake", "-S", ROOT, "-B", tmp_path / "core", "-G", "Ninja")
+    run("cmake", "--install", tmp_path / "core", "--prefix", tmp_path / "prefix")
+    build(CONSUMER, tmp_path / "build", f"-DCMAKE_PREFIX_PATH={tmp_path / 'prefix'}")
+    check(tmp_path / "build" / "consumer")
+
+
+def test_add_subdirectory(tmp_path: Path) -> None:
+    build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
+    check(tmp_path / "build" / "consumer")
+
+
+@pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+def test_ctest(tmp_path: Path) -> None:
+    build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release")
+    run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
+    same_however_it_is_run(tmp_path / "fuzz", tmp_path / "fuzz.log")
+
+
+def same_however_it_is_run(fuzz: Path, log: Path) -> None:
+    """Fuzz finds the same on one thread, on three, and in two goes from its log."""
+
+    def found(*options: str | Path) -> str:
+        return re.sub(r"seconds .*", "", run(fuzz, *options))
+
+    once = found("3000", "5")
+    assert "drives 3000 of 3000" in once
+    assert found("3000", "5", "--threads", "3") == once
+    found("1000", "5", "--log", log)
+    assert found("3000", "5", "--log", log) == once
+    other = attempt(fuzz, "3000", "6", "--log", log)
+    assert other.returncode == 2
+    assert "is not the log of seed 6" in other.stderr
+
+
+@pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+def test_no_sanitizer_complains(tmp_path: Path) -> None:
+    """The same programs, stopped at any memory error or undefined behaviour, and a shorter fuzz."""
+    settings = ("-DPINDRIVE_TESTS=ON", "-DPINDRIVE_SANITIZE=ON")
+    configured = attempt("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *settings)
+    if "this compiler has no -fsanitize" in " ".join(configured.stderr.split()):
+        pytest.skip("this compiler has no sanitizers")
+    assert configured.returncode == 0, configured.stderr
+    run("cmake", "--build", tmp_path)
+    assert b"__ubsan_handle" in (tmp_path / "fuzz").read_bytes()
+    run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")

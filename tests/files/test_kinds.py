@@ -1,0 +1,248 @@
+"""What commands write never takes the place of what is read, or of another kind of file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from PIL import Image
+
+from command import EXAMPLE, EXAMPLES, GOOD, refused, run
+from pindrive.files.output import (
+    DEVICE_FILE,
+    MOTION_CSV,
+    PICTURES,
+    STUDY_NETCDF,
+    Output,
+    OutputError,
+    check_outputs,
+    write_files,
+)
+from scan_studies import DEVICE
+
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
+STUDY = (
+    f'base = "{EXAMPLE.as_posix()}"\n[axes]\nmass = ["9 g", "10 g"]\n[tolerances]\nmass = "1 %"\n'
+)
+HAND = "t [s],x [mm],y [mm]\n" + "".join(f"{0.01 * i:g},{i:g},0\n" for i in range(40))
+SCAN = ("scan", "reader.toml", "--grating", "4 mm")
+SPEED = ("speed", "reader.toml", "--pitch", "4 mm", "--fastest", "50 mm/s", "--slowest", "45 mm/s")
+COMMANDS = {
+    "simulate --plot": (("simulate", "device.toml", "--plot"), "a.png"),
+    "simulate --csv": (("simulate", "device.toml", "--csv"), "a.csv"),
+    "simulate --netcdf": (("simulate", "device.toml", "--netcdf"), "a.nc"),
+    "simulate --json": (("simulate", "device.toml", "--json"), "a.json"),
+    "scan --plot": ((*SCAN, "--plot"), "a.svg"),
+    "scan --animate": ((*SCAN, "--slow", "0.1", "--animate"), "a.gif"),
+    "scan --lines": ((*SCAN, "--lines"), "a.csv"),
+    "scan -o": ((*SCAN, "-o"), "a.nc"),
+    "speed --plot": ((*SPEED, "--plot"), "a.pdf"),
+    "map -o": (("map", "swept.nc", "-o"), "a.png"),
+    "sensitivity --plot": (("sensitivity", "study.toml", "--rows", "128", "--plot"), "a.png"),
+    "robustness --plot": (("robustness", "study.toml", "--draws", "9", "--plot"), "a.svg"),
+}
+"""What writes a file, and under which name."""
+
+
+@pytest.fixture(autouse=True)
+def inputs(in_empty_folder: None) -> None:
+    Path("device.toml").write_text(GOOD)
+    Path("reader.toml").write_text(DEVICE)
+    Path("study.toml").write_text(STUDY)
+    Path("hand.csv").write_text(HAND)
+    Image.new("L", (40, 40), 255).save("page.png")
+    assert run("sweep", "study.toml", "-o", "swept.nc").exit_code == 0
+
+
+def foreign(name: str) -> bytes:
+    """A file of that name which no command of pindrive writes."""
+    if name.endswith(".nc"):
+        xr.Dataset({"a": 1.0}).to_netcdf(name, engine="h5netcdf")
+    else:
+        Path(name).write_text("t [s],x [mm],y [mm]\n0,1,2\n")
+    return Path(name).read_bytes()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_file_is_replaced_by_its_own_kind_alone(command: str) -> None:
+    arguments, name = COMMANDS[command]
+    before = foreign(name)
+    said = refused(*arguments, name)
+    assert f" {name}: is there and is no " in said
+    assert said.endswith("; it stays, give another name")
+    assert Path(name).read_bytes() == before
+    Path(name).unlink()
+    Path(name).touch()  # an empty file holds nothing
+    for _ in range(2):
+        done = run(*arguments, name)
+        assert done.exit_code == 0, done.output
+        assert Path(name).stat().st_size > 0
+
+
+@pytest.mark.parametrize("link", ["itself", "another way", "symbolic", "hard"])
+@pytest.mark.parametrize("command", [*COMMANDS, "sweep -o"])
+def test_what_a_command_reads_is_never_written(command: str, link: str) -> None:
+    arguments = COMMANDS[command][0] if command in COMMANDS else ("sweep", "study.toml", "-o")
+    source = Path(arguments[1])
+    content = source.read_bytes()
+    suffix = Path(COMMANDS.get(command, ("", "a.nc"))[1]).suffix
+    target = Path(f"linked{suffix}")
+    if link == "symbolic":
+        target.symlink_to(source)
+    elif link == "hard":
+        target.hardlink_to(source)
+    elif suffix in (".csv", ".json", ".nc"):
+        target = source if link == "itself" else Path("..") / Path.cwd().name / source
+    else:
+        pytest.skip("a picture's name has an ending of its own")
+    said = refused(*arguments, target)
+    assert said.endswith(f"{target}: is read by this command; give another name")
+    assert source.read_bytes() == content
+
+
+INPUTS = {
+    "--image": ("scan", "reader.toml", "--image", "page.png", "--set", "scan.pixel=0.5 mm"),
+    "--path": (*SCAN, "--path", "hand.csv"),
+}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "option", "target"),
+    [
+        (INPUTS["--image"], "--plot", "page.png"),
+        (INPUTS["--path"], "--lines", "hand.csv"),
+        (INPUTS["--path"], "-o", "hand.csv"),
+        (INPUTS["--path"], "-o", "./hand.csv"),
+        (INPUTS["--path"], "-o", "reader.toml"),
+    ],
+)
+def test_a_page_and_a_recording_stay(arguments: tuple[str, ...], option: str, target: str) -> None:
+    before = Path(target).read_bytes()
+    said = refused(*arguments, option, target)
+    assert said.endswith(f" {Path(target)}: is read by this command; give another name")
+    assert Path(target).read_bytes() == before
+
+
+def test_the_device_and_the_page_of_a_study_stay() -> None:
+    """Files that the command line does not name."""
+    Path("paged.toml").write_text(
+        'base = "reader.toml"\n[page]\nimage = "page.png"\npath = "hand.csv"\n'
+        '[axes]\ncontrol.latency = ["1 ms", "2 ms"]\n[tolerances]\ncontrol.latency = "5 %"\n'
+        '[set]\nscan.pixel = "0.5 mm"\n'
+    )
+    for target in ("reader.toml", "page.png", "hand.csv"):
+        said = refused("sweep", "paged.toml", "-o", target)
+        assert said == f"{target}: is read by this command; give another name"
+    for command in ("sensitivity", "robustness"):
+        said = refused(command, "paged.toml", "--plot", "page.png")
+        assert said == "--plot page.png: is read by this command; give another name"
+    os.link("page.png", "study.nc.partial")
+    said = refused("sweep", "paged.toml", "-o", "study.nc", "--restart")
+    assert said == "study.nc.partial: is read by this command; give another name"
+
+
+# ---- results that took long ----------------------------------------------------------------------
+
+
+def test_a_study_takes_restart_to_be_replaced() -> None:
+    first = Path("swept.nc").read_bytes()
+    said = refused("sweep", "study.toml", "-o", "swept.nc")
+    assert said == "swept.nc: exists already; --restart replaces it"
+    assert "is complete" in run("sweep", "study.toml", "-o", "swept.nc", "--resume").stdout
+    Path("study.toml").write_text(STUDY.replace('"9 g"', '"8 g"'))
+    assert refused("sweep", "study.toml", "-o", "swept.nc").endswith("--restart replaces it")
+    said = refused("sweep", "study.toml", "-o", "swept.nc", "--resume")
+    assert said.startswith("swept.nc: holds another study: ")
+    assert Path("swept.nc").read_bytes() == first
+    assert run("sweep", "study.toml", "-o", "swept.nc", "--restart").exit_code == 0
+    assert Path("swept.nc").read_bytes() != first
+
+
+@pytest.mark.parametrize("consent", [(), ("--resume",), ("--restart",)])
+@pytest.mark.parametrize("name", ["device.toml", "page.png", "motion.nc", "alien.nc"])
+def test_a_sweep_replaces_nothing_but_a_study(name: str, consent: tuple[str, ...]) -> None:
+    run("simulate", "device.toml", "--netcdf", "motion.nc")
+    foreign("alien.nc")
+    before = Path(name).read_bytes()
+    said = refused("sweep", "study.toml", "-o", name, *consent)
+    assert said == (
+        f"{name}: is there and is no NetCDF file of a study; it stays, give another name"
+    )
+    assert Path(name).read_bytes() == before
+
+
+def test_a_study_is_not_replaced_by_a_motion_or_a_scan() -> None:
+    before = Path("swept.nc").read_bytes()
+    said = refused("simulate", "device.toml", "--netcdf", "swept.nc")
+    assert "is no NetCDF file of a motion; it stays" in said
+    assert "is no NetCDF file of a scan; it stays" in refused(*SCAN, "-o", "swept.nc")
+    assert Path("swept.nc").read_bytes() == before
+
+
+def test_init_replaces_device_files_alone_and_only_when_forced() -> None:
+    said = refused("init", "device.toml")
+    assert said == "device.toml: exists already; --force replaces it"
+    for name in ("study.toml", "page.png", "swept.nc", "hand.csv"):
+        for force in ((), ("--force",)):
+            said = refused("init", name, *force)
+            assert said == f"{name}: is there and is no device file; it stays, give another name"
+    assert run("init", "device.toml", "--force").exit_code == 0
+    assert run("check", "device.toml").exit_code == 0
+
+
+# ---- the mechanism -------------------------------------------------------------------------------
+
+
+def test_kinds_are_told_by_what_stands_in_a_file() -> None:
+    assert DEVICE_FILE.holds(EXAMPLE)
+    assert not DEVICE_FILE.holds(EXAMPLES / "tactile-reader-study.toml")
+    assert STUDY_NETCDF.holds(Path("swept.nc"))
+    Path("cut.nc").write_bytes(Path("swept.nc").read_bytes()[:999])
+    assert not STUDY_NETCDF.holds(Path("cut.nc"))
+    Path("renamed.svg").write_bytes(Path("page.png").read_bytes())
+    assert not PICTURES[".svg"].holds(Path("renamed.svg"))
+    assert PICTURES[".png"].holds(Path("renamed.svg"))
+    assert not MOTION_CSV.holds(Path("hand.csv"))
+
+
+def test_a_report_replaces_a_report_alone(tmp_path: Path) -> None:
+    folder = tmp_path / "report"
+    page = b"<!DOCTYPE html>\n<title>The report</title>\n1\n"
+    write_files(folder, {"page.html": page, "data/x.csv": b"a,b\n1,2\n"})
+    write_files(folder, {"page.html": page + b"2\n", "data/x.csv": b"a,b\n3,4\n"})
+    assert (folder / "data/x.csv").read_bytes() == b"a,b\n3,4\n"
+    for name, other in (
+        ("page.html", b"<!DOCTYPE html>\n<title>My page</title>\n"),
+        ("data/x.csv", b"t,x\n1,2\n"),
+    ):
+        (folder / name).write_bytes(other)
+        with pytest.raises(OutputError, match=f"{Path(name).name}: is there and is no "):
+            write_files(folder, {"new.html": page, "page.html": page, "data/x.csv": b"a,b\n"})
+        assert (folder / name).read_bytes() == other
+        (folder / name).write_bytes(page if name == "page.html" else b"a,b\n")
+        assert not (folder / "new.html").exists()
+
+
+def test_paper_keeps_a_page_of_another() -> None:
+    Path("out").mkdir()
+    Path("out/paper.html").write_text("<!DOCTYPE html>\n<title>Mine</title>\n")
+    said = refused("paper", "--out", "out")
+    assert said == (
+        "--out out/paper.html: is there and is no report of the paper; it stays, give another name"
+    )
+    Path("docs").mkdir()
+    Path("docs/paper.md").write_text("# Mine\n")
+    assert "is no report of the paper" in refused("paper", "--docs", "docs")
+
+
+def test_a_file_that_cannot_be_read_is_not_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unreadable(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    Path("a.csv").write_text("time_s,position_m,\n")
+    monkeypatch.setattr("pindrive.files.output._head", unreadable)
+    with pytest.raises(OutputError, match=r"a\.csv: is there, and cannot be read: Permission"):
+        check_outputs([Output(Path("a.csv"), MOTION_CSV, "--csv")])

@@ -1,0 +1,416 @@
+"""The report on the paper: what it says is computed, its page needs nothing, docs agree with it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+from typer.testing import CliRunner
+
+from pindrive import Contact, Drive, simulate
+from pindrive.cli.app import app
+from pindrive.paper import formulas, maps, population, report
+from pindrive.paper.claim import Claim
+from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
+from pindrive.paper.exhibit import html as as_html
+from pindrive.paper.exhibit import markdown as as_markdown
+from pindrive.paper.report import Report
+from pindrive.paper.sensitivity import PARAMETERS
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+REMAKE = "make them anew: pindrive paper --docs docs"
+
+
+@pytest.fixture(scope="module")
+def steps() -> list[str]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def made(steps: list[str]) -> Report:
+    return report.make(steps.append)
+
+
+@pytest.fixture(scope="module")
+def files(made: Report, steps: list[str]) -> dict[str, bytes]:
+    """What `pindrive paper --out` writes."""
+    return made.files(steps.append)
+
+
+@pytest.fixture(scope="module")
+def page(files: dict[str, bytes]) -> str:
+    return files[report.PAGE].decode()
+
+
+def exhibit(made: Report, name: str) -> Exhibit:
+    return next(e for e in made.exhibits if e.name == name)
+
+
+# ---- the docs agree with the command -------------------------------------------------------------
+
+
+def test_the_docs_say_what_the_command_says(made: Report) -> None:
+    assert (DOCS / report.NAME).read_text("utf-8") == report.text(made), REMAKE
+
+
+def test_the_docs_pictures_show_the_same_data(made: Report) -> None:
+    """Each picture carries the summary of the data that it was drawn from; pixels may differ."""
+    folder = DOCS / report.IMAGES
+    assert {p.name for p in folder.iterdir()} == {f"{e.name}.png" for e in made.exhibits}, REMAKE
+    for e in made.exhibits:
+        with Image.open(folder / f"{e.name}.png") as picture:
+            shown = json.loads(picture.info["Data"])
+        now = summary(e.data)
+        assert shown.keys() == now.keys(), REMAKE
+        for name, numbers in now.items():
+            assert shown[name] == pytest.approx(numbers, rel=1e-5, abs=1e-12), (e.name, REMAKE)
+
+
+def test_a_change_of_data_shows_in_the_summary(made: Report) -> None:
+    data = exhibit(made, "first-reversal").data
+    assert summary(data) != summary(data.assign(limit=1.001 * data.limit))
+    assert summary(data) != summary(data.assign(limit=data.limit.where(data.limit > 0.5)))
+
+
+def test_the_docs_tables_are_whole() -> None:
+    """No cell holds a bar: every row has as many as its headings."""
+    text = (DOCS / report.NAME).read_text("utf-8")
+    tables = re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)
+    assert len(tables) == 6
+    for table in tables:
+        assert len({row.count("|") for row in table.splitlines()}) == 1, table[:200]
+
+
+def test_what_the_docs_link_to_is_there() -> None:
+    text = (DOCS / report.NAME).read_text("utf-8")
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    plain = (re.sub(r"</?sub>", "", heading).lower() for heading in headings)
+    anchors = {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in plain}
+    links = re.findall(r"\]\(([^)]+)\)", text)
+    assert len(links) > 20
+    for link in links:
+        assert link.removeprefix("#") in anchors or (DOCS / link).is_file(), link
+
+
+# ---- the page ------------------------------------------------------------------------------------
+
+
+class Reader(HTMLParser):
+    """What a page asks for from elsewhere, its ids, and what it links to in itself."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.foreign: list[str] = []
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.tags: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        for name, value in attrs:
+            value = value or ""
+            if name == "id":
+                self.ids.append(value)
+            elif name in ("src", "href", "xlink:href", "data", "action"):
+                if value.startswith("#"):
+                    self.links.append(value[1:])
+                elif not value.startswith("data:"):
+                    self.foreign.append(value)
+
+
+def test_the_page_needs_nothing_else(page: str) -> None:
+    found = Reader(page)
+    assert found.foreign == []
+    assert not {"script", "link", "iframe", "object"} & set(found.tags)
+    assert "@import" not in page
+    assert set(re.findall(r"url\((?!#)", page)) == set()
+
+
+def test_the_page_holds_every_figure_and_its_own_links(page: str, made: Report) -> None:
+    found = Reader(page)
+    assert found.tags.count("svg") == report.FIGURES
+    assert len(found.ids) == len(set(found.ids))
+    assert set(found.links) <= set(found.ids)
+    assert set(re.findall(r"url\(#([^)]+)\)", page)) <= set(found.ids)
+    assert {e.name for e in made.exhibits} <= set(found.ids)
+    assert found.tags.count("math") > 40
+
+
+def test_the_page_has_every_equation_and_every_sentence(page: str, made: Report) -> None:
+    numbers = {int(n) for row in made.rows for n in re.findall(r"\d+", row.number)}
+    assert numbers == set(range(1, 27))
+    assert page.count('class="place"') == len(made.claims)
+    for e in made.exhibits:
+        assert all(as_html(sentence) in page for sentence in (*e.readings, e.caption))
+
+
+def test_the_velocity_is_labelled_as_computed(files: dict[str, bytes], made: Report) -> None:
+    """The measurement of the paper's Figure 2 is not printed in it."""
+    assert "computed, not measured" in files["figures/figure-2-velocity.svg"].decode()
+    caption = exhibit(made, "figure-2-velocity").caption
+    assert caption.startswith("Computed. The paper's Figure 2 is a measurement")
+
+
+def test_the_diagram_names_its_outputs_and_ties_its_blocks(
+    files: dict[str, bytes], made: Report
+) -> None:
+    drawn = files["figures/figure-3-model.svg"].decode()
+    for word in ("displacement", "velocity", "acceleration"):
+        assert word in drawn
+    blocks = [row[0] for row in exhibit(made, "figure-3-model").table]
+    assert blocks == ["block", *"12345678", "output", "output", "output"]
+
+
+# ---- files ---------------------------------------------------------------------------------------
+
+
+def test_each_figure_comes_as_svg_png_and_data(files: dict[str, bytes], made: Report) -> None:
+    assert len(made.exhibits) == report.FIGURES
+    for e in made.exhibits:
+        assert files[f"figures/{e.name}.svg"].startswith(b"<?xml")
+        with Image.open(BytesIO(files[f"figures/{e.name}.png"])) as picture:
+            assert picture.width > 1000
+        with xr.open_dataset(BytesIO(files[f"data/{e.name}.nc"]), engine="h5netcdf") as data:
+            xr.testing.assert_equal(data.load(), e.data)
+            assert data.attrs["title"] == e.title
+
+
+def test_the_data_have_units(files: dict[str, bytes]) -> None:
+    of_their_own = {"value", "factor"}  # in units of each parameter; of unknown unit
+    for name, content in files.items():
+        if name.endswith(".nc"):
+            with xr.open_dataset(BytesIO(content), engine="h5netcdf") as data:
+                for key, variable in data.variables.items():
+                    if variable.dtype.kind == "f" and key not in of_their_own:
+                        assert variable.attrs.get("units"), (name, key)
+
+
+def test_progress_is_told_as_often_as_announced(
+    made: Report, files: dict[str, bytes], steps: list[str]
+) -> None:
+    assert len(steps) == report.STEPS + report.FIGURES
+
+
+# ---- what it says --------------------------------------------------------------------------------
+
+
+def test_the_mended_equations_are_exact_and_the_printed_ones_not(made: Report) -> None:
+    for row in made.rows:
+        assert row.off_right < 1e-13, row.number
+        if row.right:
+            assert row.off_printed > 0.01, row.number
+        else:
+            assert row.off_printed == row.off_right
+    wrong = [row.number for row in made.rows if row.right]
+    assert wrong == ["1", "2", "8", "10", "14", "16", "17", "20", "23", "25, 26"]
+
+
+VERDICTS = {
+    "The absolutely largest pin velocity": "holds when friction reverses",
+    "The first friction force direction change": "does not hold",
+    "Becomes clear that the analytical solution": "does not hold",
+    "It is available only in the limit case": "holds",
+    "Model of tactile device pin interaction": "holds",
+    "The law of damped pin motion": "holds",
+    "It was defined what initial phase angle": "holds when x_0 > x_d",
+    "and φ_0 = 0, when v_p = 0": "holds when there is no damping",
+    "Higher mouse velocity causes greater": "holds",
+    "Friction forces are influencing": "holds when ω, α and φ′_0",
+    "The greater displacement x_d": "holds",
+    "and reducing the amplitude": "holds when x_0 − x_d > −ζ v_p / ω_0",
+    "The initial pin displacement x_0": "holds when v_p <",
+    "and their damping": "holds when damping means how long",
+    "The results of investigation": "holds when the equations are mended",
+    "For the case when the pin": "holds",
+    "which would be stabilized": "does not hold",
+    "If the friction between": "holds when x_d is F_f / k",
+    "The dynamics of tactile device": "holds when k x_0 + b v_p + F_f > F_p",
+    "It was defined that the law": "does not hold",
+    "The model for the pin drive": "holds",
+}
+
+
+def test_every_sentence_has_the_verdict_that_was_derived(made: Report) -> None:
+    assert len(made.claims) == len(VERDICTS)
+    shown = {e.name for e in made.exhibits} | {"equations"}
+    for claim, (start, verdict) in zip(made.claims, VERDICTS.items(), strict=True):
+        assert claim.sentence.startswith(start)
+        if " when " in verdict:
+            assert claim.verdict.startswith(verdict), claim.sentence
+        else:
+            assert claim.verdict == verdict, claim.sentence
+        assert claim.shown_by in shown
+        assert re.search(r"\d", claim.finding)
+
+
+def claim(true: list[bool], meets: list[bool] | None = None) -> str:
+    condition = None if meets is None else np.array(meets)
+    return Claim("", "", np.array(true), "", "", "it rains", condition).verdict
+
+
+def test_a_verdict_follows_from_the_trials() -> None:
+    assert claim([True, True]) == "holds"
+    assert claim([True, False]) == "does not hold"
+    assert claim([True, False], [True, False]) == "holds when it rains"
+    assert claim([True, False], [True, True]) == "does not hold"
+    assert claim([False, False], [False, False]) == "does not hold"
+
+
+def test_the_releases_are_those_stated() -> None:
+    r = population.damped()
+    assert formulas.applies(r).all()
+    ratio = r.damping / (2 * np.sqrt(r.mass * r.stiffness))
+    for values, low, high in (
+        (r.mass, 2e-3, 20e-3),
+        (r.stiffness, 20, 400),
+        (ratio, 0, 0.97),
+        (r.friction, 0, 0.05),
+        (r.mouse_velocity, 0, 0.3),
+    ):
+        assert low <= values.min() < low + 0.1 * (high - low)
+        assert high - 0.1 * (high - low) < values.max() <= high
+    assert (population.damped().displacement == r.displacement).all(), "one seed, one set"
+
+
+def test_the_curves_are_the_simulations(made: Report) -> None:
+    """At random places of each of the six, against `simulate` alone."""
+    draw = np.random.default_rng(4)
+    time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
+    base = {"mass": 0.01, "stiffness": 100.0, "damping": 0.32, "plate_kinetic": 0.022,
+            "finger_kinetic": 0.005, "mouse_velocity": 0.06, "displacement": 2e-3}  # fmt: skip
+    for parameter in PARAMETERS:
+        for point in draw.integers(1, time.sizes["point"], 5):
+            where = {"parameter": parameter.argument, "point": int(point)}
+            at = {"parameter": parameter.argument}
+            value = float(time.value.sel(at).isel(point=point))
+            p = base | {parameter.argument: value}
+            drive = Drive(
+                mass=p["mass"],
+                stiffness=p["stiffness"],
+                damping=p["damping"],
+                plate=Contact(p["plate_kinetic"]),
+                finger=Contact(p["finger_kinetic"]),
+            )
+            v, x = p["mouse_velocity"], p["displacement"]
+            found = simulate(drive, mouse_velocity=v, displacement=x)
+            shown = time.settling_time.sel(at).isel(point=point)
+            assert float(shown) == pytest.approx(found.transient.settling_time, rel=1e-9), where
+            peak = way.peak_displacement.sel(at).isel(point=point)
+            assert float(peak) == pytest.approx(found.transient.peak_displacement, rel=1e-12)
+
+
+def test_the_maps_are_the_simulations(made: Report) -> None:
+    """At random places, in units of another mass, length and time."""
+    draw = np.random.default_rng(5)
+    data = exhibit(made, "maps-of-time").data
+    m, k, x0 = 0.007, 130.0, 1.3e-3
+    w0 = (k / m) ** 0.5
+    for across, up in maps.TIME_MAPS:
+        key = f"{across}_{up}"
+        for i, j in draw.integers(0, maps.POINTS, (6, 2)):
+            groups = {name: group.baseline for name, group in maps.GROUPS.items()}
+            groups[across] = float(data[f"{key}_{across}"][i])
+            groups[up] = float(data[f"{key}_{up}"][j])
+            drive = Drive.with_damping_ratio(
+                mass=m,
+                stiffness=k,
+                damping_ratio=groups["damping"],
+                plate=Contact(groups["plate"] * k * x0),
+                finger=Contact(groups["finger"] * k * x0),
+            )
+            v = groups["speed"] * w0 * x0
+            found = simulate(drive, mouse_velocity=v, displacement=x0).transient.settling_time
+            periods = float(data[f"{key}_periods"][j, i])
+            assert w0 * found / (2 * np.pi) == pytest.approx(periods, rel=1e-8, abs=1e-12)
+
+
+# ---- words ---------------------------------------------------------------------------------------
+
+
+def test_trends() -> None:
+    assert trend([1, 2, 2, 3]) == "rises throughout"
+    assert trend([3, 1]) == "falls throughout"
+    assert trend([1, 2, 3, 2.9, 4]) == "rises on the whole (rank correlation 0.90)"
+    assert trend([4, 3, 1, 2, 0]) == "falls on the whole (rank correlation −0.90)"
+    assert trend([1, 0, 1.5, 0.5]) == "goes up and down"
+
+
+def test_words_of_numbers() -> None:
+    assert at_most(4e-16) == "< 10^{-15}"
+    assert at_most(6e-16) == "< 10^{-14}"
+    assert at_most(0.0) == "0"
+    assert share([True, False, True]) == "2 of 3"
+    assert listed(["a", "b", "c"]) == "a, b and c"
+    assert listed(["a"]) == "a"
+    assert by_case({"1": "rises", "3": "falls", "2": "rises"}) == "rises at 1 and 2, falls at 3"
+
+
+def test_one_notation_two_faces() -> None:
+    text = r"φ′_0 < x_m,a: $\mathrm{sign}\,\dot x$, `first_time` & more"
+    assert as_markdown(text) == (
+        r"φ′<sub>0</sub> < x<sub>m,a</sub>: $\mathrm{sign} \dot x$, `first_time` & more"
+    )
+    page = as_html(text)
+    assert page.startswith("φ′<sub>0</sub> &lt; x<sub>m,a</sub>: <math")
+    assert "<mtext>sign</mtext>" in page
+    assert page.endswith("<code>first_time</code> &amp; more")
+
+
+# ---- the command ---------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def quick(made: Report, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The command with what it computes already there."""
+    monkeypatch.setattr(report, "make", lambda step: made)
+    monkeypatch.setattr(Report, "files", lambda self, step: files)
+    pictures = {"images/paper/a.png": b"picture"}
+    monkeypatch.setattr(report, "files", lambda *_: {report.NAME: b"text", **pictures})
+    yield
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) -> None:
+    out, docs = tmp_path / "new" / "report", tmp_path / "docs"
+    result = CliRunner().invoke(app, ["paper", "--out", str(out), "--docs", str(docs)])
+    assert result.exit_code == 0, result.output
+    assert "7 hold, 10 hold under a condition" in result.stdout
+    written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
+    assert written == {str(Path(name)) for name in files}
+    assert (out / report.PAGE).read_bytes() == files[report.PAGE]
+    assert (docs / report.NAME).read_bytes() == b"text"
+    assert (docs / "images/paper/a.png").is_file()
+
+
+def test_the_command_refuses_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(report, "make", lambda step: pytest.fail("computed all the same"))
+    (tmp_path / "file").write_text("mine")
+    for arguments, words in (
+        ([], "say where the report goes: --out DIR, or --docs DIR"),
+        (["--out", str(tmp_path / "file")], f"{tmp_path / 'file'}: cannot be written"),
+        (["--docs", str(tmp_path / "file/deep")], "cannot be written: file is no folder"),
+    ):
+        result = CliRunner().invoke(app, ["paper", *arguments])
+        assert result.exit_code == 2
+        (line,) = result.stderr.splitlines()
+        assert words in line
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_an_interrupt_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(step: object) -> Report:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(report, "make", interrupted)
+    result = CliRunner().invoke(app, ["paper", "--out", str(tmp_path / "new")])
+    assert result.exit_code == 130
+    assert list(tmp_path.iterdir()) == []

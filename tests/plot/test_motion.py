@@ -1,0 +1,378 @@
+"""The picture says what the motion says: curves, jumps, events, stuck phases, levels, words."""
+
+import io
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from subprocess import run
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive.plot.motion import plot_motion
+from pindrive.plot.style import PALETTE, save
+
+Array = NDArray[np.float64]
+
+OKABE_ITO = {
+    *("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"),
+}
+
+
+def drive(
+    damping: float = 0.32,
+    plate: tuple[float, float] = (0.022, 0.0265),
+    finger: tuple[float, float] = (0.005, 0.0075),
+) -> Drive:
+    return Drive(
+        mass=0.010,
+        stiffness=100.0,
+        damping=damping,
+        plate=Contact(*plate),
+        finger=Contact(*finger),
+    )
+
+
+SKIN = Drive(
+    mass=0.010,
+    stiffness=100.0,
+    damping=0.32,
+    plate=Contact(static=0.0265, curve=[(0.0, 0.022), (0.05, 0.015), (0.1, 0.015)]),
+    finger=Contact(0.020, 0.030, stiffness=1000.0),
+)
+STOP = Profile([0.0, 0.1], [0.06, 0.0])
+NONE = (0.0, 0.0)
+MOTIONS: dict[str, Callable[[], Motion]] = {
+    "example": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3),
+    "still plate": lambda: simulate(drive(), mouse_velocity=0.0, displacement=2e-3),
+    "backwards": lambda: simulate(drive(0.2), mouse_velocity=-0.1, displacement=-1.5e-3),
+    "grazing": lambda: simulate(
+        drive(0.0, (0.02, 0.02), NONE), mouse_velocity=0.1, displacement=3e-3
+    ),
+    "stick-slip": lambda: simulate(
+        drive(0.1, (0.05, 0.12), (0.005, 0.005)), mouse_velocity=0.02, displacement=1e-3
+    ),
+    "creep": lambda: simulate(drive(6.0, NONE, NONE), mouse_velocity=0.05, displacement=2e-3),
+    "slow creep": lambda: simulate(drive(2e4, NONE, NONE), mouse_velocity=0.05, displacement=2e-3),
+    "free": lambda: simulate(drive(0.0, NONE, NONE), mouse_velocity=0.06, displacement=2e-3),
+    "at rest": lambda: simulate(drive(), mouse_velocity=0.0),
+    "pushed": lambda: simulate(
+        drive(), mouse_velocity=-0.1234, displacement=-1.234e-5, velocity=-0.04321
+    ),
+    "cut": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=0.05),
+    "long": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=20.0),
+    "skin": lambda: simulate(SKIN, mouse_velocity=STOP, displacement=2e-3),
+    "stiff skin": lambda: simulate(
+        replace(SKIN, finger=Contact(0.02, 0.03, stiffness=1e8)),
+        mouse_velocity=0.06,
+        displacement=2e-3,
+    ),
+    "magnet": lambda: simulate(
+        drive(),
+        mouse_velocity=STOP,
+        displacement=2e-3,
+        plate_load=Profile([0.0, 0.005], [1.0, 0.2]),
+    ),
+    "many": lambda: simulate(
+        drive(0.0, (1e-6, 1e-6), (1e-6, 1e-6)),
+        mouse_velocity=0.0,
+        displacement=0.1,
+        duration=200.0,
+    ),
+}
+MARKED = [name for name in MOTIONS if name != "many"]
+
+
+@pytest.fixture(scope="module")
+def drawn() -> dict[str, tuple[Motion, Figure]]:
+    motions = {name: make() for name, make in MOTIONS.items()}
+    return {name: (motion, plot_motion(motion)) for name, motion in motions.items()}
+
+
+def panel(figure: Figure, name: str) -> Axes:
+    return next(axes for axes in figure.axes if axes.get_label() == name)
+
+
+def lines(axes: Axes, gid: str) -> list[Line2D]:
+    return [line for line in axes.lines if line.get_gid() == gid]
+
+
+def points(line: Line2D) -> tuple[Array, Array]:
+    return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+
+
+def data(axes: Axes, gid: str) -> tuple[Array, Array]:
+    (line,) = lines(axes, gid)
+    return points(line)
+
+
+def test_axes_have_units(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    for name, unit in (("example", "ms"), ("long", "s")):
+        figure = drawn[name][1]
+        assert panel(figure, "a").get_xlabel() == f"time after release ({unit})"
+        for axes, ending in (("x", "(mm)"), ("v", "(mm/s)"), ("a", "(m/s²)")):
+            assert panel(figure, axes).get_ylabel().endswith(ending)
+        assert panel(figure, "portrait").get_xlabel().endswith("(mm)")
+        assert panel(figure, "portrait").get_ylabel().endswith("(mm/s)")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["example", "still plate", "backwards", "grazing", "cut", "creep", "skin", "magnet"],
+)
+def test_curves_are_the_motion(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    motion, figure = drawn[name]
+    ends = [s.begin for s in motion.segments[1:]]
+    for axes, of, scale in (
+        ("x", motion.position, 1e3),
+        ("v", motion.velocity, 1e3),
+        ("a", motion.acceleration, 1.0),
+    ):
+        t, y = data(panel(figure, axes), "curve")
+        t, y = t[~np.isnan(t)] / 1e3, y[~np.isnan(t)]
+        assert t[0] == 0.0
+        assert t[-1] == pytest.approx(motion.duration, rel=1e-15)
+        assert np.all(np.diff(t) >= 0.0)
+        inside = np.min(np.abs(t[:, None] - np.array([*ends, np.inf])), axis=1) > 1e-12
+        assert y[inside] == pytest.approx(scale * of(t[inside]), rel=1e-9, abs=1e-12)
+        for end in ends:  # each end is there twice: from the left and from the right
+            at = np.flatnonzero(np.abs(t - end) < 1e-12)
+            limits = [scale * of(end, "left"), scale * of(end, "right")]
+            assert y[at] == pytest.approx(limits, rel=1e-12, abs=1e-12)
+    x, v = data(panel(figure, "portrait"), "curve")
+    assert x.tolist() == data(panel(figure, "x"), "curve")[1].tolist()
+    assert v.tolist() == data(panel(figure, "v"), "curve")[1].tolist()
+
+
+def test_acceleration_jumps(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["example"]
+    a = panel(figure, "a")
+    t, _ = data(a, "curve")
+    assert np.isnan(t).sum() == len(motion.segments) - 1  # the curve itself does not cross a jump
+    (jumps,) = (c for c in a.collections if c.get_gid() == "jumps")
+    assert isinstance(jumps, LineCollection)
+    drawn_jumps = np.array(jumps.get_segments())
+    assert drawn_jumps.shape == (len(motion.segments) - 1, 2, 2)
+    for event, ((t0, y0), (t1, y1)) in zip(motion.events, drawn_jumps, strict=True):
+        assert t0 == t1 == pytest.approx(1e3 * event.time)
+        assert [y0, y1] == pytest.approx(
+            [motion.acceleration(event.time, "left"), motion.acceleration(event.time, "right")]
+        )
+
+
+@pytest.mark.parametrize("name", MARKED)
+def test_events_are_marked(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    motion, figure = drawn[name]
+    if motion.ending.cycle == "stick-slip":
+        return
+    for kind in ("stick", "slip", "cross"):
+        events = [e for e in motion.events if e.kind == kind]
+        for axes, field in (("x", "position"), ("v", "velocity"), ("portrait", "velocity")):
+            found = [y for line in lines(panel(figure, axes), kind) for y in points(line)[1]]
+            assert found == pytest.approx([1e3 * getattr(e, field) for e in events])
+
+
+def test_kinds_differ_without_colour(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    x = panel(drawn["example"][1], "x")
+    markers = {lines(x, kind)[0].get_marker() for kind in ("stick", "slip", "cross")}
+    assert len(markers) == 3
+
+
+@pytest.mark.parametrize("name", MARKED)
+def test_stuck_phases_are_shaded(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    motion, figure = drawn[name]
+    if motion.ending.cycle == "stick-slip":
+        return
+    for axes in ("x", "v", "a"):
+        for mode in ("carried", "resting"):
+            (shade,) = (c for c in panel(figure, axes).collections if c.get_gid() == mode)
+            assert isinstance(shade, PolyCollection)
+            stuck = [s for s in motion.segments if s.mode == mode and s.begin < motion.duration]
+            across = [np.asarray(path.vertices)[:, 0] for path in shade.get_paths()]
+            spans = [(edge.min(), edge.max()) for edge in across]
+            scale = 1e3 if motion.duration < 2.0 else 1.0
+            expected = [(scale * s.begin, scale * min(s.end, motion.duration)) for s in stuck]
+            assert spans == [pytest.approx(span) for span in expected]
+
+
+def test_cycle_goes_on_round_after_round(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["stick-slip"]
+    assert motion.duration > motion.segments[-1].end + motion.ending.period
+    for axes, of in (("x", motion.position), ("v", motion.velocity)):
+        t, y = data(panel(figure, axes), "curve")
+        assert t[-1] == pytest.approx(1e3 * motion.duration)
+        away = [np.ptp(of(np.clip(ti / 1e3 + np.array([-1e-9, 1e-9]), 0, None))) for ti in t]
+        assert np.max(np.abs(y - 1e3 * of(t / 1e3))) < 1e-6 + 1e3 * np.max(away)
+    (sticks,) = lines(panel(figure, "v"), "stick")
+    times = points(sticks)[0] / 1e3
+    assert len(times) > 2
+    assert np.diff(times) == pytest.approx(motion.ending.period)
+    (shade,) = (c for c in panel(figure, "v").collections if c.get_gid() == "carried")
+    assert len(shade.get_paths()) == len(times) + 1  # it starts carried
+
+
+@pytest.mark.parametrize("name", [name for name in MOTIONS if name not in ("skin", "magnet")])
+def test_plate_velocity_is_drawn_and_named(
+    drawn: dict[str, tuple[Motion, Figure]], name: str
+) -> None:
+    motion, figure = drawn[name]
+    for axes in (panel(figure, "v"), panel(figure, "portrait")):
+        level = data(axes, "plate")[1]
+        assert level == pytest.approx(1e3 * float(motion.plate_velocity(0.0)))
+        low, high = axes.get_ylim()
+        assert low < level[0] < high
+        assert any(text.get_text().startswith("plate") for text in axes.texts)
+
+
+def test_a_plate_velocity_that_changes_is_drawn(
+    drawn: dict[str, tuple[Motion, Figure]],
+) -> None:
+    motion, figure = drawn["skin"]
+    t, v = data(panel(figure, "v"), "plate")
+    assert t == pytest.approx([0.0, 100.0, 1e3 * motion.duration])
+    assert v == pytest.approx([60.0, 0.0, 0.0])
+    assert not lines(panel(figure, "portrait"), "plate")
+
+
+def test_skin_has_a_panel(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["skin"]
+    s = panel(figure, "s")
+    assert s.get_ylabel().endswith("(µm)")
+    assert s.get_xlabel() == "time after release (ms)"
+    assert not panel(figure, "a").get_xlabel()
+    t, stretch = data(s, "curve")
+    inside = np.min(np.abs(t[:, None] / 1e3 - [p.begin for p in motion.segments]), axis=1) > 1e-12
+    assert stretch[inside] == pytest.approx(1e6 * motion.stretch(t[inside] / 1e3), abs=1e-9)
+    assert stretch.max() == pytest.approx(30.0), "what static friction holds"
+    (shade,) = (c for c in s.collections if c.get_gid() == "gripping")
+    gripping = [p for p in motion.segments if p.finger == 0]
+    edges = [np.asarray(path.vertices)[:, 0] for path in shade.get_paths()]
+    assert [edge.min() for edge in edges] == pytest.approx([1e3 * p.begin for p in gripping])
+    legend = panel(figure, "key").get_legend()
+    assert legend is not None
+    assert "skin grips the pin" in [text.get_text() for text in legend.get_texts()]
+
+
+@pytest.mark.parametrize("name", ["example", "magnet"])
+def test_a_rigid_finger_has_no_panel(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    assert "s" not in [axes.get_label() for axes in drawn[name][1].axes]
+
+
+def test_title_says_what_changes(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    skin, magnet = (drawn[name][1].get_suptitle() for name in ("skin", "magnet"))
+    assert r"$F_\mathrm{p}$ = 22 → 15 mN (static 26.5 mN)" in skin
+    assert r"$k_\mathrm{f}$ = 1000 N/m" in skin
+    assert r"$v_\mathrm{p}$ = 60 → 0 mm/s" in skin
+    assert "$λ$ = 1 → 0.2" in magnet
+    assert "λ" not in skin
+    many = simulate(drive(), mouse_velocity=Profile(range(9), [0.01 * i for i in range(9)]))
+    assert "= 0 mm/s … 80 mm/s" in plot_motion(many).get_suptitle()
+
+
+def test_settling_is_marked(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["example"]
+    x = panel(figure, "x")
+    end, band = motion.ending.position, 0.05 * abs(2e-3 - motion.ending.position)
+    levels = sorted(points(line)[1][0] for line in lines(x, "band"))
+    assert levels == pytest.approx([1e3 * (end - band), 1e3 * (end + band)])
+    time, _ = data(x, "settling")
+    assert time == pytest.approx(1e3 * motion.transient.settling_time)
+    words = " ".join(text.get_text() for text in x.texts)
+    assert "settled at" in words and "peak" in words and "trough" in words and "end" in words
+    assert not lines(panel(drawn["cut"][1], "x"), "settling")
+
+
+def test_title_says_the_numbers(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    _, figure = drawn["example"]
+    title = figure.get_suptitle()
+    for words in ("settling time 116.2 ms", "swing 2.914 mm", "10 g", "100 N/m", "60 mm/s"):
+        assert words in title
+
+
+def test_too_many_events_are_not_marked_and_it_says_so(
+    drawn: dict[str, tuple[Motion, Figure]],
+) -> None:
+    motion, figure = drawn["many"]
+    assert len(motion.events) > 5000
+    assert not any(lines(panel(figure, "x"), kind) for kind in ("stick", "slip", "cross"))
+    legend = panel(figure, "key").get_legend()
+    assert legend is not None
+    notes = [text.get_text() for text in legend.get_texts()]
+    assert any("too many to mark" in note for note in notes)
+    assert any(note.startswith("drawn: the first") and note.endswith("of 200 s") for note in notes)
+
+
+def test_colours_are_from_the_palette() -> None:
+    assert {to_hex(colour).upper() for colour in PALETTE.values()} <= OKABE_ITO
+    assert len({PALETTE[name] for name in ("curve", "stick", "slip", "cross")}) == 4
+    assert PALETTE["carried"] != PALETTE["resting"]
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_words_stay_on_the_page(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    figure = drawn[name][1]
+    figure.draw_without_rendering()
+    page = figure.bbox
+    legend = panel(figure, "key").get_legend()
+    words = [*figure.texts, *(legend.get_texts() if legend else [])]
+    for axes in figure.axes:
+        words += [*axes.texts, axes.xaxis.label, axes.yaxis.label]
+    assert len(words) > 15
+    for text in words:
+        box = text.get_window_extent()
+        assert page.x0 <= box.x0 and box.x1 <= page.x1, text
+        assert page.y0 <= box.y0 and box.y1 <= page.y1, text
+
+
+def test_a_motion_cut_short_leaves_out_what_lies_far_beyond() -> None:
+    """It is carried for days: where it will rest takes no room, where the drawing stops is said."""
+    motion = simulate(drive(plate=(1e3, 1e3)), mouse_velocity=1e-5)
+    figure = plot_motion(motion)
+    figure.draw_without_rendering()  # a layout that fails warns, which is an error here
+    portrait = {text.get_text() for text in panel(figure, "portrait").texts}
+    assert "start" in portrait and "end" not in portrait
+    assert panel(figure, "x").get_window_extent().width > 0.25 * figure.bbox.width
+
+
+@pytest.mark.parametrize(("format", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_save(drawn: dict[str, tuple[Motion, Figure]], format: str, start: bytes) -> None:
+    file = io.BytesIO()
+    save(drawn["creep"][1], file, format)
+    assert file.getvalue().startswith(start)
+
+
+def test_svg_has_text_and_is_reproducible(
+    drawn: dict[str, tuple[Motion, Figure]], tmp_path: Path
+) -> None:
+    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    for file in files:
+        save(plot_motion(drawn["creep"][0]), file)
+    text = files[0].read_text(encoding="utf-8")
+    assert ">time after release (ms)</text>" in text
+    assert text == files[1].read_text(encoding="utf-8")
+
+
+def test_a_readers_settings_neither_matter_nor_change() -> None:
+    motion = MOTIONS["creep"]()
+    plain = io.BytesIO()
+    save(plot_motion(motion), plain, "svg")
+    with matplotlib.rc_context({"font.size": 30.0, "lines.linewidth": 9.0, "svg.fonttype": "path"}):
+        before = dict(matplotlib.rcParams)
+        themed = io.BytesIO()
+        save(plot_motion(motion), themed, "svg")
+        assert dict(matplotlib.rcParams) == before
+    assert plain.getvalue() == themed.getvalue()
+
+
+def test_pyplot_is_not_imported() -> None:
+    code = "import pindrive.plot.motion, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
+    assert run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,257 @@
+"""Maps of studies: what is drawn is what the file holds, and what has no number looks like none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from typer.testing import CliRunner, Result
+
+from pindrive.cli.app import app
+from pindrive.plot.slices import plot_study
+from pindrive.study.runner import sweep
+from pindrive.study.slices import View, quantiles
+from pindrive.study.spec import load_study
+
+Values = NDArray[np.float64]
+BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'
+GRID = """
+[axes]
+mouse_velocity = { lin = ["20 mm/s", "300 mm/s"], count = 15 }
+drive.stiffness = { log = ["20 N/m", "500 N/m"], count = 12 }
+plate.kinetic = ["0 mN", "5 mN", "10 mN", "15 mN", "20 mN"]
+plate.static = ["18 mN"]
+damping_ratio = [0.1, 0.2, 0.3]
+duration = ["90 ms"]
+"""
+DRAWN = """
+[axes]
+mass = { uniform = ["5 g", "20 g"] }
+mouse_velocity = { uniform = ["20 mm/s", "300 mm/s"] }
+plate.kinetic = ["5 mN", "20 mN"]
+[sample]
+count = 3000
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Holds a study on a grid, one that is drawn, and one of a single point."""
+    made = tmp_path_factory.mktemp("maps")
+    for name, text in (("grid", GRID), ("drawn", DRAWN), ("one", '[axes]\nmass = ["1 g"]\n')):
+        (made / f"{name}.toml").write_text(BASE + text)
+        sweep(load_study(made / f"{name}.toml"), made / f"{name}.nc")
+    return made
+
+
+@pytest.fixture
+def grid(folder: Path) -> Iterator[View]:
+    with View(folder / "grid.nc") as view:
+        yield view
+
+
+@pytest.fixture
+def drawn(folder: Path) -> Iterator[View]:
+    with View(folder / "drawn.nc") as view:
+        yield view
+
+
+def draw(
+    view: View, numbers: list[str], x: str | None = None, y: str | None = None, **held: float
+) -> Figure:
+    return plot_study(view, [view.number(n) for n in numbers], *view.axes(x, y, held), held)
+
+
+def meshes(figure: Figure) -> list[Values]:
+    """The values of the maps of numbers: not of what is refused, nor of the scale of colours."""
+    found = [c for axes in figure.axes for c in axes.collections if isinstance(c, QuadMesh)]
+    arrays = [np.ma.filled(c.get_array(), np.nan) for c in found if c.cmap.name == "viridis"]  # type: ignore[arg-type]
+    return [array for array in arrays if array.size != 256]
+
+
+# ---- grids ---------------------------------------------------------------------------------------
+
+
+def test_a_map_is_a_slice_of_the_file(grid: View) -> None:
+    """Over the first two keys, for three values of the third, the middle of the last."""
+    figure = draw(grid, ["settling_time"])
+    maps = meshes(figure)
+    assert len(maps) == 3
+    for mesh, friction in zip(maps, (0, 2, 4), strict=True):
+        part = grid.data.isel(plate_kinetic=friction, damping_ratio=1).squeeze()
+        times = part.transient_settling_time.transpose("stiffness", "mouse_velocity").values
+        np.testing.assert_array_equal(mesh.reshape(times.shape), 1e3 * times)
+    left = figure.axes[0]
+    assert left.get_xlabel() == r"mouse velocity $v_\mathrm{p}$ (mm/s)"
+    assert left.get_ylabel() == "stiffness $k$ (N/m)"
+    assert (left.get_xscale(), left.get_yscale()) == ("linear", "log")
+    assert left.get_title() == r"$F_\mathrm{p}$ = 0 mN"
+    assert "$ζ$ = 0.2" in figure.get_suptitle()
+    assert figure.axes[-1].get_ylabel() == r"settling time $t_\mathrm{s}$ (ms)"
+
+
+def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: View) -> None:
+    (key,) = draw(grid, ["swing"]).legends
+    words = [text.get_text() for text in key.get_texts()]
+    assert words == ["not settled in the time followed", "no motion: contradictory values"]
+    panels = list(grid.panels("transient_swing", *grid.axes(None, None, {}), {}))
+    for panel, refused in zip(panels, (False, False, True), strict=True):
+        assert panel.refused.all() == panel.refused.any() == refused
+        assert panel.unsettled.any() != refused
+        assert (panel.unsettled | panel.refused)[np.isnan(panel.values)].all()
+        assert refused or not np.isnan(panel.values[panel.unsettled]).all(), "some have a swing"
+    settled = list(grid.panels("transient_swing", "mouse_velocity", "", {"stiffness": 500.0}))
+    assert all(panel.unsettled.mean() < 1.0 for panel in settled)
+
+
+def test_curves_are_slices_too(grid: View) -> None:
+    held = {"stiffness": 100.0, "damping_ratio": 0.3}
+    figure = draw(grid, ["swing", "peak_time"], "mouse_velocity", None, **held)
+    place = int(np.argmin(np.abs(grid.data.stiffness.values - 100.0)))
+    for axes, name in zip(figure.axes, ("swing", "peak_time"), strict=True):
+        curves = [line for line in axes.get_lines() if line.get_gid() == "settled"]
+        assert len(curves) == 5, "one for each friction"
+        for i, curve in enumerate(curves):
+            part = grid.data.isel(plate_kinetic=i, stiffness=place, damping_ratio=2)
+            settled = part.transient_settled.values.ravel()
+            expected = np.where(settled, 1e3 * part[f"transient_{name}"].values.ravel(), np.nan)
+            np.testing.assert_array_equal(curve.get_ydata(), expected)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    assert legend.get_texts()[1].get_text() == r"$F_\mathrm{p}$ = 5 mN"
+
+
+# ---- draws ---------------------------------------------------------------------------------------
+
+
+def test_draws_over_one_key_are_a_median_and_a_band(drawn: View) -> None:
+    (panel, _) = drawn.panels("transient_swing", "mouse_velocity", "", {})
+    swing = drawn.data.transient_swing.isel(plate_kinetic=0).values
+    speed = drawn.data.mouse_velocity.values
+    edges = np.linspace(speed.min(), speed.max(), len(panel.values) + 1)
+    inside = (speed >= edges[7]) & (speed < edges[8])
+    assert panel.low is not None and panel.high is not None
+    found = [panel.low[7], panel.values[7], panel.high[7]]
+    np.testing.assert_allclose(found, np.quantile(swing[inside], (0.05, 0.5, 0.95)), rtol=1e-12)
+
+
+def test_draws_over_two_keys_are_a_map_of_medians(drawn: View) -> None:
+    figure = draw(drawn, ["swing"], "mass", "mouse_velocity", plate_kinetic=0.02)
+    (_, bar) = figure.axes
+    assert bar.get_ylabel() == "median swing (mm)"
+    assert r"$F_\mathrm{p}$ = 20 mN" in figure.get_suptitle()
+    (medians,) = meshes(figure)
+    swing = 1e3 * drawn.data.transient_swing.isel(plate_kinetic=1).values
+    low, middle, high = np.nanquantile(swing, (0.001, 0.5, 0.999))
+    assert low < np.nanmin(medians) < middle < np.nanmax(medians) < high
+
+
+def test_draws_that_are_not_drawn_over_are_summed_up(folder: Path) -> None:
+    (folder / "both.toml").write_text(
+        BASE + '[axes]\nmouse_velocity = ["50 mm/s", "90 mm/s"]\n'
+        'mass = { uniform = ["5 g", "20 g"] }\n[sample]\ncount = 501\n'
+    )
+    sweep(load_study(folder / "both.toml"), folder / "both.nc")
+    with View(folder / "both.nc") as view:
+        (panel,) = view.panels("transient_swing", "mouse_velocity", "", {})
+        swing = view.data.transient_swing.values
+        np.testing.assert_allclose(panel.values, np.median(swing, axis=1), rtol=1e-12)
+        assert panel.low is not None
+        np.testing.assert_allclose(panel.low, np.quantile(swing, 0.05, axis=1), rtol=1e-12)
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 4), st.floats(-1e3, 1e3) | st.just(float("nan"))), max_size=60
+    )
+)
+def test_quantiles_of_groups_are_numpys(pairs: list[tuple[int, float]]) -> None:
+    group = np.array([g for g, _ in pairs], np.int64)
+    values = np.array([v for _, v in pairs], np.float64)
+    found = quantiles(group, values, 5)
+    for g in range(5):
+        own = values[(group == g) & ~np.isnan(values)]
+        expected = np.quantile(own, (0.05, 0.5, 0.95)) if own.size else np.full(3, np.nan)
+        np.testing.assert_allclose(found[:, g], expected, rtol=1e-12, atol=1e-12)
+
+
+# ---- the command ---------------------------------------------------------------------------------
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(app, ["map", *arguments])
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_the_command_draws(folder: Path, tmp_path: Path, ending: str) -> None:
+    target = tmp_path / f"map.{ending}"
+    held = ("--at", "plate.kinetic=5 mN", "--at", "damping_ratio=0.2")
+    said = run(str(folder / "grid.nc"), "-o", str(target), "--x", "mouse_velocity", *held)
+    assert (said.exit_code, said.stdout) == (0, f"Wrote {target}\n")
+    begin = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[ending]
+    assert target.read_bytes().startswith(begin)
+
+
+REFUSED = {
+    "grid.nc -o map.gif": "--output map.gif: must end in .png, .svg, .pdf",
+    "half.nc.partial -o map.png": "half.nc.partial: is not finished; `pindrive sweep --resume` "
+    "goes on",
+    "none.nc -o map.png": "none.nc: cannot be read: No such file or directory",
+    "grid.toml -o map.png": "grid.toml: cannot be read: ",
+    "alien.nc -o map.png": "alien.nc: is no study; `pindrive sweep` writes one",
+    "one.nc -o map.png": "one.nc: holds a single point, there is nothing to draw over",
+    "grid.nc -o map.png --x mass": "--x mass: grid.nc does not vary it; it varies mouse_velocity,",
+    "grid.nc -o map.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "
+    "stiffness?",
+    "grid.nc -o map.png --number energy": '--number: unknown number "energy"',
+    "grid.nc -o map.png --number peak_stretch": "--number peak_stretch: grid.nc does not hold it",
+    "grid.nc -o map.png --at mass": '--at "mass": must be key=value',
+    "grid.nc -o map.png --at plate.kinetic=5": "--at plate.kinetic: must be a number with its unit",
+    "grid.nc -o map.png --x mouse_velocity --y mouse_velocity": "--y mouse_velocity: does not "
+    "change independently of mouse_velocity",
+    "drawn.nc -o map.png --at mass=1g": "--at mass: is sampled, and cannot be held at one value",
+}
+
+
+@pytest.mark.parametrize("arguments", REFUSED)
+def test_refusals(folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: str) -> None:
+    monkeypatch.chdir(folder)
+    xr.Dataset({"a": 1.0}).to_netcdf("alien.nc", engine="h5netcdf")
+    Path("half.nc.partial").write_bytes(Path("one.nc").read_bytes())
+    before = {path.name for path in folder.iterdir()}
+    said = run(*arguments.split())
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert said.stderr.startswith(REFUSED[arguments]), said.stderr
+    assert len(said.stderr.splitlines()) == 1
+    assert {path.name for path in folder.iterdir()} == before
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_number_that_is_the_same_everywhere_has_one_colour() -> None:
+    """In every panel, and at the middle of the scale."""
+    grid = """
+[axes]
+mouse_velocity = ["20 mm/s", "30 mm/s"]
+drive.stiffness = ["100 N/m", "200 N/m"]
+damping_ratio = [0.1, 0.2, 0.3]
+"""
+    Path("study.toml").write_text(BASE + grid)
+    sweep(load_study("study.toml"), Path("study.nc"))
+    with View("study.nc") as view:
+        number = "transient_plate_peak_force"
+        figure = plot_study(view, [number], *view.axes("mouse_velocity", "stiffness", {}), {})
+    meshes = [
+        mesh for axes in figure.axes for mesh in axes.collections if isinstance(mesh, QuadMesh)
+    ]
+    assert len(meshes) >= 3
+    assert {mesh.get_clim() for mesh in meshes[:3]} == {meshes[0].get_clim()}
+    low, high = meshes[0].get_clim()
+    assert low < float(np.asarray(meshes[0].get_array()).flat[0]) < high

@@ -1,0 +1,164 @@
+"""Which file of the Python package imports which: no circles, and packages in one order.
+
+Imports inside functions and under TYPE_CHECKING count: a circle that is only postponed is one.
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src"
+ORDER = (
+    *("quantities", "motion", "device", "evaluation", "files"),
+    *("study", "plot", "paper", "cli"),
+)
+"""Each package imports from itself and from those before it."""
+MOST_LAYERS = 10
+"""Of packages, the top level among them."""
+
+Graph = dict[str, set[str]]
+
+
+def imports(files: dict[str, str]) -> Graph:
+    """The modules that each module imports, of those given.
+
+    Args:
+        files: the text of each module; a package is named as the package.
+    """
+    packages = {name.rpartition(".")[0] for name in files}
+    graph: Graph = {}
+    for module, text in files.items():
+        package = module if module in packages else module.rpartition(".")[0]
+        found = set()
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Import):
+                found |= {name.name for name in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                above = package.split(".")[: len(package.split(".")) - node.level + 1]
+                parts = [*(above if node.level else ()), *(node.module or "").split(".")]
+                source = ".".join(filter(None, parts))
+                found |= {f"{source}.{name.name}" for name in node.names} | {source}
+        graph[module] = (found & files.keys()) - {module}
+    return graph
+
+
+def without_own(graph: Graph) -> Graph:
+    """Without what a package's `__init__` gathers from its own modules."""
+    return {
+        module: {name for name in found if not name.startswith(f"{module}.")}
+        for module, found in graph.items()
+    }
+
+
+def circle(graph: Graph) -> list[str]:
+    """A circle, the first module of it also last; empty where there is none."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def upward(graph: Graph) -> list[tuple[str, str]]:
+    """The imports of a module in a later package; the top level's own modules come first."""
+
+    def place(module: str) -> int:
+        package = module.removeprefix("pindrive").removeprefix(".").partition(".")[0]
+        if package == "__main__":
+            return len(ORDER) + 1
+        return ORDER.index(package) + 1 if package in ORDER else 0
+
+    pairs = [(module, name) for module, found in graph.items() for name in found]
+    return sorted(pair for pair in pairs if place(pair[1]) > place(pair[0]))
+
+
+@cache
+def package() -> Graph:
+    paths = {p: p.relative_to(SOURCE).with_suffix("").parts for p in SOURCE.rglob("*.py")}
+    names = {p: ".".join(parts).removesuffix(".__init__") for p, parts in paths.items()}
+    return without_own(imports({name: p.read_text("utf-8") for p, name in names.items()}))
+
+
+def test_no_file_imports_a_file_that_imports_it() -> None:
+    assert circle(package()) == []
+
+
+def test_a_package_imports_from_those_before_it_alone() -> None:
+    assert upward(package()) == []
+
+
+def test_every_package_has_its_place_in_the_order() -> None:
+    folders = {p.parent.name for p in SOURCE.glob("pindrive/*/*.py")}
+    assert folders == set(ORDER)
+    assert len(ORDER) + 1 <= MOST_LAYERS
+    assert " → ".join(ORDER) in (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+
+
+def test_targets_of_lazy_calls_exist() -> None:
+    """They are text, which no type checker reads."""
+    from importlib import import_module
+
+    found = 0
+    for path in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy.call":
+                module, _, name = ast.literal_eval(node.args[0]).partition(":")
+                assert callable(getattr(import_module(module), name)), (path, module, name)
+                found += 1
+    assert found >= 3
+
+
+def test_libraries_that_load_slowly_are_postponed_in_one_place() -> None:
+    slow = {"PIL", "h5netcdf", "h5py", "matplotlib", "pint", "rich", "scipy", "xarray"}
+    found = []
+    for path in SOURCE.rglob("*.py"):
+        for function in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(function, ast.FunctionDef):
+                for node in ast.walk(function):
+                    if isinstance(node, (ast.Import, ast.ImportFrom)):
+                        names = [getattr(node, "module", None) or node.names[0].name]
+                        found += [(path, n) for n in names if n.partition(".")[0] in slow]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from pindrive.motion import b",
+        "import pindrive.motion.b",
+        "from . import b",
+        "from .b import x",
+        "def f():\n    from pindrive.motion.b import x",
+        "if TYPE_CHECKING:\n    from pindrive.motion.b import x",
+    ],
+)
+def test_a_circle_is_found_however_it_is_written(text: str) -> None:
+    files = {
+        "pindrive": "from pindrive.motion.a import x",
+        "pindrive.motion": "",
+        "pindrive.motion.a": text,
+        "pindrive.motion.b": "from pindrive.motion.a import y",
+    }
+    found = circle(without_own(imports(files)))
+    assert set(found) == {"pindrive.motion.a", "pindrive.motion.b"}
+
+
+def test_an_import_of_a_later_package_is_found() -> None:
+    files = {
+        "pindrive": "",
+        "pindrive.lazy": "",
+        "pindrive.motion": "",
+        "pindrive.motion.a": "from pindrive import lazy\nfrom pindrive.plot import b",
+        "pindrive.plot": "",
+        "pindrive.plot.b": "",
+        "pindrive.__main__": "from pindrive.motion import a",
+    }
+    found = upward(without_own(imports(files)))
+    assert ("pindrive.motion.a", "pindrive.plot.b") in found
+    assert {module for module, _ in found} == {"pindrive.motion.a"}
