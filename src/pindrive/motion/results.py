@@ -1,7 +1,7 @@
 """The results of a motion as data: events, segments, transient, ending, energy, certificate.
 
-All SI; NaN where a number does not exist within the duration. `pindrive.quantities.results` says what
-each means.
+All SI; NaN where a number does not exist within the duration. `pindrive.quantities.results` says
+what each means.
 """
 
 from __future__ import annotations

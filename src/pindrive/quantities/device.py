@@ -338,8 +338,8 @@ PIN: Final[tuple[Quantity, ...]] = (
 )
 """What each pin did in a scan."""
 
-# One pin of a tactile mouse may be heavy. Sixteen under a finger have magnets a few millimetres wide,
-# and springs so stiff that none of them reaches the next.
+# One pin of a tactile mouse may be heavy. Sixteen under a finger have magnets a few millimetres
+# wide, and springs so stiff that none of them reaches the next.
 READER: Final[dict[str, dict[str, Any]]] = {
     "drive.mass": {
         "default": 0.001,
