@@ -8,6 +8,7 @@
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
+    python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when
@@ -362,6 +363,12 @@ def bench(arguments: list[str]) -> int:
     return run("python", program, *arguments[len(named) :])
 
 
+def validation() -> int:
+    """The published cases: computed, and written to docs/validation.md with their figures."""
+    install({"test"})
+    return run("python", "-m", "tests.published")
+
+
 def layout() -> int:
     """Lays the sources out; what lint can only complain about is left to the author."""
     install({"dev"}, project=False)
@@ -384,7 +391,7 @@ def main(arguments: list[str]) -> int:
         print(__doc__)
         return 0
     taking = {"test": test, "explore": explore, "lint": lint, "bench": bench}
-    alone = {"simulate": simulate, "format": layout, "stubs": stubs}
+    alone = {"simulate": simulate, "format": layout, "stubs": stubs, "validation": validation}
     if command in taking:
         return taking[command](rest)
     if command not in alone or rest:

@@ -1,4 +1,4 @@
-"""Examples of the whole device in the README: each runs by its command, its picture is there."""
+"""The examples of docs/devices.md: each runs by its command, its picture is there."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pindrive.cli.app import app
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = re.findall(
     r"^\.venv/bin/(.*examples/(?:letter_a|tactile-reader\.toml).*)$",
-    (ROOT / "README.md").read_text("utf-8"),
+    (ROOT / "docs" / "devices.md").read_text("utf-8"),
     re.M,
 )
 SHORTER = {"speed": ["--pitch", "4 mm", "--slowest", "0.05 m/s", "--fastest", "0.2 m/s"]}

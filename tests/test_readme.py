@@ -1,19 +1,52 @@
-"""The README's example prints what the README says, and its commands exist."""
+"""The README is short, its example prints what it says, and the commands of all pages exist."""
 
 from __future__ import annotations
 
 import contextlib
 import io
 import re
+import shlex
 from pathlib import Path
+
+import pytest
+import typer.main
+
+from command import run
+from pindrive.cli import app
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text("utf-8")
+VALIDATION = (ROOT / "docs" / "validation.md").read_text("utf-8")
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def blocks(text: str) -> list[tuple[str, str]]:
     """The fenced blocks as (language, content)."""
     return re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def commands(text: str) -> list[list[str]]:
+    """The calls of pindrive in its blocks, as words."""
+    lines = [
+        line for language, block in blocks(text) if language == "sh" for line in block.split("\n")
+    ]
+    return [shlex.split(line)[1:] for line in lines if line.startswith(".venv/bin/pindrive ")]
+
+
+def rows(text: str) -> list[str]:
+    """The rows of evidence in a table."""
+    table = text.partition("| what | measured | printed by |\n|---|---|---|\n")[2]
+    return table.partition("\n\n")[0].splitlines()
+
+
+def test_it_is_short() -> None:
+    assert len(README.split()) <= 700
+    before = README.partition("\n![")[0].splitlines()[1:]
+    assert len([line for line in before if line]) <= 10, "who it is for and what it answers"
+    assert len(re.findall(r"!\[", README)) == 1
+    found = dict(blocks(README))
+    assert len([line for line in found["python"].splitlines() if line]) <= 10
+    assert len(commands(README)) == 5, "the whole device"
 
 
 def test_the_example_prints_what_follows_it() -> None:
@@ -31,7 +64,78 @@ def test_run_and_test_each_start_with_their_one_command() -> None:
     assert blocks(sections["Test"])[0][1] == "python3 run.py test\n"
 
 
-def test_what_it_links_to_is_there() -> None:
-    links = re.findall(r"\]\(([^)#:]+)\)", README)
-    assert links
-    assert [link for link in links if not (ROOT / link).exists()] == []
+@pytest.mark.usefixtures("in_empty_folder")
+def test_the_whole_device_in_five_commands() -> None:
+    for words in commands(README):
+        result = run(*words)
+        assert (result.exit_code, result.stderr) == (0, ""), (words, result.output)
+    written = {"device.toml", "hello.png", "hello.nc", "study.toml", "study.nc"}
+    assert {path.name for path in Path().iterdir()} == written
+
+
+# ---- evidence ------------------------------------------------------------------------------------
+
+
+def test_its_four_rows_of_evidence_stand_among_all_of_them() -> None:
+    all_rows = [row.replace("](../", "](") for row in rows(VALIDATION)]
+    assert len(rows(README)) == 4
+    assert {*rows(README)} <= {*all_rows}
+    assert len(all_rows) >= 20
+
+
+def test_the_row_of_published_cases_counts_as_the_page_does() -> None:
+    counted = re.search(
+        r"^(\d+) numbers of (\d+) cases: (\d+) agree .*?, (\d+) do not", VALIDATION, re.M
+    )
+    assert counted
+    row = next(row for row in rows(README) if "published cases" in row)
+    numbers, cases, agree, differ = counted.groups()
+    assert f"| {numbers} numbers of {cases} published cases " in row
+    assert f"| {agree} met within what their source justifies; the two others" in row
+    assert differ == "2"
+
+
+@pytest.mark.parametrize("row", rows(VALIDATION), ids=lambda row: row[2:40])
+def test_a_row_says_how_it_is_printed_by_what_is_there(row: str) -> None:
+    """The programs that it names exist, and so does what they read."""
+    said = row.rpartition(" | ")[2].rstrip(" |")
+    for command in re.findall(r"`([^`]+)`", said):
+        for word in command.split():
+            if word.endswith(".toml") or (word.endswith(".py") and "/" in word):
+                assert (ROOT / word).exists(), word
+            if word.startswith("oracle.") or word == "random_scans":
+                assert (ROOT / "tests" / f"{word.replace('.', '/')}.py").exists(), word
+        if match := re.match(r"python3 run\.py bench ?(\w*)$", command):
+            assert (ROOT / "benchmarks" / f"{match[1] or 'simulate'}.py").exists()
+    assert "`" in said or said == "the same" or said.startswith("the same with")
+
+
+# ---- all pages -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_what_a_page_links_to_is_there(page: Path) -> None:
+    text = page.read_text("utf-8")
+    links = re.findall(r"\]\(([^)#:\s]+)(#[^)]*)?\)", text)
+    assert [link for link, _ in links if not (page.parent / link).exists()] == []
+
+
+def test_the_pages_that_took_what_was_in_the_readme_are_linked_from_it() -> None:
+    for name in ("devices", "studies", "validation", "theory", "paper"):
+        assert f"(docs/{name}.md)" in README
+
+
+@pytest.mark.parametrize(
+    "words",
+    [words for page in PAGES for words in commands(page.read_text("utf-8"))],
+    ids=lambda words: " ".join(words)[:50],
+)
+def test_the_commands_of_the_pages_take_their_options(words: list[str]) -> None:
+    """As the command line reads them; what they do is tested where it is done."""
+    group = typer.main.get_command(app)
+    command = group.get_command(typer.Context(group), words[0])  # type: ignore[attr-defined]
+    context = command.make_context(words[0], [*words[1:]])
+    assert context.params
+    for word in words:
+        if word.startswith("examples/"):
+            assert (ROOT / word).exists()

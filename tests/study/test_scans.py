@@ -456,7 +456,7 @@ def test_releases_of_a_whole_device_are_swept_too() -> None:
 
 
 def test_the_example_is_a_study_of_scans() -> None:
-    """What the README shows: its first points, one of them put together by hand."""
+    """What docs/studies.md shows: its first points, one of them put together by hand."""
     file = Path(__file__).parents[2] / "examples" / "tactile-reader-study.toml"
     plan = load_study(file)
     assert plan.shape == (19, 13, 3)

@@ -22,6 +22,7 @@ from pindrive.cli.errors import (
     picture_format,
     refusing,
 )
+from pindrive.cli.help import shown
 from pindrive.cli.interrupts import interruptible
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ app = typer.Typer(
     cls=OneLine,
     help="Exact dynamics of the pin drives of tactile devices.",
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode=None,  # plain help is here in a third of the time
     pretty_exceptions_enable=False,
 )
@@ -102,27 +102,34 @@ def _brief_warnings() -> Iterator[None]:
         yield
 
 
-@app.command()
+@app.command(**shown("init"))
 def init(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
     force: Annotated[
-        bool, typer.Option("--force", help="Replace a device file that is there.")
+        bool, typer.Option("--force", help="Replace such a file that is there.")
     ] = False,
     device: Annotated[
         bool, typer.Option("--device", help="With magnet, control block, pin array and hand.")
     ] = False,
+    study: Annotated[
+        bool, typer.Option("--study", help="A study file: a device, and what to vary of it.")
+    ] = False,
 ) -> None:
-    """Write a commented device file to start from."""
-    from pindrive.files.output import DEVICE_FILE, Output, naming, writing
+    """Write a commented device file, or study file, to start from."""
+    from pindrive.files.output import DEVICE_FILE, STUDY_FILE, Output, naming, writing
     from pindrive.files.template import template
+    from pindrive.study.template import study_template
 
-    with refusing(), writing([Output(file, DEVICE_FILE)], consent=force) as parts, naming(file):
-        parts[file].write_text(template(whole=device), encoding="utf-8")
-    command = f"scan {file} --text A" if device else f"simulate {file}"
+    kind = STUDY_FILE if study else DEVICE_FILE
+    with refusing(), writing([Output(file, kind)], consent=force) as parts, naming(file):
+        text = study_template(whole=device) if study else template(whole=device)
+        parts[file].write_text(text, encoding="utf-8")
+    release = f"scan {file} --text A" if device else f"simulate {file}"
+    command = f"sweep {file}" if study else release
     typer.echo(f"Wrote {file}; try: pindrive {command}")
 
 
-@app.command()
+@app.command(**shown("check"))
 def check(file: DeviceArgument) -> None:
     """Say what is wrong with a device file, or what it describes."""
     from pindrive.files.device import load
@@ -139,7 +146,7 @@ def check(file: DeviceArgument) -> None:
     show(device_report(device))
 
 
-@app.command()
+@app.command(**shown("simulate"))
 def simulate(
     file: DeviceArgument,
     overrides: OverridesOption = None,
@@ -208,8 +215,8 @@ def _register() -> None:
     from pindrive.cli.study import map_study, robustness, sensitivity, sweep
 
     for command in (scan, speed, sweep, sensitivity, robustness, paper):
-        app.command()(command)
-    app.command("map")(map_study)
+        app.command(**shown(command.__name__))(command)
+    app.command(**shown("map"))(map_study)
 
 
 _register()

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+
+from pindrive.help import HelpfulGroup
 
 if TYPE_CHECKING:
     from pindrive.files.output import Output
@@ -55,7 +56,7 @@ def count_option(
     return typer.Option(option, metavar=metavar, help=help, parser=count)
 
 
-class OneLine(TyperGroup):
+class OneLine(HelpfulGroup):
     """Commands whose usage errors are one line too."""
 
     def main(

@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from secrets import token_hex
-from typing import Final
+from typing import Any, Final
 
 from pindrive.lazy import h5py
 
@@ -235,16 +235,27 @@ def _attribute(path: Path, name: str) -> str:
         return ""
 
 
-def _is_device_file(path: Path) -> bool:
+def _tables(path: Path) -> dict[str, Any]:
+    """What a TOML file holds; nothing where it is none."""
     from tomllib import loads
 
+    try:
+        return loads(path.read_text("utf-8-sig"))
+    except (ValueError, RecursionError):
+        return {}
+
+
+def _is_device_file(path: Path) -> bool:
     from pindrive.files.device import STUDY_KEYS, TABLES
 
-    try:
-        tables = loads(path.read_text("utf-8-sig"))
-    except (ValueError, RecursionError):
-        return False
+    tables = _tables(path)
     return not tables.keys().isdisjoint(TABLES) and tables.keys().isdisjoint(STUDY_KEYS)
+
+
+def _is_study_file(path: Path) -> bool:
+    from pindrive.files.device import STUDY_KEYS
+
+    return not _tables(path).keys().isdisjoint(STUDY_KEYS)
 
 
 PICTURES: Final = {
@@ -266,4 +277,5 @@ STUDY_NETCDF: Final = Kind(
     "NetCDF file of a study", lambda path: _attribute(path, "identity") != "", "--restart"
 )
 DEVICE_FILE: Final = Kind("device file", _is_device_file, "--force")
+STUDY_FILE: Final = Kind("study file", _is_study_file, "--force")
 REPORT: Final = Kind("report of the paper", lambda path: b"Dynamics of tactile" in _head(path))

@@ -1,0 +1,135 @@
+"""The help of each command: its options in groups, an example that runs, and shell completion."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typer.main
+
+from command import run
+from pindrive.cli.app import app
+from pindrive.cli.help import COMMANDS, OPTIONS
+
+GROUP: typer.core.TyperGroup = typer.main.get_command(app)  # type: ignore[assignment]
+
+
+def test_each_command_has_a_group_and_an_example_of_itself() -> None:
+    assert GROUP.commands.keys() == COMMANDS.keys()
+    for name, (_, example) in COMMANDS.items():
+        assert shlex.split(example)[:2] == ["pindrive", name]
+
+
+def test_the_help_lists_the_commands_under_their_groups_with_whole_sentences() -> None:
+    said = run("--help").stdout
+    headings = list(dict.fromkeys(group for group, _ in COMMANDS.values()))
+    assert re.findall(r"^(\S.*):$", said, re.M) == ["Help", *headings]
+    assert "..." not in said.partition("\n")[2]
+    sections = re.split(r"^(\S.*):$", said, flags=re.M)
+    listed = dict(zip(sections[1::2], sections[2::2], strict=True))
+    for name, (group, _) in COMMANDS.items():
+        assert re.search(rf"^  {name} ", listed[group], re.M)
+
+
+def test_every_option_has_one_group() -> None:
+    grouped = [name for names in OPTIONS.values() for name in names]
+    assert len(grouped) == len({*grouped})
+    used = {
+        parameter.name
+        for command in (GROUP, *GROUP.commands.values())
+        for parameter in command.params
+        if parameter.param_type_name == "option"
+    }
+    assert used | {"help"} == {*grouped}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: str) -> None:
+    said = run(name, "--help").stdout
+    headings = re.findall(r"^(\S.*):$", said, re.M)
+    order = ["Arguments", *OPTIONS, "Example"]
+    assert headings == [heading for heading in order if heading in headings]
+    assert said.endswith(f"\nExample:\n  {COMMANDS[name][1]}\n")
+    for parameter in GROUP.commands[name].params:
+        if parameter.param_type_name != "option":
+            continue
+        assert parameter.name
+        heading = next(group for group, names in OPTIONS.items() if parameter.name in names)
+        section = re.split(rf"^{heading}:$", said, flags=re.M)[1].partition("\n\n")[0]
+        assert all(option in section for option in parameter.opts)
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_the_examples_run_one_after_the_other() -> None:
+    """All but that of `paper`, which has tests of its own and takes long."""
+    assert run("init", "study.toml", "--study").exit_code == 0
+    for name, (_, example) in COMMANDS.items():
+        if name == "paper":
+            continue
+        words = shlex.split(example)[1:]
+        result = run(*words, *(["--draws", "100"] if name == "robustness" else []))
+        assert (result.exit_code, result.stderr) == (0, ""), result.output
+        for option in ("-o", "--plot"):
+            if option in words:
+                assert Path(words[words.index(option) + 1]).stat().st_size > 0
+
+
+# ---- shell completion ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("shell", "registers"),
+    [
+        ("bash", "complete -o default -F _pindrive_completion pindrive"),
+        ("zsh", "compdef _pindrive_completion pindrive"),
+        ("fish", "complete --command pindrive"),
+    ],
+)
+def test_the_script_for_a_shell(
+    shell: str, registers: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("typer.completion._get_shell_name", lambda: shell)
+    result = run("--show-completion")
+    assert result.exit_code == 0
+    assert registers in result.stdout
+    assert "_PINDRIVE_COMPLETE" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("pindrive si", ["simulate"]),
+        ("pindrive s", ["simulate", "scan", "speed", "sweep", "sensitivity"]),
+        ("pindrive init --", ["--force", "--device", "--study", "--help"]),
+    ],
+)
+def test_a_shell_is_told_what_may_follow(typed: str, offered: list[str]) -> None:
+    words = typed.split()
+    environment = {
+        **os.environ,
+        "_PINDRIVE_COMPLETE": "complete_bash",
+        "COMP_WORDS": typed,
+        "COMP_CWORD": str(len(words) - 1),
+    }
+    program = "import sys; sys.argv = ['pindrive']; from pindrive.cli.app import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=environment, check=True
+    )
+    assert done.stdout.split() == offered
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_completion_is_installed_for_a_shell(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("typer.completion._get_shell_name", lambda: "bash")
+    monkeypatch.setattr("typer._completion_shared._get_shell_name", lambda: "bash")
+    monkeypatch.setenv("HOME", str(Path.cwd()))
+    result = run("--install-completion")
+    assert result.exit_code == 0, result.output
+    assert "bash completion installed" in result.stdout
+    assert "_pindrive_completion" in Path(".bash_completions/pindrive.sh").read_text()
+    assert "pindrive.sh" in Path(".bashrc").read_text()

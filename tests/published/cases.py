@@ -1,0 +1,21 @@
+"""All published cases, in the order of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from . import belt, decay, end_stop, forced, friction_curve, shaken
+from .case import Case
+
+CASES: Final[tuple[Callable[[], Case], ...]] = (
+    decay.aster,
+    shaken.aster,
+    friction_curve.msl,
+    forced.den_hartog,
+    belt.stick_slip,
+    decay.rao,
+    forced.rao,
+    end_stop.aster,
+)
+"""Each computes its case when it is called, once."""
