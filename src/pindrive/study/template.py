@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from pindrive.quantities.device import READER
 from pindrive.files.template import DRIVE, NUMBERS, line
+from pindrive.quantities.device import READER
 
 _RELEASES: Final = """\
 [axes]
