@@ -12,7 +12,7 @@ import pytest
 import typer.main
 
 from command import run
-from pindrive.cli import app
+from pindrive.cli.app import app
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text("utf-8")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pindrive.help import HelpfulGroup
+from pindrive.cli.help import HelpfulGroup
 
 if TYPE_CHECKING:
     from pindrive.files.output import Output
