@@ -18,6 +18,13 @@ from pindrive.cli.help import COMMANDS, OPTIONS
 
 GROUP: typer.core.TyperGroup = typer.main.get_command(app)  # type: ignore[assignment]
 
+SHORTER = {
+    "scan": ["--set", "array.columns=1", "--set", "array.rows=1"],
+    "sensitivity": ["--rows", "128"],
+    "robustness": ["--draws", "100"],
+}
+"""What the examples add here, to be quick; it changes nothing in what the command takes."""
+
 
 def test_each_command_has_a_group_and_an_example_of_itself() -> None:
     assert GROUP.commands.keys() == COMMANDS.keys()
@@ -72,7 +79,7 @@ def test_the_examples_run_one_after_the_other() -> None:
         if name == "paper":
             continue
         words = shlex.split(example)[1:]
-        result = run(*words, *(["--draws", "100"] if name == "robustness" else []))
+        result = run(*words, *SHORTER.get(name, []))
         assert (result.exit_code, result.stderr) == (0, ""), result.output
         for option in ("-o", "--plot"):
             if option in words:
