@@ -14,8 +14,6 @@ CASES: Final[tuple[Callable[[], Case], ...]] = (
     friction_curve.msl,
     forced.den_hartog,
     belt.stick_slip,
-    decay.rao,
-    forced.rao,
     end_stop.aster,
 )
 """Each computes its case when it is called, once."""

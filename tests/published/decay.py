@@ -10,13 +10,12 @@ import numpy as np
 
 from pindrive import Contact, Drive, Motion
 
-from .case import PUBLISHED, Case, Number, follow, load, printed
+from .case import PUBLISHED, Case, follow, load, printed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ASTER = load("aster-sdnd100")
-RAO = load("rao")
 
 
 @cache
@@ -83,55 +82,4 @@ def aster() -> Case:
         remarks="The second and third values of sdnd100c contradict those of sdnd100a, which are "
         "the same motion at the same turning points; the differences are recorded. The source "
         "computes with a penalty contact, whose own result at the third turn is -1.7665e-4 m.",
-    )
-
-
-@cache
-def _rao(coefficient: float) -> Motion:
-    given = RAO["free"]
-    stiffness = (2.0 * pi * given["cycles"] / given["time"]) ** 2  # of a mass of 1 kg
-    drive = Drive(
-        mass=1.0,
-        stiffness=stiffness,
-        damping=0.0,
-        plate=Contact(kinetic=0.0),
-        finger=Contact(kinetic=coefficient * given["gravity"]),
-    )
-    return follow(drive, displacement=given["displacement"], velocity=0.0)
-
-
-@cache
-def rao() -> Case:
-    """Decay over five cycles of a textbook."""
-    given = RAO["free"]
-    coefficient = float(given["friction_coefficient"])
-    motion = _rao(coefficient)
-    reached = motion.position(given["time"])
-    other = _rao(coefficient - 5e-5).position(given["time"])
-
-    def draw(axes: Axes) -> None:
-        t = np.linspace(0.0, given["time"], 1501)
-        axes.plot(t, 1e3 * motion.position(t), label="pindrive")
-        ends = [1e3 * given["displacement"], 1e3 * float(given["position"])]
-        axes.plot([0.0, given["time"]], ends, label="published", **PUBLISHED)
-        axes.set(xlabel="Time (s)", ylabel="Displacement (mm)")
-
-    return Case(
-        key="rao-decay",
-        title="Friction coefficient from measured positions",
-        source=RAO["source"],
-        about="A block on a spring is released 10 cm from rest; after five cycles in 2 s it is 1 "
-        "cm "
-        "from there. The book finds a friction coefficient of 0.1132; a drive with that friction "
-        "is followed for the 2 s.",
-        numbers=[
-            Number(
-                what="position after 2 s, m",
-                published=given["position"],
-                computed=reached,
-                allowed=abs(other - reached),
-                because="half a unit of the last printed digit of the coefficient",
-            )
-        ],
-        draw=draw,
     )

@@ -10,13 +10,12 @@ import numpy as np
 
 from pindrive import Contact, Drive, Motion, Profile
 
-from .case import Case, Number, follow, load, printed
+from .case import Case, Number, follow, load
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GIVEN = load("den-hartog")
-RAO = load("rao")["forced"]
 LABEL = {"fc": "white", "ec": "none", "pad": 0.5}
 
 
@@ -100,47 +99,4 @@ def den_hartog() -> Case:
         draw=draw,
         remarks="A velocity that is linear between the rows has a fundamental smaller by (π/n)²/3; "
         "twice as many rows make the differences four times as small.",
-    )
-
-
-@cache
-def rao() -> Case:
-    """A textbook's forced vibration, by equivalent viscous damping there."""
-    friction = RAO["friction_coefficient"] * RAO["mass"] * RAO["gravity"]
-    w = 2.0 * pi * RAO["frequency"]
-    force = float(RAO["force"])
-    motion = forced(
-        RAO["mass"],
-        RAO["stiffness"],
-        friction,
-        force,
-        w,
-        RAO["rows_a_period"],
-        RAO["periods"],
-    )
-    found = amplitude(motion, 1.0 / RAO["frequency"])
-    exact = closed_form(w / sqrt(RAO["stiffness"] / RAO["mass"]), friction / force)
-
-    def draw(axes: Axes) -> None:
-        end = RAO["periods"] / RAO["frequency"]
-        t = np.linspace(end - 3.0 / RAO["frequency"], end, 1501)
-        axes.plot(t, 1e3 * motion.position(t), label="pindrive")
-        level = 1e3 * float(RAO["amplitude"])
-        axes.axhline(level, color="0.35", ls="--", lw=0.8, label="published amplitude")
-        axes.axhline(-level, color="0.35", ls="--", lw=0.8)
-        axes.set(xlabel="Time (s)", ylabel="Displacement (mm)", ylim=(-62.0, 62.0))
-
-    return Case(
-        key="rao-forced",
-        title="Force that keeps up a vibration under friction",
-        source=load("rao")["source"],
-        about="10 kg on 4000 N/m, friction coefficient 0.12, vibrate at 2 Hz with an amplitude of "
-        "40 mm; the book finds the force 97.9874 N. A drive under that force is followed to its "
-        "steady motion.",
-        numbers=[printed("amplitude, m", RAO["amplitude"], found)],
-        draw=draw,
-        remarks="The book replaces friction by viscous damping that dissipates as much, which is "
-        "an "
-        f"approximation; Den Hartog's closed form gives {force * exact / RAO['stiffness']:.6f} m, "
-        f"pindrive {found:.6f} m.",
     )

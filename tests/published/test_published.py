@@ -30,7 +30,7 @@ def test_a_published_number_is_met_to_what_its_source_justifies(case: Case, numb
 
 def test_every_data_file_has_its_case_and_its_source() -> None:
     files = {path.stem for path in DATA.glob("*.json")}
-    assert files == {case.key for case in ALL} - {"rao-decay", "rao-forced"} | {"rao"}
+    assert files == {case.key for case in ALL}
     for name in files:
         assert {"title", "authors", "where", "numbers"} <= load(name)["source"].keys()
 
@@ -130,7 +130,7 @@ def test_a_page_without_its_marks_is_refused() -> None:
 
 def published_points() -> dict[str, tuple[str, list[float]]]:
     """The label under which each figure draws published values, and those, in its unit."""
-    stop, belt, rao = load("aster-sdnd101"), load("stick-slip")["parameters"], load("rao")
+    stop, belt = load("aster-sdnd101"), load("stick-slip")["parameters"]
     curve = load("msl-friction-stop2")["published"]["turning"]
     power = load("aster-sdnd104")["published"]["power"]
     gap, w = belt["static"] - belt["kinetic"], (belt["stiffness"] / belt["mass"]) ** 0.5
@@ -149,11 +149,6 @@ def published_points() -> dict[str, tuple[str, list[float]]]:
         "aster-sdnd104": ("published", [float(text) for text in power[:-1]]),
         "den-hartog": ("pindrive", [number.computed for number in forced.den_hartog().numbers]),
         "msl-friction-stop2": ("its turning points", [s for _, s in curve]),
-        "rao-decay": (
-            "published",
-            [1e3 * rao["free"]["displacement"], 1e3 * float(rao["free"]["position"])],
-        ),
-        "rao-forced": ("published amplitude", [1e3 * float(rao["forced"]["amplitude"])] * 2),
         "stick-slip": ("published amplitude", [1e3 * (middle + amplitude)] * 2),
     }
 
@@ -176,7 +171,6 @@ def test_the_curves_go_through_the_published_points() -> None:
     for case, label in (
         (decay.aster(), "published, sdnd100a"),
         (friction_curve.msl(), "its turning points"),
-        (decay.rao(), "published"),
     ):
         lines = figure(case).axes[0].get_lines()
         points = next(line for line in lines if line.get_label() == label)
