@@ -82,17 +82,17 @@ struct Columns {
 template <class T>
 struct OwnedContact {
   pd::Contact<T> contact;
-  std::vector<pd::Region<T>> regions;
+  std::vector<pd::Branch<T>> branches;
 
   OwnedContact(const ContactNumbers& at, const ContactNumbers& along)
       : contact{number<T>(std::get<0>(at), std::get<0>(along)),
                 number<T>(std::get<1>(at), std::get<1>(along)),
                 number<T>(std::get<2>(at), std::get<2>(along))} {
     const Columns<T> rows(std::get<3>(at), std::get<3>(along));
-    regions.resize(rows.first.size() + 1);
-    contact.regions = pd::regions_of(rows.first.data(), rows.second.data(),
-                                     static_cast<int>(rows.first.size()), regions.data());
-    contact.curve = regions.data();
+    branches.resize(rows.first.size() + 1);
+    contact.branches = pd::branches_of(rows.first.data(), rows.second.data(),
+                                       static_cast<int>(rows.first.size()), branches.data());
+    contact.curve = branches.data();
   }
 };
 
@@ -210,10 +210,10 @@ nb::dict segments(const CoreMotion<T>& motion) {
       column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration().start); });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
-  table["plate_region"] =
-      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.plate_region; });
-  table["finger_region"] =
-      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.finger_region; });
+  table["plate_branch"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.plate_branch; });
+  table["finger_branch"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.finger_branch; });
   table["plate_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
   table["finger_event"] =

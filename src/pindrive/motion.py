@@ -228,15 +228,17 @@ class Motion:
         """Either "ok", or what stopped the simulation and what to do about it."""
         if self._core.status == 0:
             return "ok"
-        if self._core.status == 2:
-            return (
-                f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
-                "parameter by a little, and please report the drive"
-            )
-        return (
-            f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
-            "and damping are too weak to end the motion; give a shorter duration"
-        )
+        at = f"stopped at t = {self._core.until:.6g} s"
+        report = "change a parameter by a little, and please report the drive"
+        return {
+            1: (
+                f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
+                "and damping are too weak to end the motion; give a shorter duration"
+            ),
+            2: f"{at}: events pile up at one instant; {report}",
+            3: f"{at}, as was asked: run it again to see the rest",
+            4: f"{at}: no mode agrees with the state; {report}",
+        }[self._core.status]
 
     # ---- the numbers -----------------------------------------------------------------------------
 
