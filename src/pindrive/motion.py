@@ -232,8 +232,8 @@ class Motion:
         report = "change a parameter by a little, and please report the drive"
         return {
             1: (
-                f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
-                "and damping are too weak to end the motion; give a shorter duration"
+                f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: "
+                "friction and damping are too weak to end the motion; give a shorter duration"
             ),
             2: f"{at}: events pile up at one instant; {report}",
             3: f"{at}, as was asked: run it again to see the rest",

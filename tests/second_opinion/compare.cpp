@@ -73,7 +73,7 @@ Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding
   const auto branches = [](const auto& rows) {
     std::vector<so::Region<double>> branches;
     branches.reserve(rows.size());
-    for (const auto& row : rows) 
+    for (const auto& row : rows)
       branches.push_back({row.from, row.to, row.force, row.slope, row.rounding});
     return branches;
   };
