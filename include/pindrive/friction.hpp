@@ -36,7 +36,7 @@ bool touches(T rate, T curvature, T roundoff) {
 }
 
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
-/// what it does.
+/// what it does().
 template <class T, class Surface>
 struct Touch {
   struct Option {
@@ -45,26 +45,28 @@ struct Touch {
     int branch{0};
   };
 
-  const Surface& contact;
+  const Surface contact;
   Line<T> surface, load;
   ContactState before{};
-  Option does{};
   std::array<Option, 3> options{};
-  int count{0};
+  int count{0}, chosen{0};
 
-  bool sliding() const { return slips(does.state); }
-  bool stuck() const { return does.state == ContactState::stick; }
-  bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
-  Branch<T> branch() const { return contact.branch(does.branch); }
+  const Option& does() const { return options[chosen]; }
+  bool may_stick() const { return options[0].state == ContactState::stick; }
+  bool sliding() const { return slips(does().state); }
+  bool stuck() const { return does().state == ContactState::stick; }
+  bool elastic() const { return !Surface::plain && does().state == ContactState::elastic_stick; }
+  Branch<T> branch() const { return contact.branch(does().branch); }
   /// Whether nothing but its relative acceleration tells where it goes.
-  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0); }
+  bool rests(T v) const { return does().at != Bound::none && (!elastic() || v == 0); }
 
-  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. `reached` is
+  /// Sets out what it may do, the preferred first: to stick, else to go on as it does(). `reached` is
   /// the end of its branch that its speed has just reached; another speed that is not inside its
   /// branch is at the end of it.
   void ask(ContactState state, int branch, Bound reached, const State<T>& s) {
     before = state;
     count = 1;
+    chosen = 0;
     const T u = s.v - surface.value;
     const auto across =
         opposite(state == ContactState::slip_forward ? state : ContactState::slip_backward);
@@ -75,7 +77,7 @@ struct Touch {
                        : speed >= range.to    ? Bound::upper
                        : speed > range.from   ? Bound::none
                                               : Bound::lower;
-      does = options[0] = {state, at, branch};
+      options[0] = {state, at, branch};
       if (at == Bound::none) return;
       if (at == Bound::upper || branch > 0) {
         options[1] = at == Bound::upper ? Option{state, Bound::lower, branch + 1}
@@ -86,7 +88,7 @@ struct Touch {
       // Skin grips with the force that it has.
       state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
     }
-    does = options[0] = {state, Bound::none, 0};
+    options[0] = {state, Bound::none, 0};
     if (state == ContactState::stick) {
       options[1] = {across, Bound::lower, 0};
       options[2] = {opposite(across), Bound::lower, 0};
@@ -103,13 +105,14 @@ struct Touch {
   /// Kinetic friction at its sliding speed. Where that is at the end of a branch it is one number,
   /// whichever branch follows.
   T kinetic(T v) const {
-    if (does.at == Bound::none) return branch().at(along(does.state, v - surface.value));
-    return contact.branch(does.branch + (does.at == Bound::upper ? 1 : 0)).force;
+    if (contact.branches == 0) return contact.kinetic;
+    if (does().at == Bound::none) return branch().at(along(does().state, v - surface.value));
+    return contact.branch(does().branch + (does().at == Bound::upper ? 1 : 0)).force;
   }
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const {
     if (elastic()) return -s.skin;
-    return sliding() ? -along(does.state, kinetic(s.v)) * load.value : T(0);
+    return sliding() ? -along(does().state, kinetic(s.v)) * load.value : T(0);
   }
   /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not come
   /// together.
@@ -118,12 +121,12 @@ struct Touch {
     if (!sliding()) return T(0);
     const T slope = branch().slope;
     return slope != 0 ? -slope * load.value * (acceleration - surface.rate)
-                      : -along(does.state, branch().force) * load.rate;
+                      : -along(does().state, branch().force) * load.rate;
   }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
     using std::abs;
-    if (!sliding() || contact.branches == 0) return contact.static_limit * load.value;
+    if (contact.branches == 0 || !sliding()) return contact.static_limit * load.value;
     const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
     return (contact.static_limit + abs(kinetic(v)) + rounded) * load.value;
   }
@@ -131,9 +134,10 @@ struct Touch {
   /// R = −s (F + c (s u − from)) λ with u = x' − surface: without c x', N, and c.
   Line<T> constant_force(T& drag) const {
     const Branch<T> range = branch();
-    const T force = -along(does.state, range.force - range.slope * range.from);
-    drag = range.slope * load.value;
+    const T force = -along(does().state, range.force - range.slope * range.from);
+    drag = T(0);
     if (range.slope == 0) return {force * load.value, force * load.rate};
+    drag = range.slope * load.value;
     return {force * load.value + drag * surface.value, force * load.rate + drag * surface.rate};
   }
   /// Adds its force to m x'' + c x' + κ (x − x₀) = pull, and what is rounding of c to `known`.
@@ -151,35 +155,34 @@ struct Touch {
   }
   /// Its force along a flow, unless it sticks, N.
   Path<T> force_along(const Flow<T>& flow, const State<T>& s) const {
-    Path<T> force{};
     if (elastic()) {
-      force = -contact.stiffness * flow.position;
+      Path<T> force = -contact.stiffness * flow.position;
       force.start = -s.skin;
-    } else if (sliding()) {
-      T drag;
-      force = constant_force(drag);
-      if (drag != 0) force = force + (-drag) * flow.velocity;
+      return force;
     }
-    return force;
+    if (!sliding()) return {};
+    T drag;
+    const Path<T> force = constant_force(drag);
+    return drag != 0 ? force + (-drag) * flow.velocity : force;
   }
 
   /// Whether the force that it carried until now goes on without a jump, after a stick force has
   /// come to its limit on the given side.
   bool continues(int limit) const {
-    if (before == does.state) return true;
+    if (before == does().state) return true;
     if (contact.kinetic != contact.static_limit) return false;
-    return before == ContactState::stick ? sign(does.state) == -limit
+    return before == ContactState::stick ? sign(does().state) == -limit
                                          : before == ContactState::elastic_stick;
   }
 
   /// Whether what is at an end of its range goes, or stays, inside, by the first derivative of its
   /// relative velocity that is not zero. Without any it stays; but it would not slip.
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
-    if (does.at == Bound::none) return true;
+    if (does().at == Bound::none) return true;
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
-      const int inside = does.at == Bound::lower ? sign(does.state) : -sign(does.state);
-      return inside * decides > 0 || (decides == 0 && (does.at == Bound::upper || does.branch > 0));
+      const T inwards = along(does().state, does().at == Bound::lower ? decides : -decides);
+      return inwards > 0 || (inwards == 0 && (does().at == Bound::upper || does().branch > 0));
     }
     const T inside = s.skin > 0 ? T(-1) : T(1);
     if (s.v == 0) return inside * decides >= 0;

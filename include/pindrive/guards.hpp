@@ -18,7 +18,7 @@ template <class T>
 struct Guard {
   Path<T> path;
   Bound bound;
-  bool plate, finger;  ///< whose it is
+  bool plate;  ///< whose it is, or the finger's; the force of both that stick is the plate's
   int side;
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
@@ -28,45 +28,63 @@ template <class T>
 class Guards {
  public:
   void clear() { count_ = 0; }
-  void add(const Guard<T>& guard) { list_[count_++] = guard; }
+
+  /// Adds a guard that may come to zero: it oscillates or falls.
+  void add(const Path<T>& path, Bound bound, bool plate, int side = 0) {
+    if (path.oscillates() || path.drift < 0 || path.curvature < 0)
+      list_[count_++] = {path, bound, plate, side};
+  }
+  /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
+  /// of a velocity v only the one below: it comes to zero before the other.
+  void add(const Path<T>& path, Bound bound, bool plate, T v) {
+    using std::abs;
+    for (int i = 0; i < count_; ++i) {
+      const Path<T>& q = list_[i].path;
+      if (list_[i].bound == Bound::none || q.value != path.value || q.slope != path.slope ||
+          q.drift != path.drift)
+        continue;
+      const T apart = path.start - q.start,
+              one = rounding<T> * (std::max(path.start, q.start) + abs(v));
+      if (apart > one) return;
+      if (apart < -one) {
+        list_[i] = {path, bound, plate, 0};
+        return;
+      }
+    }
+    add(path, bound, plate);
+  }
 
   const Guard<T>* begin() const { return list_.data(); }
   const Guard<T>* end() const { return list_.data() + count_; }
 
-  /// The earliest zero, or the limit if none comes before it. `v` is the velocity at the start, m/s; times
-  /// are `since` then, and those that differ by less than the rounding of a time are one.
-  T earliest(const Oscillator<T>& oscillator, T v, T since, T limit) {
+  /// The earliest zero, or the limit if none comes before it. Times are `since` the start of the mode, and
+  /// those that differ by less than the rounding of a time are one.
+  T earliest(const Oscillator<T>& oscillator, T since, T limit) {
+    const Path<T>* falls = nullptr;  // to the middle of its oscillation
     for (int i = 0; i < count_; ++i) {
       Guard<T>& guard = list_[i];
       const Path<T>& path = guard.path;
-      if ((path.start >= 0 && path.constant()) || comes_later(path, v)) continue;
-      if (path.straight() && path.centre() == 0) {  // in closed form
-        guard.zero =
-            Rooted<T>::at(oscillator, path, oscillator.zeros(path.start, path.slope).first);
-      } else {
-        const bool ends = limit < std::numeric_limits<T>::infinity();
-        const T horizon = ends ? limit + rounding<T> * (since + limit) : limit;
-        guard.zero = first_root(oscillator, path, 1, horizon);
+      if (path.oscillates() && path.straight()) {
+        if (path.centre() == 0) {  // in closed form
+          guard.zero =
+              Rooted<T>::at(oscillator, path, oscillator.zeros(path.start, path.slope).first);
+          limit = std::min(limit, guard.zero);
+          if (path.slope < 0) falls = &path;
+          continue;
+        }
+        // What rises as another falls turns only after that has come to zero.
+        if (falls != nullptr && path.value == -falls->value && path.slope == -falls->slope)
+          continue;
       }
+      const bool ends = limit < std::numeric_limits<T>::infinity();
+      guard.zero =
+          first_root(oscillator, path, 1, ends ? limit + rounding<T> * (since + limit) : limit);
       limit = std::min(limit, guard.zero);
     }
     return limit;
   }
 
  private:
-  /// Whether another guard comes to zero before this one for certain: it runs below, at a constant
-  /// distance beyond rounding, or falls to the middle of its oscillation while this one rises.
-  bool comes_later(const Path<T>& p, T v) const {
-    using std::abs;
-    const T farther = p.start - rounding<T> * (p.start + abs(v));
-    return p.straight() && std::any_of(begin(), end(), [&](const Guard<T>& other) {
-             const Path<T>& q = other.path;
-             if (!q.straight()) return false;
-             return (q.start < farther && q.value == p.value && q.slope == p.slope) ||
-                    (q.slope < 0 && q.value == -p.value && q.slope == -p.slope && q.centre() == 0);
-           });
-  }
-
   std::array<Guard<T>, 6> list_;
   int count_{0};
 };

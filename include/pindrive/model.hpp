@@ -182,10 +182,10 @@ inline bool slips(ContactState state) {
 }
 inline int sign(ContactState state) { return slips(state) ? static_cast<int>(state) : 0; }
 inline ContactState opposite(ContactState state) { return static_cast<ContactState>(-sign(state)); }
-/// A value in the direction of sliding.
+/// A value in the direction of slipping.
 template <class T>
 T along(ContactState state, T value) {
-  return state == ContactState::slip_forward ? value : -value;
+  return T(static_cast<int>(state)) * value;
 }
 
 struct Mode {

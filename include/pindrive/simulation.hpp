@@ -96,21 +96,28 @@ class Simulation {
     state_.roundoff =
         rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
                        plate_.size(state_.v) + finger_.size(state_.v));
-    const bool may_stick = plate_.stuck() || finger_.stuck();
     const bool finger_first = before.finger == ContactState::stick && before.plate != before.finger;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
-    for (int stuck = may_stick ? 1 : 0; stuck >= 0; --stuck)
-      for (int i = 0; i < first.count; ++i)
-        for (int j = 0; j < second.count; ++j) {
-          first.does = first.options[i];
-          second.does = second.options[j];
-          if ((first.stuck() || second.stuck()) != (stuck == 1)) continue;
-          if (plate_.stuck()    ? holds(plate_, finger_, reached.limit)
-              : finger_.stuck() ? holds(finger_, plate_, reached.limit)
-                                : sets_out(reached.limit))
-            return;
-        }
+    const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
+    if (i == 1 && sticks(first, second, 0, reached.limit)) return;
+    if (j == 1 && sticks(second, first, i, reached.limit)) return;
+    for (int k = i; k < first.count; ++k)
+      for (int l = j; l < second.count; ++l) {
+        first.chosen = k;
+        second.chosen = l;
+        if (sets_out(reached.limit)) return;
+      }
     outcome_.status = Status::inconsistent;
+  }
+
+  /// Whether a contact sticks while the other one does one of its options.
+  bool sticks(Side& on, Side& other, int option, int limit) {
+    on.chosen = 0;
+    for (; option < other.count; ++option) {
+      other.chosen = option;
+      if (holds(on, other, limit)) return true;
+    }
+    return false;
   }
 
   /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
@@ -157,7 +164,7 @@ class Simulation {
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
-      guards_.add({left, Bound::none, plate_.stuck(), finger_.stuck(), side});
+      guards_.add(left, Bound::none, plate_.stuck(), side);
     }
     return true;
   }
@@ -183,9 +190,9 @@ class Simulation {
     const T of_plate = relative(plate_, plate, finger),
             of_finger = relative(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
+      if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
-      if (!tangential_ || apart != 0 || !side.rests(state_.v))
-        return side.goes_inside(state_, tangential_ ? apart : force);
+      if (apart != 0 || !side.rests(state_.v)) return side.goes_inside(state_, apart);
       T size;
       const Path<T> needed = demand_from(T(0), side, other, size);
       const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
@@ -196,16 +203,16 @@ class Simulation {
   }
 
   Mode mode() const {
-    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+    return {plate_.does().state, finger_.does().state, plate_.does().branch, finger_.does().branch};
   }
 
   /// The segment of the mode that was selected, and its guards.
   Segment<T> begin() {
-    Segment<T> segment{time_, never,          mode(),       {},          flow(),
-                       {},    plate_.surface, stick_force_, stick_force_};
-    if (!plate_.stuck()) segment.plate_force = plate_.force_along(segment.flow, state_);
-    if (!finger_.stuck() || plate_.stuck())
-      segment.finger_force = finger_.force_along(segment.flow, state_);
+    Segment<T> segment{time_, never, mode(), {}, flow(), {}, plate_.surface, {}, {}};
+    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
+    segment.finger_force = finger_.stuck() && !plate_.stuck()
+                               ? stick_force_
+                               : finger_.force_along(segment.flow, state_);
     add_guards(finger_, segment, false);
     add_guards(plate_, segment, true);
     return segment;
@@ -221,12 +228,14 @@ class Simulation {
     Line<T> pull{inertia_ - stiffness * s.x, T(0)};
     plate_.add_to(damping, known, stiffness, pull, s);
     finger_.add_to(damping, known, stiffness, pull, s);
-    // A damper that falling friction cancels to rounding neither damps nor drives.
-    if (abs(damping) <= known) damping -= plain(damping);
-    const Oscillator<T> oscillator =
-        linear() ? plain_ : Oscillator<T>(drive_.mass, damping, stiffness);
+    Oscillator<T> oscillator = plain_;
+    if (!linear()) {
+      // A damper that falling friction cancels to rounding neither damps nor drives.
+      if (abs(damping) <= known) damping -= plain(damping);
+      oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
+    }
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (s.v == 0 && pull.rate == 0 && abs(pull.value) <= s.roundoff)
+    if (abs(pull.value) <= s.roundoff && s.v == 0 && pull.rate == 0)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
     const T drift = pull.rate / stiffness;
     const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
@@ -243,24 +252,26 @@ class Simulation {
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
       for (const int to : {1, -1})
-        guards_.add({most + T(to) * segment.finger_force, Bound::none, plate, !plate, to});
+        guards_.add(most + T(to) * segment.finger_force, Bound::none, plate, to);
     }
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();
-    const Path<T> surface = side.surface;
-    Path<T> above = along(side.does.state, T(1)) * (segment.flow.velocity + T(-1) * surface);
+    const Path<T>& v = segment.flow.velocity;
+    const T to = along(side.does().state, T(1)), speed = to * (v.start - side.surface.value);
+    const Path<T> above{side.does().at == Bound::lower ? T(0) : speed - range.from, to * v.value,
+                        to * v.slope, to * (v.drift - side.surface.rate)};
+    guards_.add(above, Bound::lower, plate, state_.v);
+    if (!(range.to < never)) return;
     Path<T> below = T(-1) * above;
-    above.start = side.does.at == Bound::lower ? T(0) : above.start - range.from;
-    below.start = side.does.at == Bound::upper ? T(0) : below.start + range.to;
-    guards_.add({above, Bound::lower, plate, !plate, 0});
-    if (range.to < never) guards_.add({below, Bound::upper, plate, !plate, 0});
+    below.start = side.does().at == Bound::upper ? T(0) : range.to - speed;
+    guards_.add(below, Bound::upper, plate, state_.v);
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_, serves = flow.oscillator.serves_for();
-    const T limit = flow.velocity.oscillates() ? std::min(row, serves) : row;
-    const T first = guards_.earliest(flow.oscillator, state_.v, time_, limit);
+    const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
+    const T first = guards_.earliest(flow.oscillator, time_, limit);
     return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
   }
 
@@ -273,10 +284,11 @@ class Simulation {
     const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
     state_.x = position.at(moved, tau);
     state_.v = segment.flow.velocity.at(moved, tau);
-    state_.x_size = std::max({state_.x_size, abs(state_.x), abs(position.value * moved.decline),
-                              abs(position.slope * moved.gain)});
+    state_.x_size =
+        std::max(std::max(state_.x_size, abs(state_.x)),
+                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
     if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
-    if (finger_.sliding()) state_.skin = along(finger_.does.state, drive_.finger.kinetic);
+    if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
     const bool row = tau == row_ - time_;
     segment.end = time_ = row ? row_ : time_ + tau;
     plate_.surface.value = plate_.surface.at(tau);
@@ -290,8 +302,8 @@ class Simulation {
       if (guard.bound != Bound::none) {
         (guard.plate ? reached.plate : reached.finger) = guard.bound;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
-        state_.v = side.surface.value + along(side.does.state, speed);
-        if (guard.bound == Bound::lower && side.does.branch == 0)
+        state_.v = side.surface.value + along(side.does().state, speed);
+        if (guard.bound == Bound::lower && side.does().branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit;
