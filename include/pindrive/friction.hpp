@@ -36,7 +36,7 @@ bool touches(T rate, T curvature, T roundoff) {
 }
 
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
-/// what it does().
+/// what it does.
 template <class T, class Surface>
 struct Touch {
   struct Option {
@@ -60,7 +60,7 @@ struct Touch {
   /// Whether nothing but its relative acceleration tells where it goes.
   bool rests(T v) const { return does().at != Bound::none && (!elastic() || v == 0); }
 
-  /// Sets out what it may do, the preferred first: to stick, else to go on as it does(). `reached` is
+  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. `reached` is
   /// the end of its branch that its speed has just reached; another speed that is not inside its
   /// branch is at the end of it.
   void ask(ContactState state, int branch, Bound reached, const State<T>& s) {
@@ -68,8 +68,7 @@ struct Touch {
     count = 1;
     chosen = 0;
     const T u = s.v - surface.value;
-    const auto across =
-        opposite(state == ContactState::slip_forward ? state : ContactState::slip_backward);
+    const auto across = static_cast<ContactState>(state == ContactState::slip_forward ? -1 : 1);
     if (slips(state)) {
       const Branch<T> range = contact.branch(branch);
       const T speed = along(state, u);

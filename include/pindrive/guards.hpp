@@ -34,24 +34,24 @@ class Guards {
     if (path.oscillates() || path.drift < 0 || path.curvature < 0)
       list_[count_++] = {path, bound, plate, side};
   }
-  /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
-  /// of a velocity v only the one below: it comes to zero before the other.
-  void add(const Path<T>& path, Bound bound, bool plate, T v) {
-    using std::abs;
-    for (int i = 0; i < count_; ++i) {
-      const Path<T>& q = list_[i].path;
-      if (list_[i].bound == Bound::none || q.value != path.value || q.slope != path.slope ||
-          q.drift != path.drift)
-        continue;
-      const T apart = path.start - q.start,
-              one = rounding<T> * (std::max(path.start, q.start) + abs(v));
-      if (apart > one) return;
-      if (apart < -one) {
-        list_[i] = {path, bound, plate, 0};
-        return;
-      }
+  /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
+  template <class Surface>
+  void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {
+    if (side.elastic()) {
+      const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
+      for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, plate, to);
     }
-    add(path, bound, plate);
+    if (!side.sliding()) return;
+    const Branch<T> range = side.branch();
+    const Path<T>& v = segment.flow.velocity;
+    const T to = along(side.does().state, T(1)), speed = to * (v.start - side.surface.value);
+    const Path<T> above{side.does().at == Bound::lower ? T(0) : speed - range.from, to * v.value,
+                        to * v.slope, to * (v.drift - side.surface.rate)};
+    add_nearer(above, Bound::lower, plate, v.start);
+    if (!(range.to < std::numeric_limits<T>::infinity())) return;
+    Path<T> below = T(-1) * above;
+    below.start = side.does().at == Bound::upper ? T(0) : range.to - speed;
+    add_nearer(below, Bound::upper, plate, v.start);
   }
 
   const Guard<T>* begin() const { return list_.data(); }
@@ -85,6 +85,26 @@ class Guards {
   }
 
  private:
+  /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
+  /// of a velocity v only the one below: it comes to zero before the other.
+  void add_nearer(const Path<T>& path, Bound bound, bool plate, T v) {
+    using std::abs;
+    for (int i = 0; i < count_; ++i) {
+      const Path<T>& q = list_[i].path;
+      if (list_[i].bound == Bound::none || q.value != path.value || q.slope != path.slope ||
+          q.drift != path.drift)
+        continue;
+      const T apart = path.start - q.start;
+      const T one = rounding<T> * (std::max(path.start, q.start) + abs(v));
+      if (apart > one) return;
+      if (apart < -one) {
+        list_[i] = {path, bound, plate, 0};
+        return;
+      }
+    }
+    add(path, bound, plate);
+  }
+
   std::array<Guard<T>, 6> list_;
   int count_{0};
 };

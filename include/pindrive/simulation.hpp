@@ -213,8 +213,8 @@ class Simulation {
     segment.finger_force = finger_.stuck() && !plate_.stuck()
                                ? stick_force_
                                : finger_.force_along(segment.flow, state_);
-    add_guards(finger_, segment, false);
-    add_guards(plate_, segment, true);
+    guards_.add(finger_, segment, false);
+    guards_.add(plate_, segment, true);
     return segment;
   }
 
@@ -246,25 +246,6 @@ class Simulation {
   bool linear() const {  // no contact damps or stiffens
     return Surface::plain ||
            (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
-  }
-
-  void add_guards(const Side& side, const Segment<T>& segment, bool plate) {
-    if (side.elastic()) {
-      const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
-      for (const int to : {1, -1})
-        guards_.add(most + T(to) * segment.finger_force, Bound::none, plate, to);
-    }
-    if (!side.sliding()) return;
-    const Branch<T> range = side.branch();
-    const Path<T>& v = segment.flow.velocity;
-    const T to = along(side.does().state, T(1)), speed = to * (v.start - side.surface.value);
-    const Path<T> above{side.does().at == Bound::lower ? T(0) : speed - range.from, to * v.value,
-                        to * v.slope, to * (v.drift - side.surface.rate)};
-    guards_.add(above, Bound::lower, plate, state_.v);
-    if (!(range.to < never)) return;
-    Path<T> below = T(-1) * above;
-    below.start = side.does().at == Bound::upper ? T(0) : range.to - speed;
-    guards_.add(below, Bound::upper, plate, state_.v);
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
