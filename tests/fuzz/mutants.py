@@ -34,8 +34,8 @@ MUTANTS = (
     Mutant(
         "breaks away and crosses to the wrong side",
         "friction.hpp",
-        "return inside * decides > 0 ||",
-        "return inside * decides < 0 ||",
+        "return inwards > 0 ||",
+        "return inwards < 0 ||",
     ),
     Mutant(
         "always sticks at a surface velocity",
@@ -74,10 +74,10 @@ MUTANTS = (
         "if (range.slope == 0) return {force * load.value, T(0)};",
     ),
     Mutant(
-        "what sticks is not preferred",
+        "of two contacts the first is not asked whether it sticks",
         "simulation.hpp",
-        "for (int stuck = may_stick ? 1 : 0; stuck >= 0; --stuck)",
-        "for (int stuck = 0; stuck <= (may_stick ? 1 : 0); ++stuck)",
+        "if (i == 1 && sticks(first, second, 0, reached.limit)) return;",
+        "",
     ),
     Mutant(
         "parting surfaces never throw the pin ahead of both",
@@ -100,8 +100,8 @@ MUTANTS = (
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
         "friction.hpp",
-        "contact.branch(does.branch + (does.at == Bound::upper ? 1 : 0)).force",
-        "contact.branch(does.branch + (does.at == Bound::upper ? 0 : 0)).force",
+        "contact.branch(does().branch + (does().at == Bound::upper ? 1 : 0)).force",
+        "contact.branch(does().branch + (does().at == Bound::upper ? 0 : 0)).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
@@ -112,14 +112,15 @@ MUTANTS = (
     Mutant(
         "skin grips with a thousandth more stretch",
         "simulation.hpp",
-        "state_.skin = along(finger_.does.state, drive_.finger.kinetic);",
-        "state_.skin = along(finger_.does.state, drive_.finger.kinetic) * T(1.001);",
+        "state_.skin = along(finger_.does().state, drive_.finger.kinetic);",
+        "state_.skin = along(finger_.does().state, drive_.finger.kinetic) * T(1.001);",
     ),
     Mutant(
         "skin slips only while the plate holds the pin",
-        "simulation.hpp",
+        "guards.hpp",
         "    if (side.elastic()) {\n      const Path<T> most",
-        "    if (side.elastic() && plate_.stuck()) {\n      const Path<T> most",
+        "    if (side.elastic() && segment.mode.plate == ContactState::stick) {\n"
+        "      const Path<T> most",
     ),
     Mutant(
         "skin slips at its limit though it turns back",
@@ -130,8 +131,8 @@ MUTANTS = (
     Mutant(
         "the plate holds for ever",
         "simulation.hpp",
-        "guards_.add({left, Bound::none,",
-        "if (!plate_.stuck()) guards_.add({left, Bound::none,",
+        "guards_.add(left, Bound::none,",
+        "if (!plate_.stuck()) guards_.add(left, Bound::none,",
     ),
     Mutant(
         "the rows of the load are overlooked",
@@ -141,10 +142,10 @@ MUTANTS = (
         "row_ = inputs_.mouse_velocity.next_row(time_);",
     ),
     Mutant(
-        "a guard that another one precedes is not the later one",
+        "of two bounds the farther one is watched",
         "guards.hpp",
-        "(q.start < farther && q.value",
-        "(p.start < q.start && q.value",
+        "if (apart > one) return;",
+        "if (apart < -one) return;",
     ),
     Mutant(
         "a cycle is closed a thousandth too soon",
