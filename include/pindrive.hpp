@@ -17,6 +17,7 @@
 
 #include "pindrive/batch.hpp"      // IWYU pragma: export
 #include "pindrive/certify.hpp"    // IWYU pragma: export
+#include "pindrive/crossings.hpp"  // IWYU pragma: export
 #include "pindrive/dual.hpp"       // IWYU pragma: export
 #include "pindrive/energy.hpp"     // IWYU pragma: export
 #include "pindrive/model.hpp"      // IWYU pragma: export

@@ -21,6 +21,10 @@ inline constexpr int standstill_limit = 100;
 /// rounding of the rounds adds up.
 inline constexpr double return_tolerance = 1e-14, return_tolerance_per_round = 1e-15;
 
+/// So much of a radian before the end of a segment, what is there to rounding is at the end: the velocity
+/// at an event is set exactly, and its closed form comes to zero a little sooner or later.
+inline constexpr double at_end = 1e-6;
+
 }  // namespace detail
 
 /// Events after which a motion is given up: friction and damping are too weak to end it, and its

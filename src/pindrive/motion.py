@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cached_property
 from math import inf, nan
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, overload
 
 import numpy as np
 
-from pindrive import _core
+from pindrive import _core, budgets
 from pindrive.drive import (
     Drive,
     Profile,
@@ -19,7 +19,17 @@ from pindrive.drive import (
     check_skin,
     check_stretch,
 )
-from pindrive.events import Event, Segment, Table, events_of, segments_of
+from pindrive.events import (
+    Crossings,
+    Event,
+    Extrema,
+    QuantityName,
+    Segment,
+    Table,
+    events_at,
+    events_of,
+    segments_of,
+)
 from pindrive.plausible import warn_of
 from pindrive.quantities import INPUTS, QUANTITIES, check, refusal
 from pindrive.quantity import brief, counted
@@ -34,7 +44,7 @@ if TYPE_CHECKING:
     from pindrive.sensitivity import Sensitivity
     from pindrive.style import Figure
 
-__all__ = ["Event", "Motion", "Segment", "simulate"]
+__all__ = ["Crossings", "Event", "Extrema", "Motion", "Segment", "simulate"]
 
 Side = Literal["left", "right"]
 Rows = Sequence[tuple[float, float]]
@@ -44,6 +54,8 @@ CoreNumbers = tuple[
 ]
 """In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
+_QUANTITIES: Final = ("position", "velocity", "acceleration")
+"""In the order of `Quantity` in crossings.hpp."""
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (
@@ -193,14 +205,19 @@ class Motion:
     ) -> float | NDArray[np.float64]:
         if side not in ("left", "right"):
             raise ValueError(refusal("side", '"left" or "right"', repr(side)))
+        times = self._known(t, "t")
+        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
+        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+
+    def _known(self, t: ArrayLike, name: str) -> NDArray[np.float64]:
+        """Times at which the motion is known."""
         times = _times(t)
         known = self._core.known_until
         good = (times >= 0.0) & (times <= known) & (times < inf)
         if not good.all():
             required = f"from 0 s to {known!r} s" if known < inf else "finite and at least 0 s"
-            raise ValueError(refusal("t", required, f"{float(times[~good].flat[0])!r} s"))
-        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
-        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+            raise ValueError(refusal(name, required, f"{float(times[~good].flat[0])!r} s"))
+        return times
 
     # ---- what happened ---------------------------------------------------------------------------
 
@@ -212,6 +229,79 @@ class Motion:
     def events(self) -> tuple[Event, ...]:
         """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
         return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
+
+    def events_between(self, begin: float, end: float) -> tuple[Event, ...]:
+        """Every change at a contact from `begin` to `end`, both included, with cycles expanded.
+
+        Args:
+            begin: s, at least 0.
+            end: s, at least `begin`; beyond `duration` where the ending is known.
+
+        Returns:
+            The events in order, the plate's first.
+
+        Raises:
+            ValueError: a time is negative, NaN, or later than the motion is known; `begin` is
+                after `end`; or there are more events than the budget.
+        """
+        begin, end = (
+            float(self._known(time, name)) for time, name in ((begin, "begin"), (end, "end"))
+        )
+        if not begin <= end:
+            raise ValueError(refusal("begin", f"at most end ({end!r} s)", f"{begin!r} s"))
+        times, ended = self._core.events(begin, end, budgets.MOMENTS.most + 1)
+        budgets.MOMENTS.check(len(times), f"events from {begin:g} s to {end:g} s")
+        kinds = np.stack([self._table["plate_event"], self._table["finger_event"]], axis=-1)[ended]
+        states = zip(self.position(times).tolist(), self.velocity(times).tolist(), strict=True)
+        rows = zip(times.tolist(), kinds.tolist(), states, strict=True)
+        return tuple(event for row in rows for event in events_at(*row))
+
+    def extrema(self, which: QuantityName) -> Extrema:
+        """Times and values of the extrema of a quantity over [0, duration], exactly.
+
+        They are where the motion begins and ends, where the quantity turns, and both sides of a
+        jump: between two neighbours it is continuous and does not turn. A quantity that rests
+        before it turns back has its extremum where it comes to rest.
+
+        Args:
+            which: "position", "velocity" or "acceleration".
+
+        Returns:
+            The times (s) and the values (m, m/s or m/s²), shape (n,).
+
+        Raises:
+            ValueError: another quantity; more extrema than the budget.
+        """
+        index = _quantity(which)
+        found = Extrema(*self._core.extrema(index, self.duration, budgets.MOMENTS.most + 1))
+        budgets.MOMENTS.check(len(found.time), f"extrema of the {which} in {self.duration:g} s")
+        return found
+
+    def crossings(self, which: QuantityName, level: float) -> Crossings:
+        """Times and directions of the crossings of a level over [0, duration], exactly.
+
+        A crossing leads from one side of the level to the other. Touching it is none; a quantity
+        that rests at the level and goes on crosses it where it comes to rest.
+
+        Args:
+            which: "position", "velocity" or "acceleration".
+            level: m, m/s or m/s².
+
+        Returns:
+            The times (s) and the directions, 1 or -1 in turn, shape (n,).
+
+        Raises:
+            ValueError: another quantity; a level that is not finite; more crossings than the
+                budget.
+        """
+        index = _quantity(which)
+        if not -inf < level < inf:
+            raise ValueError(refusal("level", "finite", repr(level)))
+        found = Crossings(
+            *self._core.crossings(index, float(level), self.duration, budgets.MOMENTS.most + 1)
+        )
+        budgets.MOMENTS.check(len(found.time), f"crossings by the {which} in {self.duration:g} s")
+        return found
 
     @property
     def segment_count(self) -> int:
@@ -370,6 +460,13 @@ class Motion:
             "energy": asdict(self.energy),
         }
         return dict(flattened(groups))
+
+
+def _quantity(which: str) -> int:
+    """The number of a quantity in the core."""
+    if which not in _QUANTITIES:
+        raise ValueError(refusal("which", " or ".join(map(repr, _QUANTITIES)), repr(which)))
+    return _QUANTITIES.index(which)
 
 
 def _times(t: ArrayLike) -> NDArray[np.float64]:
