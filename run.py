@@ -255,7 +255,7 @@ def run(*command: str | Path) -> int:
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include/pindrive", "src/pindrive", "tests", "benchmarks")
+    folders = ("include", "src/pindrive", "tests", "benchmarks")
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pindrive/breakaway.hpp"
 #include "pindrive/guard.hpp"
-#include "pindrive/let_go.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/quadrature.hpp"
 
@@ -28,7 +28,7 @@ struct Certificate {
   T sliding_sign{0};  ///< friction opposes the sliding; no level was passed unseen
   T sticking{0};      ///< a stuck contact does not slide
   T continuity{0};    ///< x and x' do not jump, nor the skin but where its grip breaks
-  T transitions{0};   ///< a contact breaks loose or crosses only where it cannot hold
+  T transitions{0};   ///< a contact slips from rest only where it cannot stick
   T energy{0};        ///< what goes in, is stored and is dissipated adds up
   T dissipation{0};   ///< friction and damper take energy, never give
 
@@ -52,6 +52,7 @@ class Certifier {
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_ || !go_on_()) break;
       const Stage stage = stage_of(segment);
+      breaks_away(stage);
       const State last = walk(stage);
       if (segment.end > duration_) break;
       const Segment<T>* next = &segment + 1;
@@ -119,28 +120,29 @@ class Certifier {
     const auto watch = [&](const Path<T>& path, T Certificate<T>::* law, T scale) {
       stage.watches[stage.count++] = {{flow.oscillator, path}, law, scale};
     };
-    const auto sliding = [&](const Contact<T>& contact, Slide slide, int index, Line<T> surface) {
-      if (!slides(slide)) return;
-      const Region<T> region =
-          contact.region(std::clamp(index, 0, std::max(contact.regions - 1, 0)));
+    const auto sliding = [&](const Contact<T>& contact, ContactState slide, int index,
+                             Line<T> surface) {
+      if (!slips(slide)) return;
+      const Branch<T> branch =
+          contact.branch(std::clamp(index, 0, std::max(contact.branches - 1, 0)));
       const Path<T> level = surface;
       Path<T> above = T(sign(slide)) * (flow.velocity + T(-1) * level), below = T(-1) * above;
-      above.start -= region.from;
-      below.start += region.to;
+      above.start -= branch.from;
+      below.start += branch.to;
       watch(above, &Certificate<T>::sliding_sign, v_scale_);
-      if (region.to < never) watch(below, &Certificate<T>::sliding_sign, v_scale_);
+      if (branch.to < never) watch(below, &Certificate<T>::sliding_sign, v_scale_);
     };
     const auto holding = [&](const Path<T>& force, const Path<T>& limit) {
       watch(limit + force, &Certificate<T>::force_bound, force_scale_);
       watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
     };
-    sliding(drive_.plate, mode.plate, mode.plate_region, stage.plate_velocity);
-    sliding(drive_.finger, mode.finger, mode.finger_region, {});
+    sliding(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
+    sliding(drive_.finger, mode.finger, mode.finger_branch, {});
     if (mode.both_stuck()) {
       holding(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
     } else {
-      if (mode.plate == Slide::stuck) holding(segment.plate_force, at_plate);
-      if (mode.finger == Slide::stuck || mode.finger == Slide::gripping)
+      if (mode.plate == ContactState::stick) holding(segment.plate_force, at_plate);
+      if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
         holding(segment.finger_force, at_finger);
     }
     return stage;
@@ -162,7 +164,7 @@ class Certifier {
   /// Kinetic friction at a sliding speed, from the rows of the contact's curve.
   static T kinetic(const Contact<T>& contact, T speed) {
     T force = contact.kinetic;
-    for (int i = 0; i < contact.regions; ++i)
+    for (int i = 0; i < contact.branches; ++i)
       if (speed >= contact.curve[i].from)
         force = contact.curve[i].force + contact.curve[i].slope * (speed - contact.curve[i].from);
     return force;
@@ -278,7 +280,7 @@ class Certifier {
     follow(to);
     worst(result_.kinematics, to.x - from.x - sums.v, x_scale_);
     worst(result_.kinematics, to.v - from.v - sums.a, v_scale_);
-    if (stage.segment.mode.finger == Slide::gripping)
+    if (stage.segment.mode.finger == ContactState::elastic_stick)
       worst(result_.kinematics,
             (to.finger_force - from.finger_force) / drive_.finger.stiffness + sums.v, x_scale_);
     account(energy(from), energy(to), sums);
@@ -297,7 +299,8 @@ class Certifier {
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
     sums.plate = -over(plate, v + T(-1) * v_plate);
-    if (segment.mode.finger != Slide::gripping) sums.finger = -over(segment.finger_force, v);
+    if (segment.mode.finger != ContactState::elastic_stick)
+      sums.finger = -over(segment.finger_force, v);
     account(energy(from), energy(to), sums);
   }
 
@@ -305,14 +308,14 @@ class Certifier {
     using std::abs;
     const Mode mode = stage.segment.mode;
     raise(errors.velocity, stage.x_rate.at(s.moved, s.tau) - s.v);
-    if (mode.finger == Slide::gripping)
+    if (mode.finger == ContactState::elastic_stick)
       raise(errors.velocity, stage.finger_rate.at(s.moved, s.tau) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
                           drive_.stiffness * s.x - s.plate_force - s.finger_force);
-    const auto contact = [&](const Contact<T>& law, Slide slide, T u, T force, T load) {
-      if (slides(slide))
+    const auto contact = [&](const Contact<T>& law, ContactState slide, T u, T force, T load) {
+      if (slips(slide))
         raise(errors.friction, force + sign(slide) * load * kinetic(law, abs(u)));
-      else if (slide == Slide::stuck)
+      else if (slide == ContactState::stick)
         raise(errors.sticking, u);
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
@@ -328,7 +331,8 @@ class Certifier {
         weight * (s.plate_force * v_plate + drive_.mass * stage.plate_velocity.rate * s.v);
     sums.damper += weight * drive_.damping * s.v * s.v;
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
-    if (stage.segment.mode.finger != Slide::gripping) sums.finger -= weight * s.finger_force * s.v;
+    if (stage.segment.mode.finger != ContactState::elastic_stick)
+      sums.finger -= weight * s.finger_force * s.v;
   }
 
   void account(T before, T after, const Sums& sums) {
@@ -358,22 +362,32 @@ class Certifier {
             force_scale_);
       raise(gained_, std::min(energy(left) - energy(right), T(0)));
     }
-    const auto let_go = [](Kind kind) { return kind == Kind::slip || kind == Kind::cross; };
-    const bool plate = let_go(event.plate), finger = let_go(event.finger) && !soft();
-    if (!plate && !finger) return;
-    const Aftermath<T> now{
-        right.x,         right.v, right.plate_force, right.finger_force, after.plate_velocity,
-        after.load.value};
-    const auto met = [](Slide slide, Kind kind) { return !slides(slide) || kind != Kind::none; };
+  }
+
+  /// A contact begins to slip from rest only where it cannot stick. Segments in which nothing has time
+  /// to change are one instant with the next.
+  void breaks_away(const Stage& stage) {
+    using std::abs;
+    const Segment<T>& segment = stage.segment;
+    if (!brief_) instant_ = segment.begin;
+    brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_;
+    const auto began = [&](ContactState slide, ContactState& was, T& since) {
+      if (slide != was) since = segment.begin;
+      was = slide;
+      return since >= instant_;
+    };
+    const bool plate = began(segment.mode.plate, plate_, plate_since_);
+    const bool finger = began(segment.mode.finger, finger_, finger_since_);
+    if (brief_) return;
+    const State s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
-    if (drive_.finger.rigid() && std::abs(right.v) <= still &&
-        std::abs(now.plate_velocity.value) <= still && now.plate_velocity.rate != 0) {
-      if (met(before.mode.plate, event.plate) && met(before.mode.finger, event.finger))
-        worst(result_.transitions,
-              spare_capacity_parting(drive_, before.mode, after.segment.mode, now), force_scale_);
-    } else {
-      worst(result_.transitions, spare_capacity(drive_, plate, finger, now), force_scale_);
-    }
+    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
+    const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
+    if (!(plate && on_plate) && !(finger && on_finger)) return;
+    const Beginning<T> now{
+        s.x,      s.v,      s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
+        on_plate, on_finger};
+    worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
   }
 
   static constexpr T never = std::numeric_limits<T>::infinity();
@@ -385,6 +399,10 @@ class Certifier {
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
   T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
   T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
+  ContactState plate_{ContactState::absent}, finger_{ContactState::absent};  ///< what they do, …
+  T plate_since_{0}, finger_since_{0};                                       ///< … since when
+  T instant_{0};  ///< when the instant began that ends where the segment begins
+  bool brief_{false};
   Certificate<T> result_{};
 };
 

@@ -7,16 +7,12 @@
 #include <type_traits>
 
 #include "pindrive/flow.hpp"
+#include "pindrive/limits.hpp"
 
 namespace pindrive {
 
-/// Every limit that is not physics, named once.
-inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
-inline constexpr int standstill_limit = 100;   ///< events at one instant after which it is given up
-inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
-/// How closely a state returns in a cycle, relative; and by how much more for each round before, since
-/// without damping the rounding of the rounds adds up.
-inline constexpr double recurrence = 1e-14, recurrence_per_round = 1e-15;
+/// Default band of the settling time, as a part of |x(0) − x_end|.
+inline constexpr double settling_band = 0.05;
 
 /// A number without what else it carries, such as a derivative.
 inline float plain(float x) { return x; }
@@ -25,7 +21,7 @@ inline long double plain(long double x) { return x; }
 
 /// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
 template <class T>
-struct Region {
+struct Branch {
   T from, to;  ///< m/s
   T force;     ///< at `from`, N
   T slope;     ///< N s/m; negative where friction falls with speed
@@ -34,11 +30,11 @@ struct Region {
   T at(T speed) const { return force + slope * (speed - from); }
 };
 
-/// The regions between the rows (speed, force) of a friction curve, at most count + 1; none for the
-/// one row of Coulomb friction. Rows on one line, to rounding, make one region. The last slope goes
+/// The branches between the rows (speed, force) of a friction curve, at most count + 1; none for the
+/// one row of Coulomb friction. Rows on one line, to rounding, make one branch. The last slope goes
 /// on; where it falls, until the force is zero: friction never pushes.
 template <class T>
-int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) {
+int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches) {
   using std::abs;
   if (count < 2) return 0;
   constexpr T never = std::numeric_limits<T>::infinity();
@@ -50,15 +46,15 @@ int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) 
     const T rounding =
         unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
     const bool bends =
-        made == 0 || abs(slope - regions[made - 1].slope) > rounding + regions[made - 1].rounding;
-    if (bends) regions[made++] = {speeds[i], never, forces[i], slope, rounding};
-    regions[made - 1].to = speeds[i + 1];
+        made == 0 || abs(slope - branches[made - 1].slope) > rounding + branches[made - 1].rounding;
+    if (bends) branches[made++] = {speeds[i], never, forces[i], slope, rounding};
+    branches[made - 1].to = speeds[i + 1];
   }
   const T force = forces[count - 1];
-  Region<T>& last = regions[made - 1];
+  Branch<T>& last = branches[made - 1];
   if (last.slope < 0) {
     if (force > 0) last.to -= force / last.slope;
-    regions[made] = {last.to, never, T(0), T(0), T(0)};
+    branches[made] = {last.to, never, T(0), T(0), T(0)};
     return made + 1;
   }
   last.to = never;
@@ -73,21 +69,21 @@ struct Contact {
   T stiffness{std::numeric_limits<T>::infinity()};  ///< tangential, N/m; > 0, infinite if rigid
 
   /// Kinetic friction over sliding speed; none: `kinetic` at every speed (Coulomb).
-  const Region<T>* curve{nullptr};
-  int regions{0};
+  const Branch<T>* curve{nullptr};
+  int branches{0};
 
   static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
-  Region<T> region(int index) const {
-    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
+  Branch<T> branch(int index) const {
+    if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
   }
-  int region_of(T speed) const {
+  int branch_of(T speed) const {
     int index = 0;
-    while (index + 1 < regions && speed >= curve[index].to) ++index;
+    while (index + 1 < branches && speed >= curve[index].to) ++index;
     return index;
   }
-  bool present() const { return static_limit > 0 || regions > 1; }
+  bool present() const { return static_limit > 0 || branches > 1; }
 };
 
 /// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,
@@ -97,11 +93,11 @@ struct Coulomb {
   T kinetic{0}, static_limit{0};
 
   static constexpr bool plain = true;  ///< neither a curve nor skin
-  static constexpr int regions = 0;
+  static constexpr int branches = 0;
   static constexpr T stiffness = std::numeric_limits<T>::infinity();
   static constexpr bool rigid() { return true; }
-  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
-  static constexpr int region_of(T) { return 0; }
+  Branch<T> branch(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
+  static constexpr int branch_of(T) { return 0; }
   bool present() const { return static_limit > 0; }
 };
 
@@ -171,23 +167,33 @@ struct Inputs {
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
 };
 
-/// What a contact does: the sign of its sliding velocity, stuck, no contact, or skin that grips.
-enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent = 2, gripping = 3 };
+/// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is
+/// absent, or sticks elastically: skin that stretches with the pin.
+enum class ContactState : signed char {
+  slip_backward = -1,
+  stick = 0,
+  slip_forward = 1,
+  absent = 2,
+  elastic_stick = 3
+};
 
-inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
-inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
-/// A value in the direction of sliding.
+inline bool slips(ContactState state) {
+  return state == ContactState::slip_backward || state == ContactState::slip_forward;
+}
+inline int sign(ContactState state) { return slips(state) ? static_cast<int>(state) : 0; }
+inline ContactState opposite(ContactState state) { return static_cast<ContactState>(-sign(state)); }
+/// A value in the direction of slipping.
 template <class T>
-T along(Slide slide, T value) {
-  return slide == Slide::forward ? value : -value;
+T along(ContactState state, T value) {
+  return T(static_cast<int>(state)) * value;
 }
 
 struct Mode {
-  Slide plate, finger;
-  int plate_region{0}, finger_region{0};  ///< of the friction curve, while sliding
+  ContactState plate, finger;
+  int plate_branch{0}, finger_branch{0};  ///< of the friction curve, while sliding
 
-  bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
-  bool both_stuck() const { return plate == finger && finger == Slide::stuck; }
+  bool stuck() const { return plate == ContactState::stick || finger == ContactState::stick; }
+  bool both_stuck() const { return plate == finger && finger == ContactState::stick; }
 };
 
 /// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
@@ -198,10 +204,10 @@ struct Event {
   Kind plate{Kind::none}, finger{Kind::none};
 };
 
-inline Kind change(Slide before, Slide after) {
+inline Kind change(ContactState before, ContactState after) {
   if (before == after) return Kind::none;
-  if (slides(before) == slides(after)) return Kind::cross;
-  return slides(before) ? Kind::stick : Kind::slip;
+  if (slips(before) == slips(after)) return Kind::cross;
+  return slips(before) ? Kind::stick : Kind::slip;
 }
 
 /// Whether the sliding velocity came to zero.
@@ -234,7 +240,7 @@ enum class End : signed char {
   limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
 };
 
-enum class Status : signed char { ok, too_many_events, standstill, stopped };
+enum class Status : signed char { ok, too_many_events, standstill, stopped, inconsistent };
 
 template <class T>
 struct Outcome {

@@ -85,6 +85,30 @@ class Motion {
     stretch(outcome_.cycle_begin, outcome_.cycle_begin + rest, T(1), visit);
   }
 
+  /// Hands over each segment that lies in part in [from, to], in order and with cycles expanded, as
+  /// (segment, when it begins, how much of it lies before `to`), until the visitor returns false; s.
+  template <class Visitor>
+  void expanded(T from, T to, Visitor&& visit) const {
+    using std::floor;
+    T round{-1};  // as simulated
+    if (outcome_.cycles() && from > outcome_.until)
+      round = std::max(floor((from - outcome_.until) / outcome_.period) - 1, T(-1));
+    do {
+      const bool again = round >= 0;
+      const T later =
+          again ? outcome_.until - outcome_.cycle_begin + round * outcome_.period : T(0);
+      for (const Segment<T>& segment : *this) {
+        if (again && segment.begin < outcome_.cycle_begin) continue;
+        const T begin = segment.begin + later;
+        if (begin > to) return;
+        if (segment.end + later < from) continue;
+        if (!goes_on(visit, segment, begin, std::min(segment.end, to - later) - segment.begin))
+          return;
+      }
+      round += 1;
+    } while (outcome_.cycles() && round + 1 > round);
+  }
+
  private:
   /// Time in a cycle is brought back to the cycle that was simulated.
   T folded(T t, Side side) const {

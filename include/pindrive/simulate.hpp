@@ -12,12 +12,12 @@ namespace pindrive {
 template <class T, class Sink>
 Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink) {
   const auto plain = [](const Contact<T>& contact) {
-    return contact.regions == 0 && (contact.rigid() || !contact.present());
+    return contact.branches == 0 && (contact.rigid() || !contact.present());
   };
   using std::isnan;
   if (!plain(drive.plate) || !plain(drive.finger) || !inputs.mouse_velocity.constant() ||
       !inputs.plate_load.constant() || !isnan(inputs.skin_stretch))
-    return Simulation<T>(drive, inputs).run(sink);
+    return detail::Simulation<T>(drive, inputs).run(sink);
   // The usual case, with nothing in it of what it does not need.
   const auto coulomb = [](const Contact<T>& contact) {
     return Coulomb<T>{contact.kinetic, contact.static_limit};
@@ -28,7 +28,7 @@ Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink)
   const Inputs<T, Constant<T>> steady{constant(inputs.mouse_velocity), inputs.displacement,
                                       inputs.velocity, inputs.duration,
                                       constant(inputs.plate_load)};
-  Simulation<T, Coulomb<T>, Constant<T>> simulation(slim, steady);
+  detail::Simulation<T, Coulomb<T>, Constant<T>> simulation(slim, steady);
   return simulation.run(sink);  // NOLINT(clang-analyzer-core.StackAddressEscape): a value
 }
 

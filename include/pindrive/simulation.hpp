@@ -7,11 +7,11 @@
 
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
+#include "pindrive/guards.hpp"
 #include "pindrive/model.hpp"
-#include "pindrive/recurrence.hpp"
-#include "pindrive/roots.hpp"
+#include "pindrive/return.hpp"
 
-namespace pindrive {
+namespace pindrive::detail {
 
 /// Follows one pin from its release and hands each segment to the sink, in order of time; a sink may
 /// return false to stop.
@@ -21,467 +21,306 @@ class Simulation {
   Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
       : drive_(drive),
         inputs_(inputs),
-        friction_(drive),
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
-        x_(inputs.displacement),
-        v_(inputs.velocity) {
-    look_ahead();
+        state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
+        plate_{drive.plate, {}, {}},
+        finger_{drive.finger, {}, {T(1), T(0)}} {
+    using std::abs;
     using std::isnan;
+    state_.x_size = abs(state_.x);
+    look_ahead();
+    const T v = state_.v, u = v - plate_.surface.value;
+    Mode mode{touch(drive.plate, u), touch(drive.finger, v)};
     const bool given = !isnan(inputs.skin_stretch);
-    if (given) skin_ = drive.finger.stiffness * inputs.skin_stretch;
-    mode_ = friction_.starting(now_, x_, v_, skin_, given);
+    if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
+    if (drive.finger.present() && !drive.finger.rigid() && (given || v == 0))
+      mode.finger = ContactState::elastic_stick;
+    if (slips(mode.plate)) mode.plate_branch = drive.plate.branch_of(along(mode.plate, u));
+    if (slips(mode.finger)) mode.finger_branch = drive.finger.branch_of(along(mode.finger, v));
+    select(mode, {});
   }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
-    for (long long events = 0; events < event_limit; ++events) {
-      const Segment<T> segment = next();
+    for (long long events = 1;; ++events) {
+      Segment<T> segment = begin();
+      const T tau = earliest(segment.flow);
+      const bool finished = !(time_ + tau < inputs_.duration);
+      if (!finished) {
+        const Mode before = segment.mode;
+        select(before, jump(segment, tau));
+        const Mode after = mode();
+        segment.event = {change(before.plate, after.plate), change(before.finger, after.finger)};
+        if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
+      } else if (tau == never) {
+        end_with(segment, outcome_);
+      }
+      if (finished && outcome_.end == End::moving && inputs_.duration < never) {
+        segment.end = inputs_.duration;
+        segment.moved = segment.flow.after(segment.end - segment.begin);
+      }
       outcome_.until = segment.end;
       if (!goes_on(sink, segment)) {
         outcome_.status = Status::stopped;
         return outcome_;
       }
-      if (finished_ || outcome_.cycles()) return outcome_;
+      if (finished || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
-      if (standing > standstill_limit) {
-        outcome_.status = Status::standstill;
-        return outcome_;
-      }
+      if (standing > standstill_limit) outcome_.status = Status::standstill;
+      if (events == event_limit) outcome_.status = Status::too_many_events;
+      if (outcome_.status != Status::ok) return outcome_;
     }
-    outcome_.status = Status::too_many_events;
-    return outcome_;
   }
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
-  static constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+  using Side = Touch<T, Surface>;
 
-  /// Why a mode ends: a sliding velocity comes to zero, or to the lower or upper end of a region
-  /// of a friction curve; a contact cannot hold any longer; or an input has its next row. And a
-  /// mode that grows is written anew from its state before its rounding has grown.
-  enum class Cause : signed char { nothing, arrives, slower, faster, gives_way, input, grown };
+  static ContactState touch(const Surface& contact, T u) {
+    return contact.present() ? static_cast<ContactState>((u > 0) - (u < 0)) : ContactState::absent;
+  }
 
-  struct Exit {
-    T tau{never};
-    Cause cause{Cause::nothing};
-    bool plate{false}, finger{false};
-    int side{0};            ///< of the force that the contact cannot hold
-    bool half_turn{false};  ///< the pin has swung from one zero of its velocity to the next
-  };
+  /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
+  /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
+  /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
+  void select(const Mode& before, const Reached& reached) {
+    using std::abs;
+    const T damper = drive_.damping * state_.v;
+    plate_.ask(before.plate, before.plate_branch, reached.plate, state_);
+    finger_.ask(before.finger, before.finger_branch, reached.finger, state_);
+    inertia_ = drive_.mass * plate_.surface.rate;
+    pull_ = drive_.stiffness * state_.x + damper;
+    state_.roundoff =
+        rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
+                       plate_.size(state_.v) + finger_.size(state_.v));
+    const bool finger_first = before.finger == ContactState::stick && before.plate != before.finger;
+    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
+    const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
+    if (i == 1 && sticks(first, second, 0, reached.limit)) return;
+    if (j == 1 && sticks(second, first, i, reached.limit)) return;
+    for (int k = i; k < first.count; ++k)
+      for (int l = j; l < second.count; ++l) {
+        first.chosen = k;
+        second.chosen = l;
+        if (sets_out(reached.limit)) return;
+      }
+    outcome_.status = Status::inconsistent;
+  }
 
-  // ---- one mode ----------------------------------------------------------------------------------
-
-  Segment<T> next() {
-    const Equation<T> equation = friction_.equation(mode_, now_, x_, skin_);
-    follows_ = !mode_.stuck() && follows(equation);
-    Segment<T> segment;
-    segment.begin = time_;
-    segment.end = never;
-    segment.mode = mode_;
-    if (mode_.stuck())
-      segment.flow = Flow<T>::stuck(x_, friction_.level(mode_, now_));
-    else
-      segment.flow = free_flow(equation);
-    segment.plate_velocity = now_.plate_velocity;
-    segment.plate_force = friction_.plate_force(mode_, now_, equation, segment.flow);
-    segment.finger_force = friction_.finger_force(mode_, equation, segment.flow, skin_);
-
-    Exit exit = comes_to_rest(segment) ? rest(segment.flow) : first_exit(segment);
-    // What happens at the row of an input to rounding is judged with what the row brings.
-    if (row_ < never && exit.tau < never && row_ - (time_ + exit.tau) <= rounding * row_)
-      exit = {row_ - time_, Cause::input, false, false, 0};
-    finished_ = !(time_ + exit.tau < inputs_.duration);
-    if (!finished_) {
-      leave(segment, exit);
-      return segment;
+  /// Whether a contact sticks while the other one does one of its options.
+  bool sticks(Side& on, Side& other, int option, int limit) {
+    on.chosen = 0;
+    for (; option < other.count; ++option) {
+      other.chosen = option;
+      if (holds(on, other, limit)) return true;
     }
-    if (exit.tau == never) outcome_.end = ending(segment.flow);
-    if (outcome_.end == End::moving && inputs_.duration < never) {
-      segment.end = inputs_.duration;
-      segment.moved = segment.flow.after(segment.end - segment.begin);
+    return false;
+  }
+
+  /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
+  bool continues(int limit) const {
+    return limit != 0 && plate_.continues(limit) && finger_.continues(limit);
+  }
+
+  /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
+  T demand(const Side& on, T of_other) const {
+    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
+  }
+  /// … and how it changes; `size` is that of the terms of its slope.
+  Path<T> demand_from(T force, const Side& on, const Side& other, T& size) const {
+    using std::abs;
+    const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
+    const T rate = other.force_rate(state_.v, a);
+    const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
+    size = abs(spring) + abs(damper) + abs(rate);
+    return {force, T(0), T(0), spring + damper - rate, stiffness * a};
+  }
+
+  /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
+  bool holds(const Side& on, const Side& other, int limit) {
+    using std::abs;
+    const T apart = on.surface.rate - other.surface.rate;
+    if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
+    const T of_on = on.contact.static_limit;
+    const T of_other = other.stuck() ? other.contact.static_limit : T(0);
+    const Line<T> most{of_on * on.load.value + of_other * other.load.value,
+                       of_on * on.load.rate + of_other * other.load.rate};
+    const T force = demand(on, other.force(state_));
+    const int at_limit = continues(limit) ? limit : 0;
+    if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
+      return false;
+    T size;
+    stick_force_ = demand_from(force, on, other, size);
+    guards_.clear();
+    for (const int side : {1, -1}) {
+      Path<T> left = Path<T>(most) + T(-side) * stick_force_;
+      if (!(left.start > state_.roundoff) || side == at_limit) {
+        left.start = T(0);
+        if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
+            touches(left.drift, left.curvature, state_.roundoff))
+          left.drift = T(0);
+        if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
+      }
+      guards_.add(left, Bound::none, plate_.stuck(), side);
     }
+    return true;
+  }
+
+  /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
+  /// exactly zero: it sets out along with that surface.
+  bool sets_out(int limit) {
+    using std::abs;
+    tangential_ = false;
+    guards_.clear();
+    const T plate = plate_.force(state_), finger = finger_.force(state_);
+    acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
+    const auto relative = [&](const Side& side, T own, T of_other) {  // times the mass
+      if (!side.rests(state_.v)) return acceleration_;
+      const T force = own - demand(side, of_other);
+      const bool lets_go = side.before == ContactState::stick && continues(limit);
+      if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
+        tangential_ = true;
+        acceleration_ = side.surface.rate;
+      }
+      return force;
+    };
+    const T of_plate = relative(plate_, plate, finger),
+            of_finger = relative(finger_, finger, plate);
+    const auto leaves = [&](const Side& side, const Side& other, T force) {
+      if (!tangential_) return side.goes_inside(state_, force);
+      const T apart = acceleration_ - side.surface.rate;
+      if (apart != 0 || !side.rests(state_.v)) return side.goes_inside(state_, apart);
+      T size;
+      const Path<T> needed = demand_from(T(0), side, other, size);
+      const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
+      const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
+      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
+    };
+    return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
+  }
+
+  Mode mode() const {
+    return {plate_.does().state, finger_.does().state, plate_.does().branch, finger_.does().branch};
+  }
+
+  /// The segment of the mode that was selected, and its guards.
+  Segment<T> begin() {
+    Segment<T> segment{time_, never, mode(), {}, flow(), {}, plate_.surface, {}, {}};
+    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
+    segment.finger_force = finger_.stuck() && !plate_.stuck()
+                               ? stick_force_
+                               : finger_.force_along(segment.flow, state_);
+    guards_.add(finger_, segment, false);
+    guards_.add(plate_, segment, true);
     return segment;
   }
 
-  Flow<T> free_flow(const Equation<T>& equation) const {
-    const Oscillator<T> oscillator =
-        friction_.constant(mode_)
-            ? plain_
-            : Oscillator<T>(drive_.mass, equation.damping, equation.stiffness);
-    const T drift = equation.pull.rate / equation.stiffness;
+  Flow<T> flow() const {
     using std::abs;
+    const State<T>& s = state_;
+    if (plate_.stuck() || finger_.stuck())
+      return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
+    T damping = drive_.damping, stiffness = drive_.stiffness;
+    T known = 2 * std::numeric_limits<T>::epsilon() * damping;  // how well the damping is
+    Line<T> pull{inertia_ - stiffness * s.x, T(0)};
+    plate_.add_to(damping, known, stiffness, pull, s);
+    finger_.add_to(damping, known, stiffness, pull, s);
+    Oscillator<T> oscillator = plain_;
+    if (!linear()) {
+      // A damper that falling friction cancels to rounding neither damps nor drives.
+      if (abs(damping) <= known) damping -= plain(damping);
+      oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
+    }
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (v_ == 0 && equation.pull.rate == 0 && abs(equation.pull.value) <= equation.blur(v_))
-      return Flow<T>::free(oscillator, x_, v_, T(0), T(0), T(0));
-    if (!follows_) {
-      const T acceleration = (equation.pull.value - equation.damping * v_) / drive_.mass;
-      const T y = (equation.damping * drift - equation.pull.value) / equation.stiffness;
-      return Flow<T>::free(oscillator, x_, v_, acceleration, y, drift);
-    }
-    const T y = -(drive_.mass * followed() + equation.damping * (v_ - drift)) / equation.stiffness;
-    return Flow<T>::free(oscillator, x_, v_, followed(), y, drift);
+    if (abs(pull.value) <= s.roundoff && s.v == 0 && pull.rate == 0)
+      return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
+    const T drift = pull.rate / stiffness;
+    const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
+                                    : pull.value - damping * drift;
+    return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
-  /// Whether the pin sets out along with a level: it breaks loose tangentially, or came to the border
-  /// of a region with no more than rounding against it.
-  bool follows(const Equation<T>& equation) const {
+  bool linear() const {  // no contact damps or stiffens
+    return Surface::plain ||
+           (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
+  }
+
+  /// The time to the earliest event. What happens at the row of an input to rounding happens there.
+  T earliest(const Flow<T>& flow) {
+    const T row = row_ - time_, serves = flow.oscillator.serves_for();
+    const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
+    const T first = guards_.earliest(flow.oscillator, time_, limit);
+    return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
+  }
+
+  /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
+  Reached jump(Segment<T>& segment, T tau) {
     using std::abs;
-    if (Surface::plain || tangential_ || !bordering_) return tangential_;
-    const T against = equation.pull.value - equation.damping * v_ - drive_.mass * followed();
-    return abs(against) <= equation.blur(v_);
-  }
-  /// The acceleration of that level.
-  T followed() const {
-    return tangential_ ? tangent_ : changed_plate_ ? now_.plate_velocity.rate : T(0);
-  }
-
-  // ---- how it ends -------------------------------------------------------------------------------
-
-  Exit first_exit(const Segment<T>& segment) const {
-    const Flow<T>& flow = segment.flow;
-    const Mode mode = segment.mode;
-    Exit first, border;
-    if (row_ < never) first = {row_ - time_, Cause::input, false, false, 0};
-    if (!friction_.constant(mode) && flow.velocity.oscillates() &&
-        flow.oscillator.serves_for() < first.tau)
-      first = {flow.oscillator.serves_for(), Cause::grown, false, false, 0};
-
-    // Two surfaces that keep different speeds are never reached together: no guard need be followed
-    // beyond what is known to end the mode, and of two that the pin outruns on one side the farther
-    // one hides behind the nearer.
-    const bool apart =
-        friction_.constant(mode) && now_.plate_velocity.rate == 0 && now_.plate_velocity.value != 0;
-    const auto consider = [&](const Path<T>& guard, auto&& goes, Exit exit) {
-      if (guard.start > 0 && guard.constant()) return;
-      // At its zero already, a guard leaves it to the side where it goes.
-      const bool at_once = !(guard.start > 0) && goes(guard) < 0;
-      exit.tau =
-          at_once ? T(0) : first_root(flow.oscillator, guard, 1, apart ? first.tau : row_ - time_);
-      if ((exit.cause == Cause::slower || exit.cause == Cause::faster) && exit.tau < border.tau)
-        border = exit;
-      if (exit.cause == Cause::gives_way && turns_back(flow, guard, exit)) return;
-      if (exit.tau == never || exit.tau > first.tau) return;
-      if (exit.tau == first.tau && exit.cause == first.cause) {
-        first.plate = first.plate || exit.plate;
-        first.finger = first.finger || exit.finger;
-      } else if (exit.tau < first.tau || first.cause == Cause::input ||
-                 first.cause == Cause::grown) {
-        first = exit;
+    const Path<T>& position = segment.flow.position;
+    const T coincident = tau + rounding<T> * (time_ + tau);
+    const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
+    const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+    state_.x = position.at(moved, tau);
+    state_.v = segment.flow.velocity.at(moved, tau);
+    state_.x_size =
+        std::max(std::max(state_.x_size, abs(state_.x)),
+                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
+    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
+    const bool row = tau == row_ - time_;
+    segment.end = time_ = row ? row_ : time_ + tau;
+    plate_.surface.value = plate_.surface.at(tau);
+    plate_.load.value = plate_.load.at(tau);
+    if (row) look_ahead();
+    Reached reached;
+    bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
+    for (const Guard<T>& guard : guards_) {
+      if (!(guard.zero <= coincident)) continue;
+      const Side& side = guard.plate ? plate_ : finger_;
+      if (guard.bound != Bound::none) {
+        (guard.plate ? reached.plate : reached.finger) = guard.bound;
+        const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
+        state_.v = side.surface.value + along(side.does().state, speed);
+        if (guard.bound == Bound::lower && side.does().branch == 0)
+          (guard.plate ? on_plate : on_finger) = true;
+      } else if (side.elastic()) {
+        state_.skin = guard.side * drive_.finger.static_limit;
+      } else if (!row) {
+        reached.limit = guard.side;
       }
-    };
-    const auto sliding = [&](const Surface& contact, Slide slide, int index, Line<T> surface,
-                             bool hidden, bool just_changed, Exit exit) {
-      if (!slides(slide)) return;
-      const Path<T> level = surface;
-      Path<T> above = along(slide, T(1)) * (flow.velocity + T(-1) * level);
-      const Region<T> region = contact.region(index);
-      const T speed = above.start;
-      above.start -= region.from;
-      // A pin that goes along with the border of a region may be sent back, but not twice.
-      const bool away = just_changed && (!follows_ || tangential_ || bounced_);
-      const auto goes = [&](const Path<T>& guard) {
-        return away ? 1 : side_after_zero(flow.oscillator, guard);
-      };
-      exit.cause = index == 0 ? Cause::arrives : Cause::slower;
-      // A pin that stays at its level has arrived there.
-      const auto arrives = [&](const Path<T>& guard) {
-        const int side = goes(guard);
-        return index == 0 && side == 0 ? -1 : side;
-      };
-      if (!hidden) consider(above, arrives, exit);
-      if (!(region.to < never)) return;
-      Path<T> below = T(-1) * above;
-      below.start = region.to - speed;
-      exit.cause = Cause::faster;
-      consider(below, goes, exit);
-    };
-    const auto holding = [&](const Path<T>& force, Line<T> limit, Exit exit) {
-      exit.cause = Cause::gives_way;
-      for (const int side : {1, -1}) {
-        exit.side = side;
-        const Path<T> most = limit, left = most + T(-side) * force;
-        // A gripping skin stretches as the pin moves, whose start is exact.
-        const auto goes = [&](const Path<T>& guard) {
-          return !mode.stuck() ? -side * side_after_start(flow.oscillator, flow.velocity)
-                 : held_again_ ? 1
-                               : side_after_zero(flow.oscillator, guard);
-        };
-        consider(left, goes, exit);
-      }
-    };
-
-    const Exit plate{never, Cause::nothing, true, false, 0};
-    const Exit finger{never, Cause::nothing, false, true, 0};
-    const T nearer =
-        apart && mode.plate == mode.finger ? sign(mode.plate) * segment.plate_velocity.value : T(0);
-    sliding(drive_.finger, mode.finger, mode.finger_region, {}, nearer > 0, changed_finger_,
-            finger);
-    sliding(drive_.plate, mode.plate, mode.plate_region, segment.plate_velocity, nearer < 0,
-            changed_plate_, plate);
-    if (!Surface::plain && mode.finger == Slide::gripping)
-      holding(T(-1) * segment.finger_force, {drive_.finger.static_limit, T(0)}, finger);
-    if (mode.stuck())
-      holding(mode.plate == Slide::stuck ? segment.plate_force : segment.finger_force,
-              friction_.capacity(mode, now_),
-              {never, Cause::nothing, mode.plate == Slide::stuck, mode.finger == Slide::stuck, 0});
-    // A force that comes to its limit as another contact comes to a row of its curve is judged with
-    // what the row brings.
-    if (first.cause == Cause::gives_way && border.tau - first.tau <= rounding * (time_ + first.tau))
-      return border;
-    return first;
-  }
-
-  /// Gripping skin whose vibration reaches its limit by no more than rounding turns back there and,
-  /// with nothing that drives it, never goes beyond.
-  static bool turns_back(const Flow<T>& flow, const Path<T>& guard, const Exit& exit) {
-    using std::abs;
-    const Oscillator<T>& oscillator = flow.oscillator;
-    const bool vibrates = flow.position.oscillates() && guard.straight() &&
-                          oscillator.oscillates() && !(oscillator.alpha() > 0);
-    if (!vibrates || exit.tau == T(0) || exit.tau == never) return false;
-    const T v = flow.velocity.at(oscillator, exit.tau);
-    const T acceleration = flow.acceleration().at(oscillator, exit.tau);
-    const T swing = oscillator.omega() * flow.amplitude();
-    return exit.side * acceleration < 0 && exit.side * v * abs(v) <= rounding * swing * swing;
-  }
-
-  /// Whether a pin that slides under constant friction comes to rest on the finger before anything
-  /// else can end the mode. Its velocity oscillates about zero: once it falls, it falls to there.
-  bool comes_to_rest(const Segment<T>& segment) const {
-    const Mode mode = segment.mode;
-    const Path<T>& velocity = segment.flow.velocity;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!slides(mode.finger) || !friction_.constant(mode) || velocity.centre() != 0 ||
-        row_ < never || !oscillator.oscillates())
-      return false;
-    const int side = sign(mode.finger);
-    const T speed = side * velocity.value, rising = side * velocity.slope;
-    if (!(speed > 0) && !(speed == 0 && rising > 0)) return false;
-    if (!slides(mode.plate)) return true;
-    const T plate = side * segment.plate_velocity.value;
-    if (mode.plate == mode.finger) return plate < 0;
-    if (!(speed <= plate)) return false;
-    if (!(rising > 0)) return true;
-    const T sine = velocity.slope - oscillator.alpha() * velocity.value;
-    const T cosine = oscillator.omega() * velocity.value, reach = oscillator.omega() * plate;
-    return speed < plate && sine * sine + cosine * cosine < reach * reach;
-  }
-
-  /// When it does.
-  Exit rest(const Flow<T>& flow) const {
-    const Path<T>& velocity = flow.velocity;
-    const T tau = velocity.value == 0 ? half_period_
-                                      : flow.oscillator.zeros(velocity.value, velocity.slope).first;
-    if (tau == never) return {};
-    if (velocity.value == 0) return {tau, Cause::arrives, false, true, 0, true};
-    return {Rooted<T>::at(flow.oscillator, velocity, tau), Cause::arrives, false, true};
-  }
-
-  static int side_after_zero(const Oscillator<T>& oscillator, Path<T> guard) {
-    guard.start = T(0);
-    return side_after_start(oscillator, guard);
-  }
-
-  // ---- what follows ------------------------------------------------------------------------------
-
-  /// Ends a segment and brings the state, set exactly at the event, to the next mode.
-  void leave(Segment<T>& segment, const Exit& exit) {
-    const Mode before = mode_;
-    const Transition<T> moved = exit.half_turn ? half_turn_ : segment.flow.after(exit.tau);
-    segment.moved = moved;
-    x_ = segment.flow.position.at(moved, exit.tau);
-    v_ = segment.flow.velocity.at(moved, exit.tau);
-    if (!Surface::plain && before.finger == Slide::gripping)
-      skin_ = -segment.finger_force.at(moved, exit.tau);
-    segment.end = time_ = exit.cause == Cause::input ? row_ : time_ + exit.tau;
-    advance(exit);
-    if (before.stuck()) v_ = friction_.level(before, now_).value;
-    // Where no force jumps, a pin at the same instant still leaves as the event before let it go.
-    const bool skin_follows = !Surface::plain && exit.cause == Cause::gives_way && exit.finger &&
-                              before.finger == Slide::gripping &&
-                              drive_.finger.kinetic == drive_.finger.static_limit;
-    const bool border =
-        !Surface::plain && (exit.cause == Cause::slower || exit.cause == Cause::faster);
-    const bool at_once = exit.tau == 0 && (border || skin_follows);
-    tangential_ = tangential_ && at_once;
-    const bool same_instant = !(segment.end > segment.begin);
-    bounced_ = border && bordering_ && same_instant;
-    bordering_ = border;
-    held_again_ = same_instant && exit.cause == Cause::arrives &&
-                  ((exit.plate && let_go_.plate) || (exit.finger && let_go_.finger));
-    let_go_ = {};
-    changed_plate_ = exit.plate || (changed_plate_ && at_once);
-    changed_finger_ = exit.finger || (changed_finger_ && at_once);
-
-    switch (exit.cause) {
-      case Cause::arrives:
-        arrive(exit);
-        break;
-      case Cause::slower:
-      case Cause::faster:
-        change_region(exit);
-        break;
-      case Cause::gives_way:
-        give_way(segment, exit);
-        break;
-      case Cause::input:
-      case Cause::nothing:
-        meet_input();
-        break;
-      case Cause::grown:
-        break;
     }
-    segment.event = {change(before.plate, mode_.plate), change(before.finger, mode_.finger)};
-  }
-
-  void advance(const Exit& exit) {
-    if (exit.cause == Cause::input) {
-      look_ahead();
-    } else {
-      now_.plate_velocity.value = now_.plate_velocity.at(exit.tau);
-      now_.load.value = now_.load.at(exit.tau);
-    }
+    if (on_plate && on_finger) plate_.surface.value = T(0);
+    if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+    return reached;
   }
 
   void look_ahead() {
-    now_ = {inputs_.mouse_velocity.from(time_), inputs_.plate_load.from(time_)};
+    plate_.surface = inputs_.mouse_velocity.from(time_);
+    plate_.load = inputs_.plate_load.from(time_);
     row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
-  }
-
-  void arrive(const Exit& exit) {
-    const bool held = mode_.stuck();
-    if (held) now_.plate_velocity.value = T(0);  // one level carries the pin to the other
-    v_ = exit.plate ? now_.plate_velocity.value : T(0);
-    if (exit.finger && !drive_.finger.rigid()) grip();
-    const bool finger = exit.finger && drive_.finger.rigid();
-    if (!exit.plate && !finger) return;
-    const Mode stuck{exit.plate ? Slide::stuck : mode_.plate, finger ? Slide::stuck : mode_.finger,
-                     mode_.plate_region, mode_.finger_region};
-    const bool parting = stuck.both_stuck() && now_.plate_velocity.rate != 0;
-    const int side = sign(exit.plate ? mode_.plate : mode_.finger);
-    mode_ = parting || held ? friction_.holding(stuck, mode_, now_, x_, skin_)
-                            : friction_.arriving(stuck, side, now_, x_, skin_);
-    if (held) changed_plate_ = changed_finger_ = true;
-  }
-
-  /// Skin that slid grips again, with the stretch that carries its kinetic friction. It never
-  /// blocks the pin.
-  void grip() {
-    skin_ = sign(mode_.finger) * drive_.finger.kinetic;
-    mode_.finger = Slide::gripping;
-  }
-
-  void change_region(const Exit& exit) {
-    const int step = exit.cause == Cause::faster ? 1 : -1;
-    const auto border = [&](const Surface& contact, Slide slide, int& index) {
-      const Region<T> region = contact.region(index);
-      index += step;
-      return sign(slide) * (step > 0 ? region.to : region.from);
-    };
-    T v = v_;
-    if (exit.plate)
-      v = now_.plate_velocity.value + border(drive_.plate, mode_.plate, mode_.plate_region);
-    if (exit.finger) v = border(drive_.finger, mode_.finger, mode_.finger_region);
-    if (exit.tau > 0) v_ = v;  // else it is at another level too, whose number it keeps
-    if (exit.plate && step > 0) note_recurrence(false);
-  }
-
-  void give_way(const Segment<T>& segment, const Exit& exit) {
-    if (mode_.finger == Slide::gripping && exit.finger) {
-      mode_.finger = static_cast<Slide>(exit.side);
-      mode_.finger_region = drive_.finger.region_of(exit.side * v_);
-      if (!mode_.stuck()) return;
-      // The skin's force drops to its kinetic friction: the plate may not hold what is left.
-      mode_ = friction_.holding(mode_, mode_, now_, x_, skin_);
-      changed_plate_ = !mode_.stuck();
-      return;
-    }
-    const auto even = [](bool taken, const Surface& contact) {
-      return !taken || contact.kinetic == contact.static_limit;
-    };
-    let_go_ = {exit.plate, exit.finger};
-    tangential_ = even(exit.plate, drive_.plate) && even(exit.finger, drive_.finger);
-    tangent_ = friction_.level(mode_, now_).rate;
-    mode_ = friction_.released(mode_, -exit.side);
-    if (!exit.plate) return;
-    hold_begin_ = segment.begin;
-    note_recurrence(true);
-  }
-
-  /// A row of an input: what holds the pin may be asked for more, or the surfaces part.
-  void meet_input() {
-    const Mode before = mode_;
-    if (slides(mode_.finger) && v_ == 0 && !drive_.finger.rigid()) grip();
-    if (!before.stuck()) return;
-    Mode stuck = mode_;
-    if (slides(stuck.plate) && v_ == now_.plate_velocity.value) stuck.plate = Slide::stuck;
-    if (slides(stuck.finger) && v_ == 0) stuck.finger = Slide::stuck;
-    mode_ = friction_.holding(stuck, mode_, now_, x_, skin_);
-    changed_plate_ = before.plate == Slide::stuck && mode_.plate != Slide::stuck;
-    changed_finger_ = before.finger == Slide::stuck && mode_.finger != Slide::stuck;
-  }
-
-  // ---- how the motion ends -----------------------------------------------------------------------
-
-  /// How a mode without an exit ends.
-  End ending(const Flow<T>& flow) {
-    if (!flow.position.oscillates())
-      return flow.velocity.start == 0 && flow.velocity.straight() ? End::resting : End::moving;
-    const T alpha = flow.oscillator.alpha();
-    if (alpha < 0) return End::decaying;
-    if (alpha > 0) return End::moving;
-    outcome_.steady_since = time_;
-    outcome_.period = flow.oscillator.period();
-    return tangential_ ? End::grazing : End::free;
-  }
-
-  /// A state that comes back closes a cycle: looked for at releases from the plate and where the pin
-  /// slides faster than a row of the plate's curve.
-  void note_recurrence(bool release) {
-    if (row_ < never) return;
-    const Visit<T> now{time_, x_, v_, skin_, hold_begin_, mode_, release};
-    const Visit<T>* before = recurrence_.earlier(drive_, now);
-    if (!before) return;
-    outcome_.end = release || before->released ? End::stick_slip : End::limit_cycle;
-    outcome_.period = time_ - before->time;
-    outcome_.cycle_begin = outcome_.steady_since = before->time;
-    // The cycle began where the first carried phase joined the one that it repeats.
-    if (release && mode_.finger != Slide::gripping)
-      outcome_.steady_since = std::max(before->hold_begin, before->time - (time_ - hold_begin_));
   }
 
   const Drive<T, Surface>& drive_;
   const Inputs<T, Input>& inputs_;
-  Friction<T, Surface> friction_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
   Transition<T> half_turn_;  ///< and how it has moved on there
 
-  T time_{0}, x_, v_;
-  T skin_{0};  ///< force in a gripping skin, N
-  Mode mode_{};
-  Instant<T> now_{};
-  T row_{never};  ///< time of the next row of an input, s
+  T time_{0}, row_{never};  ///< now, and of the next row of an input, s
+  State<T> state_;
+  Side plate_, finger_;   ///< in the mode that was selected
+  T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
-  bool changed_plate_{false},
-      changed_finger_{false};  ///< by the last event: a zero there is no root
-  bool bordering_{false},
-      bounced_{false};  ///< came to the border of a region; from another, at once
-  struct {
-    bool plate{false}, finger{false};
-  } let_go_;                ///< at the last event …
-  bool held_again_{false};  ///< … and it holds again at once: it was rounding that let go
-  bool follows_{false};     ///< it sets out along with a level
-  bool tangential_{false};  ///< the pin breaks loose with no relative acceleration, …
-  T tangent_{0};            ///< … at this acceleration
+  T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
+  bool tangential_{false};
+  Path<T> stick_force_{};  ///< … or what carries it
+  Guards<T> guards_;
 
-  Recurrence<T> recurrence_;
-  T hold_begin_{0};
-  bool finished_{false};
+  Return<T> returns_;
   Outcome<T> outcome_{};
 };
 
-}  // namespace pindrive
+}  // namespace pindrive::detail

@@ -149,7 +149,7 @@ class Measurement {
   }
 
   /// A pin that slides on the finger, which is at rest, does not turn back meanwhile.
-  static bool may_turn(const Segment<T>& segment) { return !slides(segment.mode.finger); }
+  static bool may_turn(const Segment<T>& segment) { return !slips(segment.mode.finger); }
 
   /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
   /// short it is beside x.
@@ -231,8 +231,10 @@ class Measurement {
       const T from = std::max(result.peak_time - segment.begin, T(0));
       const T to = std::min(segment.end, until) - segment.begin;
       if (from > to || (from > 0 && from == to)) continue;
+      // Where it ends the next mode begins, with the velocity that the event has set exactly.
+      const bool ends = segment.end <= until && &segment + 1 != motion_.end();
       const auto compare = [&](T tau, T velocity) {
-        if (-outward * velocity <= 0) return;
+        if (-outward * velocity <= 0 || (ends && tau == to)) return;
         if (outward * velocity >= outward * result.return_velocity) return;
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
@@ -462,13 +464,13 @@ class Measurement {
       highest_and_lowest(segment, path, from, to, compare);
   }
 
-  void use(ContactUse<T>& contact, const Segment<T>& segment, Slide slide, Line<T> surface,
+  void use(ContactUse<T>& contact, const Segment<T>& segment, ContactState slide, Line<T> surface,
            const Path<T>& force, bool came_to_zero, T from, T to, T distance, T times) const {
     using std::abs;
-    if (slide == Slide::absent) return;
+    if (slide == ContactState::absent) return;
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     if (!segment.mode.both_stuck()) peak(contact.peak_force, segment, force, from, to);
-    if (!slides(slide)) {
+    if (!slips(slide)) {
       contact.time_stuck += times * (to - from);
       return;
     }
@@ -492,11 +494,11 @@ class Measurement {
     const auto energy = [&](T force) { return force * force / (2 * finger.stiffness); };
     const T start = energy(segment.finger_force.at(oscillator, from));
     const T end = energy(segment.finger_force.at(oscillator, to));
-    if (slides(segment.mode.finger)) return start - end;
+    if (slips(segment.mode.finger)) return start - end;
     if (!whole || segment.event.finger != Kind::slip) return T(0);
     using std::abs;
     const T speed = abs(segment.flow.velocity.at(oscillator, to));
-    return end - energy(finger.region(finger.region_of(speed)).at(speed));
+    return end - energy(finger.branch(finger.branch_of(speed)).at(speed));
   }
 
   const Motion<T>& motion_;

@@ -17,6 +17,7 @@
 
 #include "interrupt.hpp"
 #include "pindrive/certify.hpp"
+#include "pindrive/crossings.hpp"
 #include "pindrive/dual.hpp"
 #include "pindrive/energy.hpp"
 #include "pindrive/motion.hpp"
@@ -82,17 +83,17 @@ struct Columns {
 template <class T>
 struct OwnedContact {
   pd::Contact<T> contact;
-  std::vector<pd::Region<T>> regions;
+  std::vector<pd::Branch<T>> branches;
 
   OwnedContact(const ContactNumbers& at, const ContactNumbers& along)
       : contact{number<T>(std::get<0>(at), std::get<0>(along)),
                 number<T>(std::get<1>(at), std::get<1>(along)),
                 number<T>(std::get<2>(at), std::get<2>(along))} {
     const Columns<T> rows(std::get<3>(at), std::get<3>(along));
-    regions.resize(rows.first.size() + 1);
-    contact.regions = pd::regions_of(rows.first.data(), rows.second.data(),
-                                     static_cast<int>(rows.first.size()), regions.data());
-    contact.curve = regions.data();
+    branches.resize(rows.first.size() + 1);
+    contact.branches = pd::branches_of(rows.first.data(), rows.second.data(),
+                                       static_cast<int>(rows.first.size()), branches.data());
+    contact.curve = branches.data();
   }
 };
 
@@ -210,10 +211,10 @@ nb::dict segments(const CoreMotion<T>& motion) {
       column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration().start); });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
-  table["plate_region"] =
-      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.plate_region; });
-  table["finger_region"] =
-      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.finger_region; });
+  table["plate_branch"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.plate_branch; });
+  table["finger_branch"] =
+      column<std::int32_t>(motion, [](const Segment& s) { return s.mode.finger_branch; });
   table["plate_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
   table["finger_event"] =
@@ -284,6 +285,45 @@ nb::dict ledger(const CoreMotion<T>& motion, double duration) {
   return d;
 }
 
+/// Times and what is seen there, as far as a motion hands them over, but no more than so many.
+template <class Seen, class Search>
+nb::tuple found(std::size_t most, Search&& search) {
+  auto both = interruptible([&](auto go_on) {
+    std::pair<std::vector<double>, std::vector<Seen>> lists;
+    search([&](double time, Seen seen) {
+      lists.first.push_back(time);
+      lists.second.push_back(seen);
+      return lists.first.size() < most && go_on();
+    });
+    return lists;
+  });
+  return nb::make_tuple(to_array(std::move(both.first)), to_array(std::move(both.second)));
+}
+
+nb::tuple crossings(const CoreMotion<double>& motion, int quantity, double level, double until,
+                    std::size_t most) {
+  const auto view = motion.view();
+  return found<std::int8_t>(most, [&](auto add) {
+    pd::crossings(view, static_cast<pd::Quantity>(quantity), level, until,
+                  [&](double time, int side) { return add(time, static_cast<std::int8_t>(side)); });
+  });
+}
+
+nb::tuple extrema(const CoreMotion<double>& motion, int quantity, double until, std::size_t most) {
+  const auto view = motion.view();
+  return found<double>(
+      most, [&](auto add) { pd::extrema(view, static_cast<pd::Quantity>(quantity), until, add); });
+}
+
+nb::tuple events(const CoreMotion<double>& motion, double from, double to, std::size_t most) {
+  const auto view = motion.view();
+  return found<std::int64_t>(most, [&](auto add) {
+    pd::events(view, from, to, [&](double time, const pd::Segment<double>& segment) {
+      return add(time, &segment - view.begin());
+    });
+  });
+}
+
 double duration(const CoreMotion<double>& motion, double band) {
   const auto view = motion.view();
   return interruptible([&](auto go_on) { return pd::duration_of(view, band, go_on); });
@@ -340,6 +380,11 @@ NB_MODULE(_core, m) {
   bind<double>(m, "Motion", "A simulated motion and its segments.")
       .def("certificate", &certificate, "duration"_a)
       .def("duration", &duration, "band"_a)
+      .def("crossings", &crossings, "quantity"_a, "level"_a, "until"_a, "most"_a,
+           "Times and directions; position, velocity or acceleration is 0, 1 or 2.")
+      .def("extrema", &extrema, "quantity"_a, "until"_a, "most"_a, "Times and values.")
+      .def("events", &events, "begin"_a, "end"_a, "most"_a,
+           "Times and the segments that the events end, cycles expanded.")
       .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })

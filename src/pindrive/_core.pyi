@@ -41,6 +41,15 @@ class Motion:
 
     def duration(self, band: float) -> float: ...
 
+    def crossings(self, quantity: int, level: float, until: float, most: int) -> tuple:
+        """Times and directions; position, velocity or acceleration is 0, 1 or 2."""
+
+    def extrema(self, quantity: int, until: float, most: int) -> tuple:
+        """Times and values."""
+
+    def events(self, begin: float, end: float, most: int) -> tuple:
+        """Times and the segments that the events end, cycles expanded."""
+
     @property
     def known_until(self) -> float: ...
 

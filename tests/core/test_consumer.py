@@ -52,7 +52,20 @@ def check(consumer: Path) -> None:
     )
     motion = pindrive.simulate(drive, mouse_velocity=0.10, displacement=1.5e-3)
     expected = [f"{segment.begin:.9f} s" for segment in motion.segments]
-    assert run(consumer).split("\n") == [*expected, motion.ending.kind, ""]
+    position = f"x(0.02 s) = {float(motion.position(0.02)):.6e} m"
+    assert run(consumer).split("\n") == [*expected, position, motion.ending.kind, ""]
+
+
+def test_the_umbrella_header_shows_what_the_consumer_does() -> None:
+    """The lines of use at the head of pindrive.hpp stand in a program that is built and checked."""
+    head = (ROOT / "include" / "pindrive.hpp").read_text("utf-8")
+    shown = re.findall(r"^///     (.*)$", head, re.MULTILINE)
+    assert 0 < len(shown) <= 10
+
+    def unbroken(text: str) -> str:
+        return "".join(text.split())
+
+    assert unbroken("".join(shown[1:])) in unbroken((CONSUMER / "main.cpp").read_text("utf-8"))
 
 
 def test_the_core_stands_alone() -> None:

@@ -81,11 +81,11 @@ struct Run {
   explicit Run(const Setting& s) {
     const double to = std::min(0.03, 0.01 / s.slope);
     const T speeds[] = {0, to}, forces[] = {0.02, 0.02 - s.slope * to};
-    pd::Region<T> regions[3];
+    pd::Branch<T> branches[3];
     pd::Drive<T> drive{s.mass, s.stiffness, s.damping, {}, {}};
     drive.plate.kinetic = drive.plate.static_limit = forces[0];
-    drive.plate.curve = regions;
-    drive.plate.regions = pd::regions_of(speeds, forces, 2, regions);
+    drive.plate.curve = branches;
+    drive.plate.branches = pd::branches_of(speeds, forces, 2, branches);
     drive.finger.kinetic = drive.finger.static_limit = s.finger;
     const pd::Inputs<T> inputs{T(s.mouse_velocity), 2e-3, s.mouse_velocity};
     summary = pd::summarise(drive, inputs, T(0.05), segments);
@@ -156,11 +156,11 @@ int ramp() {
   for (const double off : {1e-6, 1e-8, 1e-10, 0., -1e-10, -1e-8, -1e-6}) {
     const Counted times[] = {0, 1e4}, velocities[] = {0.05, 0.055};
     const Counted speeds[] = {0, 0.1}, forces[] = {0.02, 0.02 - 0.1 * (1 + off) * 0.1};
-    pd::Region<Counted> regions[3];
+    pd::Branch<Counted> branches[3];
     pd::Drive<Counted> drive{0.01, 100, 0.1, {}, {}};
     drive.plate.kinetic = drive.plate.static_limit = forces[0];
-    drive.plate.curve = regions;
-    drive.plate.regions = pd::regions_of(speeds, forces, 2, regions);
+    drive.plate.curve = branches;
+    drive.plate.branches = pd::branches_of(speeds, forces, 2, branches);
     const pd::Inputs<Counted> inputs{{times, velocities, 2}, 1e-4, 0.02};
     std::vector<pd::Segment<Counted>> segments;
     Counted::waves = 0;

@@ -20,7 +20,7 @@ std::vector<pd::Segment<T>> run(const double (&p)[9], bool general = false) {
   std::vector<pd::Segment<T>> segments;
   const auto keep = [&](const pd::Segment<T>& segment) { segments.push_back(segment); };
   if (general)
-    pd::Simulation<T>(drive, inputs).run(keep);
+    pd::detail::Simulation<T>(drive, inputs).run(keep);
   else
     pd::simulate(drive, inputs, keep);
   return segments;

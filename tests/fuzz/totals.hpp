@@ -44,6 +44,8 @@ struct Largest {
 /// Sums and maxima: however the cases are shared out, they come to the same.
 struct Totals {
   long long drives{0}, segments{0};
+  long long instants{0};      ///< segments of zero length
+  long long inconsistent{0};  ///< drives in which no candidate was consistent
   Largest most_segments;
   std::array<Largest, laws.size()> worst;
   std::vector<long long> failed;
@@ -53,6 +55,8 @@ struct Totals {
     ++drives;
     const auto count = static_cast<long long>(verdict.segments);
     segments += count;
+    instants += static_cast<long long>(verdict.instants);
+    inconsistent += verdict.status == pd::Status::inconsistent ? 1 : 0;
     most_segments.meet({static_cast<double>(count), number});
     for (std::size_t i = 0; i < laws.size(); ++i)
       worst[i].meet({verdict.certificate.*laws[i].residual, number});
@@ -62,6 +66,8 @@ struct Totals {
   void add(const Totals& other) {
     drives += other.drives;
     segments += other.segments;
+    instants += other.instants;
+    inconsistent += other.inconsistent;
     most_segments.meet(other.most_segments);
     for (std::size_t i = 0; i < laws.size(); ++i) worst[i].meet(other.worst[i]);
     failed.insert(failed.end(), other.failed.begin(), other.failed.end());
@@ -83,6 +89,8 @@ inline void write(std::ostream& out, const Range& range, const Totals& totals) {
   out << "seed " << range.seed << " from " << range.from << '\n'
       << "drives " << totals.drives << " of " << range.count << '\n'
       << "segments " << totals.segments << '\n'
+      << "of_zero_length " << totals.instants << '\n'
+      << "inconsistent " << totals.inconsistent << '\n'
       << "most_segments " << totals.most_segments.value << " case " << totals.most_segments.at
       << '\n'
       << "seconds " << totals.seconds << '\n';
@@ -98,8 +106,8 @@ inline bool read(std::istream& in, Range& range, Totals& totals) {
   std::string word;
   std::size_t failures = 0;
   in >> word >> range.seed >> word >> range.from >> word >> totals.drives >> word >> range.count >>
-      word >> totals.segments >> word >> totals.most_segments.value >> word >>
-      totals.most_segments.at >> word >> totals.seconds;
+      word >> totals.segments >> word >> totals.instants >> word >> totals.inconsistent >> word >>
+      totals.most_segments.value >> word >> totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
   for (long long number = 0; failures > 0 && in >> number; --failures)

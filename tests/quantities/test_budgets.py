@@ -31,7 +31,7 @@ TABLE = {name: part for name, part in vars(budgets).items() if isinstance(part, 
 
 LOOKS = "the looks of the control block must be at most 20000000, got "
 STIFF = "--set finger.stiffness: finger.stiffness must be finite and at least 1e-12 N/m"
-TURNS = "the looks for turning points of the pins must be at most 20000000, got "
+TURNS = "the turning points of the pins must be at most 1500000, got "
 REFUSED = {
     # command, --set: what the only line begins with
     ("scan --text Hello", "finger.stiffness=1e12 N/m"): TURNS,

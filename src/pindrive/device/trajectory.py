@@ -26,10 +26,6 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
     from pindrive.motion.results import Side
 
-EACH_PERIOD: Final = 30.0
-"""Looks for turning points in a period of the fastest vibration."""
-AT_ONCE: Final = 1 << 16
-"""Looks that are taken together: more take memory and save no time."""
 HALVINGS: Final = 60
 PIECES: Final = 64
 """A bracket is cut into so many at once, which is as good as six halvings."""
@@ -65,28 +61,13 @@ class Course:
 
     @cached_property
     def knots(self) -> NDArray[np.float64]:
-        """Begin, events, turning points and end, s, shape (n,), increasing; one way between them.
-
-        Turning points closer together than a thirtieth of the fastest period may count as none:
-        between them nothing changes.
-        """
+        """Begin, events, turning points and end, s, shape (n,), increasing."""
         motion, lasts = self.motion, self.motion.duration
-        ends = np.unique([segment.end for segment in motion.segments])
-        ends = ends[(ends > 0.0) & (ends < lasts)]
-        count = check_vibration(motion.drive, lasts)
-        found = [np.array([0.0]), ends, np.array([lasts])]
-        for first in range(0, count, AT_ONCE):
-            last = min(first + AT_ONCE, count)
-            even = lasts * (np.arange(first, last + 1) / count)
-            low, high = np.searchsorted(ends, even[[0, -1]])
-            t = np.union1d(even, ends[low:high])
-            right, left = motion.velocity(t), motion.velocity(t, "left")
-            turns = right[:-1] * left[1:] < 0.0
-            found.append(halved(motion.velocity, t[:-1][turns], t[1:][turns]))
-            stops = (right * left <= 0.0) & ((right != 0.0) | (left != 0.0))
-            stops &= (t > 0.0) & (t < lasts)
-            found.append(t[stops])  # turns at an event, or comes to rest or leaves it
-        return np.unique(np.concatenate(found))
+        check_vibration(motion.drive, lasts)
+        ends = [segment.end for segment in motion.segments if segment.end < lasts]
+        events = [event.time for event in motion.events_between(0.0, lasts)]
+        turns = motion.extrema("position").time
+        return np.unique(np.concatenate([[0.0], ends, events, turns, [lasts]]))
 
     def within(self, begin: float, end: float) -> NDArray[np.float64]:
         """The knots from `begin` to `end`, both of these included."""
@@ -187,19 +168,17 @@ class Course:
         return np.array([segment.end for segment in self.motion.segments])
 
 
-def check_vibration(drive: Drive, duration: float, pins: int = 1) -> int:
-    """How many looks find the turning points of one pin over a duration (s).
+def check_vibration(drive: Drive, duration: float, pins: int = 1) -> None:
+    """Refuse more turning points of so many pins over a duration (s) than the budget.
 
     Raises:
-        ValueError: too many, for so many pins: the skin makes it vibrate too fast.
+        ValueError: too many: the skin makes them vibrate too fast.
     """
     skin = 0.0 if drive.finger.rigid else drive.finger.stiffness
     frequency = sqrt((drive.stiffness + skin) / drive.mass) / (2.0 * pi)
-    count = EACH_PERIOD * duration * frequency + 1.0
     of = f"{pins} pins over {duration:g} s, which vibrate at {frequency:g} Hz"
     words = f"{of} on spring and skin; a finger without finger.stiffness is rigid"
-    budgets.MOTION_LOOKS.check(pins * count, words if skin else of)
-    return int(count)
+    budgets.TURNS.check(pins * (2.0 * duration * frequency + 1.0), words if skin else of)
 
 
 def halved(

@@ -52,7 +52,7 @@ _INFINITE: Final = ("finger_stiffness", "duration")
 _LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
 
 # In the order of `Status` and `End` in model.hpp.
-_FAILURES: Final = ("too_many_events", "standstill")
+_FAILURES: Final = ("too_many_events", "standstill", "stopped", "inconsistent")
 _ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
 _BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "damping_ratio", "phase"))
 _FLAGS: Final = {

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Final, overload
 
 import numpy as np
 
@@ -18,17 +18,22 @@ from pindrive.motion.results import (
     ContactName,
     ContactUse,
     CoreNumbers,
+    Crossings,
     Ending,
     Event,
+    Extrema,
     Ledger,
+    QuantityName,
     Segment,
     Side,
     Table,
     Transient,
+    events_at,
     events_of,
     flattened,
     segments_of,
 )
+from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import check, refusal
 
@@ -39,6 +44,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.motion.sensitivity import Sensitivity
+
+__all__ = ["Crossings", "Event", "Extrema", "Motion", "Segment"]
+
+_QUANTITIES: Final = ("position", "velocity", "acceleration")
+"""In the order of `Quantity` in crossings.hpp."""
 
 
 class Motion:
@@ -178,14 +188,19 @@ class Motion:
     ) -> float | NDArray[np.float64]:
         if side not in ("left", "right"):
             raise ValueError(refusal("side", '"left" or "right"', repr(side)))
+        times = self._known(t, "t")
+        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
+        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+
+    def _known(self, t: ArrayLike, name: str) -> NDArray[np.float64]:
+        """Times at which the motion is known."""
         times = _times(t)
         known = self._core.known_until
         good = (times >= 0.0) & (times <= known) & (times < inf)
         if not good.all():
             required = f"from 0 s to {known!r} s" if known < inf else "finite and at least 0 s"
-            raise ValueError(refusal("t", required, f"{float(times[~good].flat[0])!r} s"))
-        values = closed_form(np.ascontiguousarray(times).ravel(), side == "right")
-        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+            raise ValueError(refusal(name, required, f"{float(times[~good].flat[0])!r} s"))
+        return times
 
     # ---- what happened ---------------------------------------------------------------------------
 
@@ -197,6 +212,79 @@ class Motion:
     def events(self) -> tuple[Event, ...]:
         """Every change at a contact, in order, the plate's first; of a cycle, one round of it."""
         return events_of(self._table, lambda t: (self.position(t), self.velocity(t)))
+
+    def events_between(self, begin: float, end: float) -> tuple[Event, ...]:
+        """Every change at a contact from `begin` to `end`, both included, with cycles expanded.
+
+        Args:
+            begin: s, at least 0.
+            end: s, at least `begin`; beyond `duration` where the ending is known.
+
+        Returns:
+            The events in order, the plate's first.
+
+        Raises:
+            ValueError: a time is negative, NaN, or later than the motion is known; `begin` is
+                after `end`; or there are more events than the budget.
+        """
+        begin, end = (
+            float(self._known(time, name)) for time, name in ((begin, "begin"), (end, "end"))
+        )
+        if not begin <= end:
+            raise ValueError(refusal("begin", f"at most end ({end!r} s)", f"{begin!r} s"))
+        times, ended = self._core.events(begin, end, budgets.MOMENTS.most + 1)
+        budgets.MOMENTS.check(len(times), f"events from {begin:g} s to {end:g} s")
+        kinds = np.stack([self._table["plate_event"], self._table["finger_event"]], axis=-1)[ended]
+        states = zip(self.position(times).tolist(), self.velocity(times).tolist(), strict=True)
+        rows = zip(times.tolist(), kinds.tolist(), states, strict=True)
+        return tuple(event for row in rows for event in events_at(*row))
+
+    def extrema(self, which: QuantityName) -> Extrema:
+        """Times and values of the extrema of a quantity over [0, duration], exactly.
+
+        They are where the motion begins and ends, where the quantity turns, and both sides of a
+        jump: between two neighbours it is continuous and does not turn. A quantity that rests
+        before it turns back has its extremum where it comes to rest.
+
+        Args:
+            which: "position", "velocity" or "acceleration".
+
+        Returns:
+            The times (s) and the values (m, m/s or m/s²), shape (n,).
+
+        Raises:
+            ValueError: another quantity; more extrema than the budget.
+        """
+        index = _quantity(which)
+        found = Extrema(*self._core.extrema(index, self.duration, budgets.MOMENTS.most + 1))
+        budgets.MOMENTS.check(len(found.time), f"extrema of the {which} in {self.duration:g} s")
+        return found
+
+    def crossings(self, which: QuantityName, level: float) -> Crossings:
+        """Times and directions of the crossings of a level over [0, duration], exactly.
+
+        A crossing leads from one side of the level to the other. Touching it is none; a quantity
+        that rests at the level and goes on crosses it where it comes to rest.
+
+        Args:
+            which: "position", "velocity" or "acceleration".
+            level: m, m/s or m/s².
+
+        Returns:
+            The times (s) and the directions, 1 or -1 in turn, shape (n,).
+
+        Raises:
+            ValueError: another quantity; a level that is not finite; more crossings than the
+                budget.
+        """
+        index = _quantity(which)
+        if not -inf < level < inf:
+            raise ValueError(refusal("level", "finite", repr(level)))
+        found = Crossings(
+            *self._core.crossings(index, float(level), self.duration, budgets.MOMENTS.most + 1)
+        )
+        budgets.MOMENTS.check(len(found.time), f"crossings by the {which} in {self.duration:g} s")
+        return found
 
     @property
     def segment_count(self) -> int:
@@ -213,15 +301,17 @@ class Motion:
         """Either "ok", or what stopped the simulation and what to do about it."""
         if self._core.status == 0:
             return "ok"
-        if self._core.status == 2:
-            return (
-                f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
-                "parameter by a little, and please report the drive"
-            )
-        return (
-            f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
-            "and damping are too weak to end the motion; give a shorter duration"
-        )
+        at = f"stopped at t = {self._core.until:.6g} s"
+        report = "change a parameter by a little, and please report the drive"
+        return {
+            1: (
+                f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: "
+                "friction and damping are too weak to end the motion; give a shorter duration"
+            ),
+            2: f"{at}: events pile up at one instant; {report}",
+            3: f"{at}, as was asked: run it again to see the rest",
+            4: f"{at}: no mode agrees with the state; {report}",
+        }[self._core.status]
 
     # ---- the numbers -----------------------------------------------------------------------------
 
@@ -351,6 +441,13 @@ class Motion:
             "energy": asdict(self.energy),
         }
         return dict(flattened(groups))
+
+
+def _quantity(which: str) -> int:
+    """The number of a quantity in the core."""
+    if which not in _QUANTITIES:
+        raise ValueError(refusal("which", " or ".join(map(repr, _QUANTITIES)), repr(which)))
+    return _QUANTITIES.index(which)
 
 
 def _times(t: ArrayLike) -> NDArray[np.float64]:

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from math import isnan
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from pindrive import _core
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from pindrive import _core
@@ -44,6 +45,7 @@ def flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]
 Cause = Literal["plate", "finger", "both"]
 EventKind = Literal["stick", "slip", "cross"]
 ModeName = Literal["slip", "carried", "resting"]
+QuantityName = Literal["position", "velocity", "acceleration"]
 Table = dict[str, "NDArray[Any]"]
 """The core's columns, one row a segment."""
 
@@ -87,6 +89,24 @@ class Segment:
     """The same; 0 also while compliant skin grips."""
 
 
+class Extrema(NamedTuple):
+    """Extrema of a quantity of a motion, in order."""
+
+    time: NDArray[np.float64]
+    """s, shape (n,), not decreasing: the two sides of a jump have one time."""
+    value: NDArray[np.float64]
+    """m, m/s or m/s², shape (n,)."""
+
+
+class Crossings(NamedTuple):
+    """Where a quantity of a motion crosses a level, in order."""
+
+    time: NDArray[np.float64]
+    """s, shape (n,)."""
+    direction: NDArray[np.int8]
+    """1 where the quantity rises, -1 where it falls, in turn; shape (n,)."""
+
+
 def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) -> tuple[Event, ...]:
     """Every change at a contact, in order, the plate's first.
 
@@ -102,13 +122,24 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
         end = rows["end"][i]
         follows = i + 1 < len(rows["end"])
         state = (rows["position"][i + 1], rows["velocity"][i + 1]) if follows else state_at(end)
-        causes = _BOTH if kinds[0] == kinds[1] else _EACH
-        events += [
-            Event(end, contact, _KINDS[kind - 1], *state)
-            for contact, kind in zip(causes, kinds, strict=False)
-            if kind
-        ]
+        events += events_at(end, kinds, state)
     return tuple(events)
+
+
+def events_at(time: float, kinds: tuple[int, int], state: tuple[float, float]) -> list[Event]:
+    """What happens at the end of a segment, the plate's first.
+
+    Args:
+        time: s.
+        kinds: of the events at plate and finger, as in the core's table.
+        state: position (m) and velocity (m/s) then.
+    """
+    causes = _BOTH if kinds[0] == kinds[1] else _EACH
+    return [
+        Event(time, contact, _KINDS[kind - 1], *state)
+        for contact, kind in zip(causes, kinds, strict=False)
+        if kind
+    ]
 
 
 def segments_of(table: Table) -> tuple[Segment, ...]:

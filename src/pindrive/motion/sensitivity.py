@@ -213,7 +213,7 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
         return float(min(a[edge][at[0]], b[edge][at[0]])) if at.size else inf
 
     return min(
-        first("begin", "plate", "finger", "plate_region", "finger_region"),
+        first("begin", "plate", "finger", "plate_branch", "finger_branch"),
         first("end", "plate_event", "finger_event"),
     )
 

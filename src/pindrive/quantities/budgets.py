@@ -65,10 +65,15 @@ SEGMENTS: Final = Budget(
     3_000_000,
     "as INPUT_ROWS; what friction adds is known only as the run goes",
 )
-MOTION_LOOKS: Final = Budget(
-    "the looks for turning points of the pins",
+MOMENTS: Final = Budget(
+    "the moments found in a motion",
     20_000_000,
-    "30 in each period of the fastest vibration, 0.3 µs each; nothing of them is kept",
+    "a time and a value of 8 bytes each; 0.3 µs each in the core",
+)
+TURNS: Final = Budget(
+    "the turning points of the pins",
+    1_500_000,
+    "2 in each period of the fastest vibration; 16 bytes and some µs each to judge",
 )
 PAGE_LOOKS: Final = Budget(
     "the looks for lines on the page",

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "pindrive/model.hpp"
+#include "model.hpp"
 
-namespace pindrive {
+namespace second_opinion {
 
 /// A state at which a motion may come by again.
 template <class T>
@@ -51,4 +51,4 @@ class Recurrence {
   long long visits_{0}, next_{0};  ///< so far, and when the one that is kept is renewed
 };
 
-}  // namespace pindrive
+}  // namespace second_opinion

@@ -1,0 +1,142 @@
+/// Where position, velocity and acceleration of a motion cross a level, and their extrema: exactly, from
+/// the closed form of each segment, with the cycles of a motion expanded.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "pindrive/limits.hpp"
+#include "pindrive/motion.hpp"
+#include "pindrive/roots.hpp"
+
+namespace pindrive {
+
+/// A quantity of a motion over time.
+enum class Quantity : signed char { position, velocity, acceleration };
+
+/// A quantity along a segment.
+template <class T>
+Path<T> path_of(const Flow<T>& flow, Quantity quantity) {
+  if (quantity == Quantity::position) return flow.position;
+  return quantity == Quantity::velocity ? flow.velocity : flow.acceleration();
+}
+
+namespace detail {
+
+/// Follows the sign of one path, and the value of another, from segment to segment. What comes to zero and
+/// stays there changes its sign, when it leaves to the other side, at the time at which it came.
+template <class T>
+class SignChanges {
+ public:
+  /// Calls visit(time, value, sign after) at each change along the first `span` of a segment that begins at
+  /// a time, until it returns false; returns that.
+  template <class Visitor>
+  bool follow(const Segment<T>& segment, const Path<T>& path, const Path<T>& value, T begin, T span,
+              Visitor&& visit) {
+    using std::abs;
+    const Oscillator<T>& oscillator = segment.flow.oscillator;
+    const int start = side_after_start(oscillator, path);
+    if (start == 0) {
+      if (!zero_) come(begin, value.start);
+      return true;
+    }
+    if (!zero_) come(begin, value.start);
+    const bool changes = side_ * start < 0;
+    side_ = start;
+    zero_ = false;
+    bool more = !changes || visit(zero_time_, zero_value_, side_);
+    const Path<T> slope = path.derivative(oscillator);
+    const T terms = abs(path.start) + abs(path.value) + abs(path.drift) * span;
+    if (more)
+      each_root(oscillator, path, start, span, [&](T tau) {
+        // What comes to zero where the segment ends, to rounding, is judged by how the next one begins.
+        const T rest = span - tau, rate = slope.at(segment.after(tau), tau);
+        const bool soon = oscillator.hurry_squared() * rest * rest <= T(at_end * at_end);
+        if (rest <= rounding<T> * (begin + span) ||
+            (soon && abs(rate) * rest <= rounding<T> * terms))
+          return false;
+        side_ = -side_;
+        return more = visit(begin + tau, value.at(segment.after(tau), tau), side_);
+      });
+    return more;
+  }
+
+  /// Forgets the sign, where the path begins anew.
+  void restart() { side_ = 0, zero_ = false; }
+
+ private:
+  void come(T time, T value) { zero_ = true, zero_time_ = time, zero_value_ = value; }
+
+  int side_{0};
+  bool zero_{false};  ///< at zero, since this time, with this value
+  T zero_time_{0}, zero_value_{0};
+};
+
+}  // namespace detail
+
+/// Calls visit(time, sign after) wherever a quantity changes from one side of a level to the other in
+/// [0, until], until it returns false; s. Touching the level is no change.
+template <class T, class Visitor>
+void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Visitor&& visit) {
+  detail::SignChanges<T> changes;
+  motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
+    Path<T> path = path_of(segment.flow, quantity);
+    path.start -= level;
+    return changes.follow(segment, path, path, begin, span,
+                          [&](T time, T, int side) { return goes_on(visit, time, side); });
+  });
+}
+
+/// Calls visit(time, value) at the extrema of a quantity in [0, until], in order, until it returns false:
+/// where the motion begins and ends, where the quantity turns, and on both sides of a jump. Between two
+/// neighbours it is continuous and goes one way.
+template <class T, class Visitor>
+void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visit) {
+  using std::abs;
+  const Drive<T>& drive = motion.drive();
+  detail::SignChanges<T> changes;
+  bool began = false, more = true;
+  T time{0}, end{0};  // of the last visit; value where the last segment ended
+  const auto add = [&](T at, T value) {
+    time = at;
+    return more = goes_on(visit, at, value);
+  };
+  const auto jumps = [&](const Flow<T>& flow, T value) {
+    if (quantity != Quantity::acceleration) return false;
+    const T forces =
+        drive.stiffness * abs(flow.position.start) + drive.damping * abs(flow.velocity.start);
+    const T terms = abs(value) + abs(end) + forces / drive.mass;
+    return abs(value - end) > 8 * detail::rounding<T> * terms;
+  };
+  motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
+    const Path<T> path = path_of(segment.flow, quantity);
+    if (!began) {
+      add(begin, path.start);
+    } else if (jumps(segment.flow, path.start)) {
+      changes.restart();
+      if (add(begin, end)) add(begin, path.start);
+    }
+    began = true;
+    if (more)
+      changes.follow(segment, path.derivative(segment.flow.oscillator), path, begin, span,
+                     [&](T at, T value, int) { return add(at, value); });
+    end = path.at(segment.after(span), span);
+    return more;
+  });
+  if (began && more && time < until) add(until, end);
+}
+
+/// Calls visit(time, segment) at the events in [from, to], with the segment that each one ends, until it
+/// returns false; s.
+template <class T, class Visitor>
+void events(const Motion<T>& motion, T from, T to, Visitor&& visit) {
+  motion.expanded(from, to, [&](const Segment<T>& segment, T begin, T) {
+    const T time = segment.end + (begin - segment.begin);
+    const bool none = segment.event.plate == Kind::none && segment.event.finger == Kind::none;
+    return none || !(time >= from && time <= to) || goes_on(visit, time, segment);
+  });
+}
+
+}  // namespace pindrive

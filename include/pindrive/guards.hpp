@@ -1,0 +1,112 @@
+/// What ends a mode: its guards, and the earliest of their zeros.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/friction.hpp"
+#include "pindrive/limits.hpp"
+#include "pindrive/roots.hpp"
+
+namespace pindrive::detail {
+
+/// What stays positive while a mode lasts: the distance of a sliding speed from a bound, or (none) what
+/// contacts that stick could carry beyond what they do, to a side.
+template <class T>
+struct Guard {
+  Path<T> path;
+  Bound bound;
+  bool plate;  ///< whose it is, or the finger's; the force of both that stick is the plate's
+  int side;
+  T zero{std::numeric_limits<T>::infinity()};  ///< s
+};
+
+/// The guards of a mode; at most two of a sliding contact or an elastic stick, and two of a stick force.
+template <class T>
+class Guards {
+ public:
+  void clear() { count_ = 0; }
+
+  /// Adds a guard that may come to zero: it oscillates or falls.
+  void add(const Path<T>& path, Bound bound, bool plate, int side = 0) {
+    if (path.oscillates() || path.drift < 0 || path.curvature < 0)
+      list_[count_++] = {path, bound, plate, side};
+  }
+  /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
+  template <class Surface>
+  void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {
+    if (side.elastic()) {
+      const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
+      for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, plate, to);
+    }
+    if (!side.sliding()) return;
+    const Branch<T> range = side.branch();
+    const Path<T>& v = segment.flow.velocity;
+    const T to = along(side.does().state, T(1)), speed = to * (v.start - side.surface.value);
+    const Path<T> above{side.does().at == Bound::lower ? T(0) : speed - range.from, to * v.value,
+                        to * v.slope, to * (v.drift - side.surface.rate)};
+    add_nearer(above, Bound::lower, plate, v.start);
+    if (!(range.to < std::numeric_limits<T>::infinity())) return;
+    Path<T> below = T(-1) * above;
+    below.start = side.does().at == Bound::upper ? T(0) : range.to - speed;
+    add_nearer(below, Bound::upper, plate, v.start);
+  }
+
+  const Guard<T>* begin() const { return list_.data(); }
+  const Guard<T>* end() const { return list_.data() + count_; }
+
+  /// The earliest zero, or the limit if none comes before it. Times are `since` the start of the mode, and
+  /// those that differ by less than the rounding of a time are one.
+  T earliest(const Oscillator<T>& oscillator, T since, T limit) {
+    const Path<T>* falls = nullptr;  // to the middle of its oscillation
+    for (int i = 0; i < count_; ++i) {
+      Guard<T>& guard = list_[i];
+      const Path<T>& path = guard.path;
+      if (path.oscillates() && path.straight()) {
+        if (path.centre() == 0) {  // in closed form
+          guard.zero =
+              Rooted<T>::at(oscillator, path, oscillator.zeros(path.start, path.slope).first);
+          limit = std::min(limit, guard.zero);
+          if (path.slope < 0) falls = &path;
+          continue;
+        }
+        // What rises as another falls turns only after that has come to zero.
+        if (falls != nullptr && path.value == -falls->value && path.slope == -falls->slope)
+          continue;
+      }
+      const bool ends = limit < std::numeric_limits<T>::infinity();
+      guard.zero =
+          first_root(oscillator, path, 1, ends ? limit + rounding<T> * (since + limit) : limit);
+      limit = std::min(limit, guard.zero);
+    }
+    return limit;
+  }
+
+ private:
+  /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
+  /// of a velocity v only the one below: it comes to zero before the other.
+  void add_nearer(const Path<T>& path, Bound bound, bool plate, T v) {
+    using std::abs;
+    for (int i = 0; i < count_; ++i) {
+      const Path<T>& q = list_[i].path;
+      if (list_[i].bound == Bound::none || q.value != path.value || q.slope != path.slope ||
+          q.drift != path.drift)
+        continue;
+      const T apart = path.start - q.start;
+      const T one = rounding<T> * (std::max(path.start, q.start) + abs(v));
+      if (apart > one) return;
+      if (apart < -one) {
+        list_[i] = {path, bound, plate, 0};
+        return;
+      }
+    }
+    add(path, bound, plate);
+  }
+
+  std::array<Guard<T>, 6> list_;
+  int count_{0};
+};
+
+}  // namespace pindrive::detail

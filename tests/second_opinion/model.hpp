@@ -1,0 +1,268 @@
+/// What goes into the core and what comes out of it. SI units throughout.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "flow.hpp"
+
+namespace second_opinion {
+
+/// Every limit that is not physics, named once.
+inline constexpr long long event_limit = 1'000'000;  ///< events after which a motion is given up
+inline constexpr int standstill_limit = 100;   ///< events at one instant after which it is given up
+inline constexpr double settling_band = 0.05;  ///< default band, as a part of |x(0) − x_end|
+/// How closely a state returns in a cycle, relative; and by how much more for each round before, since
+/// without damping the rounding of the rounds adds up.
+inline constexpr double recurrence = 1e-14, recurrence_per_round = 1e-15;
+
+/// A number without what else it carries, such as a derivative.
+inline float plain(float x) { return x; }
+inline double plain(double x) { return x; }
+inline long double plain(long double x) { return x; }
+
+/// Kinetic friction in one range of sliding speed: force + slope·(|u| − from) for from <= |u| < to.
+template <class T>
+struct Region {
+  T from, to;  ///< m/s
+  T force;     ///< at `from`, N
+  T slope;     ///< N s/m; negative where friction falls with speed
+  T rounding;  ///< how well the slope is known from rounded rows, N s/m
+
+  T at(T speed) const { return force + slope * (speed - from); }
+};
+
+/// The regions between the rows (speed, force) of a friction curve, at most count + 1; none for the
+/// one row of Coulomb friction. Rows on one line, to rounding, make one region. The last slope goes
+/// on; where it falls, until the force is zero: friction never pushes.
+template <class T>
+int regions_of(const T* speeds, const T* forces, int count, Region<T>* regions) {
+  using std::abs;
+  if (count < 2) return 0;
+  constexpr T never = std::numeric_limits<T>::infinity();
+  constexpr T unit = 2 * std::numeric_limits<T>::epsilon();
+  int made = 0;
+  for (int i = 0; i + 1 < count; ++i) {
+    const T width = speeds[i + 1] - speeds[i];
+    const T slope = (forces[i + 1] - forces[i]) / width;
+    const T rounding =
+        unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
+    const bool bends =
+        made == 0 || abs(slope - regions[made - 1].slope) > rounding + regions[made - 1].rounding;
+    if (bends) regions[made++] = {speeds[i], never, forces[i], slope, rounding};
+    regions[made - 1].to = speeds[i + 1];
+  }
+  const T force = forces[count - 1];
+  Region<T>& last = regions[made - 1];
+  if (last.slope < 0) {
+    if (force > 0) last.to -= force / last.slope;
+    regions[made] = {last.to, never, T(0), T(0), T(0)};
+    return made + 1;
+  }
+  last.to = never;
+  return made;
+}
+
+/// Dry friction at one surface. Without friction the contact is absent.
+template <class T>
+struct Contact {
+  T kinetic{0};       ///< friction force when it starts to slide, N; >= 0
+  T static_limit{0};  ///< largest friction force while it sticks, N; >= kinetic
+  T stiffness{std::numeric_limits<T>::infinity()};  ///< tangential, N/m; > 0, infinite if rigid
+
+  /// Kinetic friction over sliding speed; none: `kinetic` at every speed (Coulomb).
+  const Region<T>* curve{nullptr};
+  int regions{0};
+
+  static constexpr bool plain = false;
+  bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+  Region<T> region(int index) const {
+    if (regions == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
+    return curve[index];
+  }
+  int region_of(T speed) const {
+    int index = 0;
+    while (index + 1 < regions && speed >= curve[index].to) ++index;
+    return index;
+  }
+  bool present() const { return static_limit > 0 || regions > 1; }
+};
+
+/// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,
+/// so that nothing is computed for it.
+template <class T>
+struct Coulomb {
+  T kinetic{0}, static_limit{0};
+
+  static constexpr bool plain = true;  ///< neither a curve nor skin
+  static constexpr int regions = 0;
+  static constexpr T stiffness = std::numeric_limits<T>::infinity();
+  static constexpr bool rigid() { return true; }
+  Region<T> region(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
+  static constexpr int region_of(T) { return 0; }
+  bool present() const { return static_limit > 0; }
+};
+
+template <class T, class Surface = Contact<T>>
+struct Drive {
+  T mass;                 ///< electromagnet and pin, kg; > 0
+  T stiffness;            ///< spring, N/m; > 0
+  T damping;              ///< damper, N s/m; >= 0
+  Surface plate, finger;  ///< the plate is rigid
+};
+
+/// An input over time: linear between its rows, constant outside. It owns nothing.
+template <class T>
+class Profile {
+ public:
+  Profile(T constant) : constant_(constant) {}  // NOLINT: a number is a profile
+  /// count >= 1 rows, times strictly increasing.
+  Profile(const T* times, const T* values, std::size_t count)
+      : constant_(values[0]), times_(times), values_(values), count_(count) {}
+
+  /// Value and rate from time t on, until the next row.
+  Line<T> from(T t) const {
+    const std::size_t i = rows_until(t);
+    if (i == 0) return {constant_, T(0)};
+    if (i == count_) return {values_[count_ - 1], T(0)};
+    const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
+    return {values_[i - 1] + rate * (t - times_[i - 1]), rate};
+  }
+  /// The first row after time t; infinite when there is none.
+  T next_row(T t) const {
+    const std::size_t i = rows_until(t);
+    return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
+  }
+  bool constant() const { return count_ == 0; }
+  T first() const { return constant_; }  ///< its value until its first row
+
+ private:
+  std::size_t rows_until(T t) const {
+    return static_cast<std::size_t>(std::upper_bound(times_, times_ + count_, t) - times_);
+  }
+
+  T constant_;
+  const T* times_{nullptr};
+  const T* values_{nullptr};
+  std::size_t count_{0};
+};
+
+/// An input that stays as it is.
+template <class T>
+struct Constant {
+  T value;
+
+  Line<T> from(T) const { return {value, T(0)}; }
+  static constexpr T next_row(T) { return std::numeric_limits<T>::infinity(); }
+  static constexpr bool constant() { return true; }
+};
+
+/// The release at t = 0 and what happens after it.
+template <class T, class Input = Profile<T>>
+struct Inputs {
+  Input mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
+  T displacement;        ///< x(0), m
+  T velocity;            ///< x'(0), m/s
+  T duration{std::numeric_limits<T>::infinity()};  ///< s; infinite: until the ending is known
+  Input plate_load{T(1)};                          ///< factor on the plate's friction; >= 0
+  /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
+  T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
+};
+
+/// What a contact does: the sign of its sliding velocity, stuck, no contact, or skin that grips.
+enum class Slide : signed char { backward = -1, stuck = 0, forward = 1, absent = 2, gripping = 3 };
+
+inline bool slides(Slide slide) { return slide == Slide::backward || slide == Slide::forward; }
+inline int sign(Slide slide) { return slides(slide) ? static_cast<int>(slide) : 0; }
+/// A value in the direction of sliding.
+template <class T>
+T along(Slide slide, T value) {
+  return slide == Slide::forward ? value : -value;
+}
+
+struct Mode {
+  Slide plate, finger;
+  int plate_region{0}, finger_region{0};  ///< of the friction curve, while sliding
+
+  bool stuck() const { return plate == Slide::stuck || finger == Slide::stuck; }
+  bool both_stuck() const { return plate == finger && finger == Slide::stuck; }
+};
+
+/// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
+/// sliding reverses. Nothing where only an input or a friction curve has its next row.
+enum class Kind : signed char { none, stick, slip, cross };
+
+struct Event {
+  Kind plate{Kind::none}, finger{Kind::none};
+};
+
+inline Kind change(Slide before, Slide after) {
+  if (before == after) return Kind::none;
+  if (slides(before) == slides(after)) return Kind::cross;
+  return slides(before) ? Kind::stick : Kind::slip;
+}
+
+/// Whether the sliding velocity came to zero.
+inline bool stops(Kind kind) { return kind == Kind::stick || kind == Kind::cross; }
+
+/// One mode from begin to end (infinite for one that lasts for ever), with its friction.
+template <class T>
+struct Segment {
+  T begin, end;  ///< s
+  Mode mode;
+  Event event;  ///< at the end
+  Flow<T> flow;
+  Transition<T> moved;                ///< of its oscillation, from begin to a finite end
+  Line<T> plate_velocity;             ///< m/s
+  Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
+                                      ///< is what they carry together
+
+  /// How its oscillation has moved on after τ.
+  Transition<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
+};
+
+/// How a motion ends.
+enum class End : signed char {
+  moving,      ///< not known within the duration
+  resting,     ///< at rest for ever
+  decaying,    ///< free decay, no further event
+  free,        ///< undamped oscillation, no further event
+  grazing,     ///< the same, touching the plate's velocity once a period
+  stick_slip,  ///< a cycle of carried and sliding phases, repeated
+  limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
+};
+
+enum class Status : signed char { ok, too_many_events, standstill, stopped };
+
+template <class T>
+struct Outcome {
+  Status status{Status::ok};
+  End end{End::moving};
+  T steady_since{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
+  T period{std::numeric_limits<T>::quiet_NaN()};        ///< of a steady oscillation, s
+  T until{0};        ///< end of the last segment, s; then a cycle begins again …
+  T cycle_begin{0};  ///< … from here, s
+
+  bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
+};
+
+/// Asked all along a long computation whether to go on, which this one always does. Where another one
+/// returns false, the computation ends early and what it returns means nothing.
+struct Unattended {
+  constexpr bool operator()() const { return true; }
+};
+
+/// Calls a function that may return false when it wants no more calls; whether to go on.
+template <class Function, class... Arguments>
+bool goes_on(Function& function, const Arguments&... arguments) {
+  if constexpr (std::is_void_v<std::invoke_result_t<Function&, const Arguments&...>>) {
+    function(arguments...);
+    return true;
+  } else {
+    return function(arguments...);
+  }
+}
+
+}  // namespace second_opinion
