@@ -10,6 +10,7 @@ from pindrive._core import settling_band
 from pindrive.quantities import (
     CERTIFICATE,
     DEVICE,
+    FINAL,
     INPUTS,
     OUTPUTS,
     PARTS,
@@ -20,7 +21,7 @@ from pindrive.quantity import Bounds, Quantity, significant
 
 
 def test_names_are_unique() -> None:
-    assert len(QUANTITIES) == len(INPUTS) + len(PARTS) + len(OUTPUTS) + len(DEVICE)
+    assert len(QUANTITIES) == len(INPUTS) + len(PARTS) + len(OUTPUTS) + len(FINAL) + len(DEVICE)
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=lambda q: q.name)

@@ -482,6 +482,12 @@ ENDING: Final[tuple[Quantity, ...]] = (
 )
 """How a motion ends, in numbers."""
 
+FINAL: Final[tuple[Quantity, ...]] = (
+    Quantity("final.position", "x_T", "m", "position at the end of the duration, or at rest"),
+    Quantity("final.velocity", "v_T", "m/s", "velocity at the end of the duration, or at rest"),
+)
+"""The state at the end, which `simulate_batch` gives on request."""
+
 ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.kinetic_start", "E_k,0", "J", "kinetic energy at release"),
     Quantity("energy.kinetic_end", "E_k", "J", "kinetic energy at the end"),
@@ -519,7 +525,9 @@ OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
-QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
+QUANTITIES: Final[dict[str, Quantity]] = {
+    q.name: q for q in INPUTS + PARTS + OUTPUTS + FINAL + DEVICE
+}
 
 
 def refusal(label: str, required: str, given: object, where: str = "") -> str:
