@@ -99,7 +99,7 @@ def assert_same(point: xr.Dataset, motion: Motion) -> None:
     # that comes about almost tangentially keeps half of its digits (kernel_test.cpp is stricter).
     numbers = motion.numbers()
     assert {k: point[v].item() for k, v in NUMBERS.items()} == pytest.approx(
-        {k: numbers[k] for k in NUMBERS}, rel=1e-9, abs=1e-15, nan_ok=True
+        {k: numbers[k] for k in NUMBERS}, rel=1e-9, abs=1e-12, nan_ok=True
     )
     assert meaning(point.status) == motion.status == "ok"
     told = meaning(point.ending)

@@ -56,8 +56,8 @@ inline namespace PINDRIVE_TARGET {
 /// Follows the pack of releases that begins at `input`, each column `stride` after the one before. Its
 /// answers go to `output` likewise; which it gave up and which it put off, to the flags.
 template <class V, bool Meets>
-void follow_pack(const double* input, double* output, int stride, Asked asked,
-                 bool* given_up, bool* put_off) {
+void follow_pack(const double* input, double* output, int stride, Asked asked, bool* given_up,
+                 bool* put_off) {
   constexpr int width = Traits<V>::width, measured = KernelBlock::rest_position;
   PlainRelease<V> release;
   V* into = &release.mass;

@@ -429,8 +429,7 @@ class Batch {
         if (rows_[k].number) numbers_[k * size() + i] = rows_[k].number->of(summary);
     }
     if (!energy_) return;
-    const Ledger ledger = 
-        pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
+    const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
       if (rows_[k].energy) numbers_[k * size() + i] = rows_[k].energy->of(ledger);
   }

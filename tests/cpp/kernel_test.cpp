@@ -1,8 +1,8 @@
 // The kernel beside the general core on random plain releases: the same events and the same numbers to
-// a few roundings; the same bits alone, in packs of every width, and followed at once or
-// put off first, with all numbers or a few.
+// a few roundings; the same bits in packs of every width that this processor runs, and followed at once
+// or put off first, with all numbers or a few.
 //
-//     kernel_test [COUNT [SEED]]    so many releases of each of two kinds, 20 000 unless given
+//     kernel_test [COUNT [SEED]]    so many releases of each of two kinds, 100 000 unless given
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,8 +13,8 @@
 #include <random>
 #include <vector>
 
+#include "_kernel.hpp"
 #include "pindrive/batch.hpp"
-#include "pindrive/kernel_block.hpp"
 
 namespace pd = pindrive;
 namespace pk = pindrive::detail;
@@ -110,15 +110,15 @@ struct Answers {
   }
 };
 
-/// All numbers of releases, in blocks of packs.
-template <class V>
-Answers by_blocks(const Releases& releases, pk::Asked asked) {
+/// All numbers of releases, in blocks of packs of a width.
+Answers by_blocks(const Releases& releases, pk::Asked asked,
+                  const pindrive_extension::KernelFunctions& kernel) {
   Answers all(releases.size());
   const auto block = std::make_unique<Block>();
   for (std::size_t first = 0; first < releases.size(); first += Block::capacity) {
     const std::size_t size = std::min<std::size_t>(Block::capacity, releases.size() - first);
     for (int j = 0; j < inputs; ++j) std::copy_n(&releases.of[j][first], size, block->input[j]);
-    pk::follow_block<V>(*block, static_cast<int>(size), asked);
+    kernel.follow(*block, static_cast<int>(size), asked);
     for (int j = 0; j < outputs; ++j) std::copy_n(block->output[j], size, &all.of[j][first]);
     std::copy_n(block->given_up, size, &all.given_up[first]);
   }
@@ -193,32 +193,31 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide) {
     };
     const auto& t = s.transient;
     const auto last = at(s.duration);
-    const double right[outputs] = {
-        t.peak_displacement,
-        t.peak_time,
-        t.trough_displacement,
-        t.trough_time,
-        t.swing,
-        t.return_velocity,
-        t.return_velocity_time,
-        t.first_reversal_time,
-        t.settling_time,
-        t.plate.reversals,
-        t.plate.time_stuck,
-        t.plate.distance_slid,
-        t.plate.dissipated,
-        t.plate.peak_force,
-        t.finger.reversals,
-        t.finger.time_stuck,
-        t.finger.distance_slid,
-        t.finger.dissipated,
-        t.finger.peak_force,
-        s.duration,
-        static_cast<double>(s.events),
-        s.outcome.end == pd::End::resting ? last[0] : std::nan(""),
-        last[0],
-        last[1],
-        t.rest_time};
+    const double right[outputs] = {t.peak_displacement,
+                                   t.peak_time,
+                                   t.trough_displacement,
+                                   t.trough_time,
+                                   t.swing,
+                                   t.return_velocity,
+                                   t.return_velocity_time,
+                                   t.first_reversal_time,
+                                   t.settling_time,
+                                   t.plate.reversals,
+                                   t.plate.time_stuck,
+                                   t.plate.distance_slid,
+                                   t.plate.dissipated,
+                                   t.plate.peak_force,
+                                   t.finger.reversals,
+                                   t.finger.time_stuck,
+                                   t.finger.distance_slid,
+                                   t.finger.dissipated,
+                                   t.finger.peak_force,
+                                   s.duration,
+                                   static_cast<double>(s.events),
+                                   s.outcome.end == pd::End::resting ? last[0] : std::nan(""),
+                                   last[0],
+                                   last[1],
+                                   t.rest_time};
     const double rate = std::sqrt(p[1] / p[0]);
     const double reach = std::abs(p[8]) + (std::abs(p[7]) + std::abs(p[9])) / rate;
     const double slid = reach + t.plate.distance_slid + t.finger.distance_slid;
@@ -254,7 +253,7 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t size = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 20'000;
+  const std::size_t size = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 100'000;
   const auto seed = static_cast<unsigned>(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 12);
   bool good = true;
   // In pieces, so that the memory does not grow with their number.
@@ -264,18 +263,20 @@ int main(int argc, char** argv) {
       const auto releases =
           drawn(std::min(piece, size - first), seed + static_cast<unsigned>(first / piece), wide);
       using pk::Asked;
-      const Answers found = by_blocks<double>(releases, Asked::settling);
+      const auto* kernel = pindrive_extension::kernels();
+      const Answers found = by_blocks(releases, Asked::settling, *kernel);
       const auto as_found = [&](const Answers& other, int from, const char* how) {
         good = agree(found, other, from, how) && good;
       };
       good = beside_core(releases, found, wide) && at_once(releases, found) && good;
-      as_found(by_blocks<pk::Pack<2>>(releases, Asked::settling), 0, "in packs of 2");
-      as_found(by_blocks<pk::Pack<4>>(releases, Asked::settling), 0, "in packs of 4");
-      as_found(by_blocks<pk::Pack<8>>(releases, Asked::settling), 0, "in packs of 8");
-      as_found(by_blocks<pk::Pack<4>>(releases, Asked::state), Block::rest_position,
-               "of the state");
-      as_found(by_blocks<pk::Pack<4>>(releases, Asked::numbers), Block::plate_reversals,
-               "where no settling time is asked for");
+      for (; kernel->width != 0; ++kernel) {
+        const auto asked = [&](Asked less) { return by_blocks(releases, less, *kernel); };
+        std::printf("in packs of %d\n", kernel->width);
+        as_found(asked(Asked::settling), 0, "in packs");
+        as_found(asked(Asked::state), Block::rest_position, "of the state");
+        as_found(asked(Asked::numbers), Block::plate_reversals,
+                 "where no settling time is asked for");
+      }
     }
   return good ? 0 : 1;
 }
