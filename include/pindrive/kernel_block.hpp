@@ -88,9 +88,9 @@ void follow_pack(const double* input, double* output, int stride, Asked asked, b
 
 /// Follows the first `count` releases of a block.
 template <class V>
-#if defined(__GNUC__) && !defined(__CUDACC__)
-__attribute__((
-    flatten))  // a pack that is handed over in memory costs more than what is done with it
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
+// A pack that is handed over in memory costs more than what is done with it.
+__attribute__((flatten))
 #endif
 void follow_block(KernelBlock& block, int count, Asked asked) {
   constexpr int width = Traits<V>::width;
