@@ -2,12 +2,14 @@
 /// others, gathered, so that no pack works for one of them alone.
 #pragma once
 
+#include <cstddef>
+
 #include "pindrive/kernel.hpp"
 
 namespace pindrive::detail {
 
 /// What is asked of the releases of a block. The settling time needs the resting place beforehand.
-enum class Asked : int { state, numbers, settling };
+enum class Asked : signed char { state, numbers, settling };
 
 /// Releases and what became of them, one in each slot; columns as in PlainRelease, and these.
 struct KernelBlock {
@@ -17,7 +19,7 @@ struct KernelBlock {
   static constexpr int stride = capacity + 8;
   static constexpr int inputs = 12;
   /// Those of PlainNumbers in their order, then four of the state.
-  enum Column : int {
+  enum Column : signed char {
     peak_displacement,
     peak_time,
     trough_displacement,
@@ -56,8 +58,8 @@ inline namespace PINDRIVE_TARGET {
 /// Follows the pack of releases that begins at `input`, each column `stride` after the one before. Its
 /// answers go to `output` likewise; which it gave up and which it put off, to the flags.
 template <class V, bool Meets>
-void follow_pack(const double* input, double* output, int stride, Asked asked, bool* given_up,
-                 bool* put_off) {
+void follow_pack(const double* input, double* output, std::ptrdiff_t stride, Asked asked,
+                 bool* given_up, bool* put_off) {
   constexpr int width = Traits<V>::width, measured = KernelBlock::rest_position;
   PlainRelease<V> release;
   V* into = &release.mass;

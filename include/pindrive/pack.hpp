@@ -139,17 +139,24 @@ struct ArrayLanes {
 /// does not see that it is a vector.
 template <int N>
 struct VectorTypes;
-#define PINDRIVE_VECTOR_TYPES(N)                                       \
-  template <>                                                          \
-  struct VectorTypes<N> {                                              \
-    typedef double Number __attribute__((vector_size(N * 8)));         \
-    typedef std::uint64_t Integer __attribute__((vector_size(N * 8))); \
-    typedef std::int64_t Truth __attribute__((vector_size(N * 8)));    \
-  };
-PINDRIVE_VECTOR_TYPES(2)
-PINDRIVE_VECTOR_TYPES(4)
-PINDRIVE_VECTOR_TYPES(8)
-#undef PINDRIVE_VECTOR_TYPES
+template <>
+struct VectorTypes<2> {
+  typedef double Number __attribute__((vector_size(16)));
+  typedef std::uint64_t Integer __attribute__((vector_size(16)));
+  typedef std::int64_t Truth __attribute__((vector_size(16)));
+};
+template <>
+struct VectorTypes<4> {
+  typedef double Number __attribute__((vector_size(32)));
+  typedef std::uint64_t Integer __attribute__((vector_size(32)));
+  typedef std::int64_t Truth __attribute__((vector_size(32)));
+};
+template <>
+struct VectorTypes<8> {
+  typedef double Number __attribute__((vector_size(64)));
+  typedef std::uint64_t Integer __attribute__((vector_size(64)));
+  typedef std::int64_t Truth __attribute__((vector_size(64)));
+};
 
 template <int N>
 struct VectorLanes {

@@ -24,7 +24,7 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 using Block = pk::KernelBlock;
 constexpr int inputs = Block::inputs, outputs = Block::columns;
-enum Kind { length, path, speed, time, hard_time, force, work, count };
+enum Kind : unsigned char { length, path, speed, time, hard_time, force, work, count };
 struct Output {
   const char* name;
   Kind kind;
@@ -144,9 +144,9 @@ bool agree(const Answers& one, const Answers& other, int from, const char* how) 
 /// Whether a release that is followed at once, with all that it meets, ends where it ends in its block.
 bool at_once(const Releases& releases, const Answers& found) {
   for (std::size_t i = 0; i < releases.size(); ++i) {
-    pk::PlainRelease<double> r;
-    double* into = &r.mass;
-    for (int j = 0; j < inputs; ++j) into[j] = releases.of[j][i];
+    const auto& p = releases.of;
+    const pk::PlainRelease<double> r{p[0][i], p[1][i], p[2][i], p[3][i], p[4][i],  p[5][i],
+                                     p[6][i], p[7][i], p[8][i], p[9][i], p[10][i], p[11][i]};
     const auto last = pk::Kernel<double, true, false>(r).run(0.0);
     if (found.given_up[i] != 0) continue;
     if (!last.given_up && !last.put_off &&
