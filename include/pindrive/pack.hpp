@@ -141,21 +141,21 @@ template <int N>
 struct VectorTypes;
 template <>
 struct VectorTypes<2> {
-  typedef double Number __attribute__((vector_size(16)));
-  typedef std::uint64_t Integer __attribute__((vector_size(16)));
-  typedef std::int64_t Truth __attribute__((vector_size(16)));
+  using Number __attribute__((vector_size(16))) = double;
+  using Integer __attribute__((vector_size(16))) = std::uint64_t;
+  using Truth __attribute__((vector_size(16))) = std::int64_t;
 };
 template <>
 struct VectorTypes<4> {
-  typedef double Number __attribute__((vector_size(32)));
-  typedef std::uint64_t Integer __attribute__((vector_size(32)));
-  typedef std::int64_t Truth __attribute__((vector_size(32)));
+  using Number __attribute__((vector_size(32))) = double;
+  using Integer __attribute__((vector_size(32))) = std::uint64_t;
+  using Truth __attribute__((vector_size(32))) = std::int64_t;
 };
 template <>
 struct VectorTypes<8> {
-  typedef double Number __attribute__((vector_size(64)));
-  typedef std::uint64_t Integer __attribute__((vector_size(64)));
-  typedef std::int64_t Truth __attribute__((vector_size(64)));
+  using Number __attribute__((vector_size(64))) = double;
+  using Integer __attribute__((vector_size(64))) = std::uint64_t;
+  using Truth __attribute__((vector_size(64))) = std::int64_t;
 };
 
 template <int N>
