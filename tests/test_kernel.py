@@ -41,7 +41,7 @@ def plain(count: int, seed: int) -> dict[str, Any]:
         "displacement": rng.uniform(-3e-3, 3e-3, count),
         "velocity": np.where(rng.random(count) < 0.5, mouse, rng.uniform(-0.3, 0.3, count)),
         "duration": rng.choice([0.02, 0.3, inf], count),
-        "settling_band": rng.choice([0.01, 0.05, 0.5], count),
+        "settling_band": rng.choice([0.01, 0.05, 1.0], count),
     }
 
 

@@ -48,13 +48,36 @@ struct LastState {
 };
 
 /// The numbers of MODEL.md §6 that a plain release has; what it has not is NaN.
+struct PlainNumber {
+  enum Name : signed char {
+    peak_displacement,
+    peak_time,
+    trough_displacement,
+    trough_time,
+    swing,
+    return_velocity,
+    return_velocity_time,
+    first_reversal_time,
+    settling_time,
+    plate_reversals,
+    plate_time_stuck,
+    plate_distance_slid,
+    plate_dissipated,
+    plate_peak_force,
+    finger_reversals,
+    finger_time_stuck,
+    finger_distance_slid,
+    finger_dissipated,
+    finger_peak_force,
+    duration,
+    events,
+    count
+  };
+};
 template <class V>
 struct PlainNumbers {
-  V peak_displacement, peak_time, trough_displacement, trough_time, swing;
-  V return_velocity, return_velocity_time, first_reversal_time, settling_time;
-  V plate_reversals, plate_time_stuck, plate_distance_slid, plate_dissipated, plate_peak_force;
-  V finger_reversals, finger_time_stuck, finger_distance_slid, finger_dissipated, finger_peak_force;
-  V duration, events;
+  V of[PlainNumber::count];
+  MaskOf<V> unsure;  ///< the general core is asked for the settling time
 };
 
 /// The δ in (0, π) with e^(−ρδ) (cos δ + ρ sin δ) = part: how far past its turning point an oscillation
@@ -113,7 +136,8 @@ class Kernel {
         until_(r.duration),
         band_(r.settling_band),
         x_(r.displacement * mirror_),
-        v_(r.velocity * mirror_) {
+        v_(r.velocity * mirror_),
+        start_(x_) {
     const V zero(0.0);
     drag_ = r.damping * vp_;
     per_mass_ = V(1.0) / r.mass;
@@ -139,12 +163,7 @@ class Kernel {
                   (V(least_oscillation) * omega0_squared_ < squared));
   }
 
-  /// With `rest`, where it comes to rest (NaN: not known), the settling time is among the numbers.
-  LastState<V> run(const V& rest) {
-    if constexpr (Measured) {
-      rest_ = rest * mirror_;
-      width_ = band_ * absolute(x_ - rest_);
-    }
+  LastState<V> run() {
     start();
     for (;;) {
       if constexpr (Meets) {
@@ -153,39 +172,57 @@ class Kernel {
       }
       if (any(carried_)) carry();
       if (any(falling_)) come_to_rest();
-      if (any(still_)) half_turns();
-      if (!any(rising_ | above_ | carried_ | falling_ | still_)) break;
+      if (any(still_)) decay();
+      if (!any(rising_ | above_ | carried_ | falling_)) break;
     }
     finish();
     return {x_ * mirror_, v_ * mirror_, select(resting_, t_, V(none)), given_up_, put_off_};
   }
 
-  PlainNumbers<V> numbers() const {
+  /// The same where it is known where it comes to rest. Else the slides that may be the one in which it
+  /// settles are remembered, and `full` says that there were too many.
+  LastState<V> run(const V& rest) {
+    rest_ = rest * mirror_;
+    knows_rest_ = true;
+    return run();
+  }
+  bool full() const { return full_; }
+
+  /// What `run` took on the way; the settling time only if it is asked for.
+  PlainNumbers<V> numbers(bool with_settling_time) const {
     static_assert(Measured, "numbers are taken on the way");
-    const V zero(0.0);
+    using Name = PlainNumber;
+    const V zero(0.0), period = V(0x1.921fb54442d18p+2) / omega0_;
     PlainNumbers<V> n;
-    n.peak_displacement = peak_ * mirror_;
-    n.peak_time = peak_time_;
-    n.trough_displacement = trough_ * mirror_;
-    n.trough_time = trough_time_;
-    n.swing = (peak_ - trough_) * outward_;
+    n.of[Name::peak_displacement] = peak_ * mirror_;
+    n.of[Name::peak_time] = peak_time_;
+    n.of[Name::trough_displacement] = trough_ * mirror_;
+    n.of[Name::trough_time] = trough_time_;
+    n.of[Name::swing] = (peak_ - trough_) * outward_;
     const Mask returned = zero < return_speed_;
-    n.return_velocity = select(returned, V(0.0) - outward_ * return_speed_ * mirror_, V(none));
-    n.return_velocity_time = select(returned, return_time_, V(none));
-    n.first_reversal_time = first_reversal_;
-    n.settling_time = settled_;
-    n.plate_reversals = plate_reversals_;
-    n.plate_time_stuck = plate_stuck_;
-    n.plate_distance_slid = plate_slid_;
-    n.plate_dissipated = fp_ * plate_slid_;
-    n.plate_peak_force = plate_peak_;
-    n.finger_reversals = finger_reversals_;
-    n.finger_time_stuck = finger_stuck_;
-    n.finger_distance_slid = finger_slid_;
-    n.finger_dissipated = ff_ * finger_slid_;
-    n.finger_peak_force = finger_peak_;
-    n.duration = duration_;
-    n.events = events_;
+    n.of[Name::return_velocity] =
+        select(returned, V(0.0) - outward_ * return_speed_ * mirror_, V(none));
+    n.of[Name::return_velocity_time] = select(returned, return_time_, V(none));
+    n.of[Name::first_reversal_time] = first_reversal_;
+    const V duration = select(until_ < V(__builtin_inf()), until_, larger(V(1.25) * t_, period));
+    const V left = select(resting_, duration - t_, zero), held = absolute(fp_ - stiffness_ * x_);
+    const V plate_slid = plate_slid_ + vp_ * left;
+    n.of[Name::plate_reversals] = plate_reversals_;
+    n.of[Name::plate_time_stuck] = plate_stuck_;
+    n.of[Name::plate_distance_slid] = plate_slid;
+    n.of[Name::plate_dissipated] = fp_ * plate_slid;
+    n.of[Name::plate_peak_force] = select(slid_ | resting_, larger(plate_peak_, fp_), plate_peak_);
+    n.of[Name::finger_reversals] = finger_reversals_;
+    n.of[Name::finger_time_stuck] = left;
+    n.of[Name::finger_distance_slid] = finger_slid_;
+    n.of[Name::finger_dissipated] = ff_ * finger_slid_;
+    const V sliding = select(slid_, larger(finger_peak_, ff_), finger_peak_);
+    n.of[Name::finger_peak_force] = select(resting_, larger(sliding, held), sliding);
+    n.of[Name::duration] = duration;
+    n.of[Name::events] = events_;
+    n.of[Name::settling_time] = V(none);
+    n.unsure = Mask(false);
+    if (with_settling_time) settle(n.of[Name::settling_time], n.unsure);
     return n;
   }
 
@@ -238,7 +275,7 @@ class Kernel {
     const V angle = most.angle - angle_from_turn(vp_ / most.velocity, V(0.0) - rho_);
     const Mask on = now & !too_late(now, angle * per_omega_);
     if constexpr (Measured) {
-      settles_before_turn(on);
+      remember_before_turn(on);
       consider(on, t_, v_);
     }
     slide_to(on, after(angle).position, angle * per_omega_);
@@ -262,7 +299,7 @@ class Kernel {
     const V angle = most.angle + angle_from_turn(vp_ / most.velocity, rho_);
     const Mask on = now & !too_late(now, angle * per_omega_);
     if constexpr (Measured) {
-      settles_before_turn(on);
+      remember_before_turn(on);
       consider(on, t_, v_);
       consider(on & (V(0.0) < acceleration_), t_ + most.angle * per_omega_, most.velocity);
     }
@@ -285,6 +322,7 @@ class Kernel {
     carried_late_ = carried_late_ | stays;
     const Mask on = now & !stays;
     if constexpr (Measured) {
+      remember(on, t_, V(0.0), V(0.0));
       carries(on, release, time);
       plate_peak_ = select(on, larger(plate_peak_, sp_), plate_peak_);
       events_ = events_ + select(on, V(1.0), V(0.0));
@@ -305,7 +343,7 @@ class Kernel {
     const V time = turn.angle * per_omega_;
     const Mask on = now & !too_late(now, time);
     if constexpr (Measured) {
-      settles(on, t_ + time, turn.distance, V(-1.0));
+      remember(on, t_ + time, turn.distance, V(-1.0));
       if (any(on & (turns_ == V(1.0)))) watch(on, time);
     }
     slide_to(on, centre_ + turn.distance, time);
@@ -314,31 +352,93 @@ class Kernel {
     falling_ = Mask(false);
   }
 
-  /// From rest to rest, until it stays, the time is over, or it comes up to the plate.
-  void half_turns() {
-    for (int count = 0; any(still_); ++count) {
-      const V net = fp_ - stiffness_ * x_;  // that the finger would have to hold
-      const V needed = absolute(net);
-      give_up((count < most_half_turns ? tie(needed, sf_) : Mask(true)) & still_);
-      const Mask stays = still_ & (needed <= sf_);
-      resting_ = resting_ | (stays & !given_up_);
-      still_ = still_ & !stays & !given_up_;
-      const Mask forward = V(0.0) < net;
-      centre_ = select(still_, select(forward, between_, outside_), centre_);
-      const V y = x_ - centre_, fastest = extreme_ * absolute(y);
-      acceleration_ = select(still_, V(0.0) - omega0_squared_ * y, acceleration_);
-      give_up(still_ & forward & grazes(fastest));
-      const Mask meets = still_ & forward & (vp_ < fastest);
-      still_ = still_ & !meets & !given_up_;
-      (Meets ? rising_ : put_off_) = (Meets ? rising_ : put_off_) | (meets & !given_up_);
-      still_ = still_ & !too_late(still_, half_);
-      if constexpr (Measured) {
-        settles(still_, t_, y, V(1.0));
-        consider(still_, t_ + to_extreme_, with_sign(fastest, net));
-      }
-      slide_to(still_, centre_ - shrink_ * y, half_);
-      stop(still_);
+  /// From rest to rest, each half turn shorter than the one before by the same linear law, until it
+  /// stays, the time is over, or it comes up to the plate.
+  void decay() {
+    const V zero(0.0), one(1.0), infinite(__builtin_inf());
+    // Distances from where the plate's friction and the spring cancel.
+    const V middle = fp_ * flexibility_, stick = sf_ * flexibility_;
+    const V friction = ff_ * flexibility_, loss = friction * (one + shrink_);
+    const V from = x_ - middle, first = absolute(from), second = shrink_ * first - loss;
+    const Mask forward = from < zero;
+    Mask moves = still_ & (stick < first);
+
+    // Of all half turns forward the first one is the fastest: where it does not meet the plate, none does.
+    const V ahead = select(forward, first, second), fastest = extreme_ * (ahead - friction);
+    const Mask comes = moves & (stick < ahead);
+    give_up(comes & grazes(fastest));
+    const Mask meets = comes & (vp_ < fastest);
+    V allowed = infinite;
+    if constexpr (Meets) {
+      allowed = select(meets, select(forward, zero, one), infinite);
+    } else {
+      put_off_ = put_off_ | (meets & !given_up_);
+      still_ = still_ & !meets;
+      moves = moves & !meets;
     }
+
+    const V per_half = omega_ * V(0x1.45f306dc9c883p-2);
+    const V room = (until_ - t_) * per_half, last = smaller(allowed, room) - one;
+    V w = first, before = first, n = zero, sum = zero;
+    Mask goes = moves & !given_up_ & (zero <= last);
+    for (int count = 0; any(goes); ++count) {
+      if (count == most_half_turns) {
+        give_up(goes);
+        break;
+      }
+      if constexpr (Measured) sum = select(goes, sum + w, sum);
+      before = select(goes, w, before);
+      w = select(goes, shrink_ * w - loss, w);
+      n = select(goes, n + one, n);
+      goes = goes & (stick < w) & (n <= last);
+    }
+    const V slack = V(near_tie) * size_ * flexibility_;
+    give_up(still_ & !((slack < absolute(w - stick)) & (slack < absolute(before - stick))));
+    const Mask left = still_ & (stick < w), late = left & (n < allowed);
+    const V so_far = t_ * per_half, next = n + one;
+    give_up(still_ & (zero < n) & !(V(near_tie) * (so_far + n) < absolute(room - n)));
+    give_up(late & !(V(near_tie) * (so_far + next) < absolute(room - next)));
+
+    const Mask on = still_ & !given_up_;
+    const V time = n * half_, side = with_sign(one, from);
+    const V position = select(zero < n, middle + side * one_or_minus_one(n) * w, x_);
+    const Mask rests = on & !left;
+    if constexpr (Measured) {
+      const Mask some = on & (zero < n), fresh = turns_ == zero;
+      const V third = shrink_ * second - loss;
+      peak_ = select(some & fresh, middle - side * second, peak_);
+      peak_time_ = select(some & fresh, t_ + half_, peak_time_);
+      const Mask back = on & ((fresh & (one < n)) | ((turns_ == one) & (zero < n)));
+      const V begin = t_ + select(fresh, half_, zero);
+      const V speed = extreme_ * (select(fresh, second, first) - friction);
+      const V trough = middle + side * select(fresh, third, zero - second);
+      consider_way_back(back, begin + to_extreme_,
+                        with_sign(speed, select(fresh, from, zero - from)));
+      trough_ = select(back, trough, trough_);
+      trough_time_ = select(back, begin + half_, trough_time_);
+      const V so_many = select(on, n, zero);
+      events_ = events_ + so_many;
+      finger_reversals_ = finger_reversals_ + so_many;
+      turns_ = turns_ + so_many;
+      slid_ = slid_ | some;
+      finger_slid_ = finger_slid_ + select(some, (sum - first) + (sum + w), zero);
+      plate_slid_ = plate_slid_ + select(some, vp_ * time - (position - x_), zero);
+      if constexpr (Meets) remember(some & left, t_, x_ - outside_, one, outside_);
+      last_from_ = select(rests, from, last_from_);
+      last_begin_ = select(rests, t_, last_begin_);
+      last_turns_ = select(rests, n, last_turns_);
+      last_w_ = select(rests, w, last_w_);
+    }
+    x_ = select(on, position, x_);
+    t_ = select(on, t_ + time, t_);
+    resting_ = resting_ | rests;
+    late_ = late_ | (on & late);
+    const Mask goes_on = on & left;
+    v_ = select(goes_on, zero, v_);  // which may have been −0
+    centre_ = select(goes_on, select(x_ < middle, between_, outside_), centre_);
+    acceleration_ = select(goes_on, V(0.0) - omega0_squared_ * (x_ - centre_), acceleration_);
+    if constexpr (Meets) rising_ = rising_ | (on & left & !late);
+    still_ = Mask(false);
   }
 
   /// Where it is at the end of the duration.
@@ -360,7 +460,6 @@ class Kernel {
     const V carried_to = x_ + vp_ * left;
     if constexpr (Measured) {
       carries(carried_late_, carried_to, left);
-      conclude();
     }
     x_ = select(carried_late_, carried_to, x_);
     v_ = select(carried_late_, vp_, v_);
@@ -385,6 +484,12 @@ class Kernel {
     const Mask late = which & (until_ < event);
     late_ = late_ | late;
     return late | (which & given_up_);
+  }
+
+  /// 1 of an even whole number below 2^52, −1 of an odd one.
+  static V one_or_minus_one(const V& n) {
+    const BitsOf<V> low = bits(n + V(0x1p52));
+    return from_bits<V>((low << 63) | bits(V(1.0)));
   }
 
   struct State {
@@ -479,10 +584,13 @@ class Kernel {
     peak_ = select(inward, x_, V(none));
     peak_time_ = select(inward, zero, V(none));
   }
-  /// A velocity on the way back from the peak.
+  /// A velocity, which counts on the way back from the peak.
   void consider(const Mask& which, const V& time, const V& velocity) {
+    consider_way_back(which & (turns_ == V(1.0)), time, velocity);
+  }
+  void consider_way_back(const Mask& which, const V& time, const V& velocity) {
     const V speed = V(0.0) - outward_ * velocity;
-    const Mask better = which & (turns_ == V(1.0)) & (return_speed_ < speed);
+    const Mask better = which & (return_speed_ < speed);
     return_speed_ = select(better, speed, return_speed_);
     return_time_ = select(better, time, return_time_);
   }
@@ -494,72 +602,104 @@ class Kernel {
     const V when = most.angle * per_omega_;
     consider(which & (V(0.0) < when) & (when < time), t_ + when, most.velocity);
   }
-  /// Which are outside the settling band. Without damping, turning points may lie on its edge.
-  Mask outside_band(const Mask& which) {
-    const V beyond = absolute(x_ - rest_) - width_;
-    give_up(which & (absolute(beyond) <= V(near_tie) * size_ * flexibility_));
-    return which & (V(0.0) < beyond);
-  }
   /// What is carried to a position in a time.
   void carries(const Mask& which, const V& position, const V& time) {
     const V zero(0.0);
     consider(which, t_, vp_);
-    const Mask away = outside_band(which);
-    linear_ = linear_ | away;
-    settle_time_ = select(away, t_, settle_time_);
-    settle_from_ = select(away, x_, settle_from_);
-    settle_target_ = select(away, rest_ + with_sign(width_, x_ - rest_), settle_target_);
-    strays_ = strays_ | away;
     plate_stuck_ = plate_stuck_ + select(which, time, zero);
     finger_slid_ = finger_slid_ + select(which, position - x_, zero);
     finger_peak_ = select(which, larger(finger_peak_, ff_), finger_peak_);
     const V carrying = absolute(stiffness_ * x_ + drag_ + ff_);
     plate_peak_ = select(which, larger(plate_peak_, carrying), plate_peak_);
   }
-  /// A slide that begins here outside the band and has a turning point at its start (1) or end (−1) may
-  /// be the one that enters the band for good.
-  void settles(const Mask& which, const V& turn_time, const V& distance, const V& side) {
-    const V off = x_ - rest_;
-    const Mask away = outside_band(which);
-    if (!any(away)) return;
-    linear_ = linear_ & !away;
-    settle_time_ = select(away, turn_time, settle_time_);
-    settle_from_ = select(away, distance, settle_from_);
-    settle_centre_ = select(away, centre_, settle_centre_);
-    settle_side_ = select(away, side, settle_side_);
-    settle_target_ = select(away, rest_ + with_sign(width_, off), settle_target_);
-    strays_ = strays_ | away;
-  }
+  // ---- the settling time ---------------------------------------------------------------------------
 
+  /// A slide whose turning point is at its start (side 1) or at, or beyond, its end (−1), or a stretch
+  /// that the plate carries it (0).
+  struct Slide {
+    V start, time, distance, centre,
+        side;  ///< time of the turning point, or of the start; from centre
+  };
+  void remember(const Mask& which, const V& time, const V& distance, const V& side,
+                const V& centre) {
+    const Slide slide{select(which, x_, V(none)), time, distance, centre, side};
+    if (knows_rest_)
+      weigh(slide, rest_, entry_);
+    else if (slides_ < most_slides)
+      slide_[slides_++] = slide;
+    else
+      full_ = true;
+  }
+  void remember(const Mask& which, const V& time, const V& distance, const V& side) {
+    remember(which, time, distance, side, centre_);
+  }
   /// The same of one that ends before the turn.
-  void settles_before_turn(const Mask& which) {
-    if (!any(outside_band(which))) return;
+  void remember_before_turn(const Mask& which) {
     const Turn turn = next_turn();
-    settles(which, t_ + turn.angle * per_omega_, turn.distance, V(-1.0));
+    remember(which, t_ + turn.angle * per_omega_, turn.distance, V(-1.0));
   }
 
-  void conclude() {
-    const V zero(0.0);
-    const V period = V(0x1.921fb54442d18p+2) / omega0_;
-    const V seen = larger(V(1.25) * t_, period);
-    duration_ = select(until_ < V(__builtin_inf()), until_, seen);
-    const V left = select(resting_, duration_ - t_, zero);
-    finger_stuck_ = left;
-    plate_slid_ = plate_slid_ + vp_ * left;
-    plate_peak_ = select(slid_ | resting_, larger(plate_peak_, fp_), plate_peak_);
-    finger_peak_ = select(slid_, larger(finger_peak_, ff_), finger_peak_);
-    const V held = absolute(fp_ - stiffness_ * x_);
-    finger_peak_ = select(resting_, larger(finger_peak_, held), finger_peak_);
+  /// The last slide that begins outside the band.
+  struct Entry {
+    Slide slide;
+    Mask found, unsure;
+  };
+  /// Whether an end so far off is on the edge of the band; at the start it is as far off as the width
+  /// says, however little rounding leaves of it.
+  Mask on_edge(const V& off, const V& width, const Mask& at_start) const {
+    const V slack = V(near_tie) * size_ * flexibility_;
+    return !(slack < absolute(off - width)) & !(at_start & (slack < off));
+  }
+  V width(const V& rest) const { return band_ * absolute(start_ - rest); }
+  /// Takes a slide that follows those before.
+  void weigh(const Slide& slide, const V& rest, Entry& entry) const {
+    const V off = absolute(slide.start - rest), width = this->width(rest);
+    const Mask here = slide.start == slide.start, away = here & (width < off);
+    entry.unsure = (entry.unsure & !away) | (here & on_edge(off, width, slide.start == start_));
+    entry.found = entry.found | away;
+    entry.slide.start = select(away, slide.start, entry.slide.start);
+    entry.slide.time = select(away, slide.time, entry.slide.time);
+    entry.slide.distance = select(away, slide.distance, entry.slide.distance);
+    entry.slide.centre = select(away, slide.centre, entry.slide.centre);
+    entry.slide.side = select(away, slide.side, entry.slide.side);
+  }
 
-    settled_ = select(resting_, zero, V(none));
-    const Mask entered = resting_ & strays_, turned = entered & !linear_;
-    if (any(turned)) {
-      const V part = (settle_target_ - settle_centre_) / settle_from_;
-      const V angle = angle_from_turn(select(turned, part, V(1.0)), settle_side_ * rho_);
-      settled_ = select(turned, settle_time_ + settle_side_ * angle * per_omega_, settled_);
+  /// When it comes within the band to stay there.
+  void settle(V& settled, Mask& unsure) const {
+    const V zero(0.0), one(1.0), rest = x_, width = this->width(rest);
+    Entry entry = entry_;
+    for (int i = 0; i < slides_; ++i) weigh(slide_[i], rest, entry);
+    const Slide& slide = entry.slide;
+    const V target = rest + with_sign(width, slide.start - rest);
+    V time = slide.time, side = slide.side;
+    V part = (target - slide.centre) / select(slide.distance == zero, one, slide.distance);
+    // The half turns of the last decay: what is an even number before the end is on its side.
+    const V friction = ff_ * flexibility_, loss = friction * (one + shrink_);
+    V w = absolute(last_from_), end = last_w_ * one_or_minus_one(last_turns_), n = zero;
+    V from = zero, far = w, near = end;
+    Mask found(false);
+    unsure = entry.unsure;
+    for (Mask more = resting_ & (zero < last_turns_); any(more); more = more & (n < last_turns_)) {
+      const V off = w - end;
+      const Mask away = more & (width < off);
+      unsure = (unsure & !away) | (more & on_edge(off, width, n + last_begin_ == zero));
+      found = found | away;
+      from = select(away, n, from);
+      far = select(away, w, far);
+      near = select(away, end, near);
+      w = shrink_ * w - loss;
+      end = zero - end;
+      n = n + one;
     }
-    const V by_line = settle_time_ + (settle_target_ - settle_from_) / vp_;
-    settled_ = select(entered & linear_, by_line, settled_);
+    time = select(found, last_begin_ + from * half_, time);
+    part = select(found, (near + (width - friction)) / select(found, far - friction, one), part);
+    side = select(found, one, side);
+    const Mask enters = resting_ & (found | entry.found), turned = enters & !(side == zero);
+    const V angle = angle_from_turn(select(turned, part, one), side * rho_);
+    settled = select(resting_, zero, V(none));
+    settled = select(turned, time + side * angle * per_omega_, settled);
+    settled = select(enters & !turned, time + (target - slide.start) / vp_, settled);
+    unsure = unsure & resting_;
   }
 
   // ---- what is known of a drive --------------------------------------------------------------------
@@ -574,20 +714,26 @@ class Kernel {
 
   // ---- where it is ---------------------------------------------------------------------------------
 
-  V x_, v_, t_{0.0}, centre_{0.0}, acceleration_{0.0};
+  V x_, v_, start_, t_{0.0}, centre_{0.0}, acceleration_{0.0};
   Mask still_{false}, rising_{false}, above_{false}, carried_{false}, falling_{false};
   Mask resting_{false}, late_{false}, carried_late_{false}, released_{false};
   Mask given_up_{false}, put_off_{false};
 
-  V rest_{none}, width_{none}, outward_{1.0}, turns_{0.0};
+  V outward_{1.0}, turns_{0.0};
   V peak_{none}, peak_time_{none}, trough_{none}, trough_time_{none};
-  V return_speed_{0.0}, return_time_{none}, first_reversal_{none}, settled_{none};
+  V return_speed_{0.0}, return_time_{none}, first_reversal_{none};
   V plate_reversals_{0.0}, plate_stuck_{0.0}, plate_slid_{0.0}, plate_peak_{0.0};
-  V finger_reversals_{0.0}, finger_stuck_{0.0}, finger_slid_{0.0}, finger_peak_{0.0};
-  V duration_{0.0}, events_{0.0};
-  Mask slid_{false}, strays_{false}, linear_{false};
-  V settle_time_{0.0}, settle_from_{0.0}, settle_centre_{0.0}, settle_side_{1.0};
-  V settle_target_{0.0};
+  V finger_reversals_{0.0}, finger_slid_{0.0}, finger_peak_{0.0}, events_{0.0};
+  Mask slid_{false};
+
+  V rest_{none};
+  bool knows_rest_{false}, full_{false};
+  Entry entry_{{V(none), V(0.0), V(1.0), V(0.0), V(0.0)}, Mask(false), Mask(false)};
+  static constexpr int most_slides =
+      Meets ? 8 : 2;  ///< one that meets no plate is carried, then slides
+  Slide slide_[most_slides];
+  int slides_{0};
+  V last_from_{0.0}, last_begin_{0.0}, last_turns_{0.0}, last_w_{0.0};  ///< of the last decay
 };
 
 }  // namespace PINDRIVE_TARGET

@@ -18,30 +18,9 @@ struct KernelBlock {
   /// of the processor's cache.
   static constexpr int stride = capacity + 8;
   static constexpr int inputs = 12;
-  /// Those of PlainNumbers in their order, then four of the state.
-  enum Column : signed char {
-    peak_displacement,
-    peak_time,
-    trough_displacement,
-    trough_time,
-    swing,
-    return_velocity,
-    return_velocity_time,
-    first_reversal_time,
-    settling_time,
-    plate_reversals,
-    plate_time_stuck,
-    plate_distance_slid,
-    plate_dissipated,
-    plate_peak_force,
-    finger_reversals,
-    finger_time_stuck,
-    finger_distance_slid,
-    finger_dissipated,
-    finger_peak_force,
-    duration,
-    events,
-    rest_position,
+  /// Of the output: a PlainNumber, or of the state.
+  enum State : signed char {
+    rest_position = PlainNumber::count,
     final_position,
     final_velocity,
     rest_time,
@@ -51,40 +30,49 @@ struct KernelBlock {
   double input[inputs][stride];
   double output[columns][stride];
   bool given_up[capacity];  ///< left to the general core
+  bool unsure[capacity];    ///< the same of the settling time alone, where that is asked for
 };
 
 inline namespace PINDRIVE_TARGET {
 
+/// What becomes of each release of a pack beside its numbers.
+struct Flags {
+  bool *given_up, *unsure, *put_off;
+};
+
 /// Follows the pack of releases that begins at `input`, each column `stride` after the one before. Its
-/// answers go to `output` likewise; which it gave up and which it put off, to the flags.
+/// answers go to `output` likewise.
 template <class V, bool Meets>
 void follow_pack(const double* input, double* output, std::ptrdiff_t stride, Asked asked,
-                 bool* given_up, bool* put_off) {
-  constexpr int width = Traits<V>::width, measured = KernelBlock::rest_position;
-  PlainRelease<V> release;
-  V* into = &release.mass;
-  for (int k = 0; k < KernelBlock::inputs; ++k) into[k] = load<V>(input + k * stride);
+                 const Flags& flags) {
+  const auto in = [&](std::ptrdiff_t k) { return load<V>(input + k * stride); };
+  const auto out = [&](std::ptrdiff_t k, const V& value) { store(value, output + k * stride); };
+  const PlainRelease<V> release{in(0), in(1), in(2), in(3), in(4),  in(5),
+                                in(6), in(7), in(8), in(9), in(10), in(11)};
   LastState<V> last;
-  V rest(__builtin_nan(""));
-  if (asked != Asked::numbers) {
-    last = Kernel<V, Meets, false>(release).run(rest);
-    rest = select(last.time == last.time, last.position, rest);
+  MaskOf<V> unsure(false);
+  if (asked == Asked::state) {
+    last = Kernel<V, Meets, false>(release).run();
+  } else {
+    const bool settling = asked == Asked::settling;
+    for (bool again = false;; again = true) {
+      Kernel<V, Meets, true> kernel(release);
+      last = again ? kernel.run(last.position) : kernel.run();
+      if (settling && kernel.full()) continue;
+      const PlainNumbers<V> numbers = kernel.numbers(settling);
+      for (int k = 0; k < PlainNumber::count; ++k) out(k, numbers.of[k]);
+      unsure = numbers.unsure;
+      break;
+    }
   }
-  if (asked != Asked::state) {
-    Kernel<V, Meets, true> kernel(release);
-    last = kernel.run(rest);
-    const PlainNumbers<V> numbers = kernel.numbers();
-    const V* from = &numbers.peak_displacement;
-    for (int k = 0; k < measured; ++k) store(from[k], output + k * stride);
-  }
-  const V resting = select(last.time == last.time, last.position, last.time);
-  store(resting, output + KernelBlock::rest_position * stride);
-  store(last.position, output + KernelBlock::final_position * stride);
-  store(last.velocity, output + KernelBlock::final_velocity * stride);
-  store(last.time, output + KernelBlock::rest_time * stride);
-  for (int i = 0; i < width; ++i) {
-    given_up[i] = answer(last.given_up, i);
-    put_off[i] = answer(last.put_off, i) && !given_up[i];
+  out(KernelBlock::rest_position, select(last.time == last.time, last.position, last.time));
+  out(KernelBlock::final_position, last.position);
+  out(KernelBlock::final_velocity, last.velocity);
+  out(KernelBlock::rest_time, last.time);
+  for (int i = 0; i < Traits<V>::width; ++i) {
+    flags.given_up[i] = answer(last.given_up, i);
+    flags.unsure[i] = answer(unsure, i);
+    flags.put_off[i] = answer(last.put_off, i) && !flags.given_up[i];
   }
 }
 
@@ -106,22 +94,23 @@ void follow_block(KernelBlock& block, int count, Asked asked) {
   repeat_last(block.input, count - 1, whole(count));
   for (int first = 0; first < count; first += width) {
     follow_pack<V, false>(&block.input[0][first], &block.output[0][first], KernelBlock::stride,
-                          asked, &block.given_up[first], put_off);
+                          asked, {&block.given_up[first], &block.unsure[first], put_off});
     for (int i = 0; i < width && first + i < count; ++i)
       if (put_off[i]) later[number++] = first + i;
   }
   double input[KernelBlock::inputs][width], output[KernelBlock::columns][width];
-  bool given_up[width];
+  bool given_up[width], unsure[width];
   const int from = asked == Asked::state ? KernelBlock::rest_position : 0;
   for (int first = 0; first < number; first += width) {
     const int size = number - first < width ? number - first : width;
     for (int i = 0; i < width; ++i)
       for (int k = 0; k < KernelBlock::inputs; ++k)
         input[k][i] = block.input[k][later[first + (i < size ? i : size - 1)]];
-    follow_pack<V, true>(&input[0][0], &output[0][0], width, asked, given_up, put_off);
+    follow_pack<V, true>(&input[0][0], &output[0][0], width, asked, {given_up, unsure, put_off});
     for (int i = 0; i < size; ++i) {
       const int slot = later[first + i];
       block.given_up[slot] = given_up[i];
+      block.unsure[slot] = unsure[i];
       for (int k = from; k < KernelBlock::columns; ++k) block.output[k][slot] = output[k][i];
     }
   }

@@ -39,6 +39,7 @@ struct Summary : pd::Summary<double> {
 };
 using Ledger = pd::Ledger<double>;
 using Block = pd::detail::KernelBlock;
+using pd::detail::PlainNumber;
 
 constexpr std::size_t share = Block::capacity;  // points that a thread takes at a time
 constexpr std::size_t keep = 1U << 12;          // segments that a thread keeps room for
@@ -156,23 +157,25 @@ struct Number {
 
 constexpr Number<Summary> numbers[] = {
     {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; },
-     Block::peak_displacement},
+     PlainNumber::peak_displacement},
     {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; },
-     Block::peak_time},
+     PlainNumber::peak_time},
     {"transient.trough_displacement",
-     [](const Summary& s) { return s.transient.trough_displacement; }, Block::trough_displacement},
+     [](const Summary& s) { return s.transient.trough_displacement; },
+     PlainNumber::trough_displacement},
     {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; },
-     Block::trough_time},
-    {"transient.swing", [](const Summary& s) { return s.transient.swing; }, Block::swing},
+     PlainNumber::trough_time},
+    {"transient.swing", [](const Summary& s) { return s.transient.swing; }, PlainNumber::swing},
     {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; },
-     Block::return_velocity},
+     PlainNumber::return_velocity},
     {"transient.return_velocity_time",
      [](const Summary& s) { return s.transient.return_velocity_time; },
-     Block::return_velocity_time},
+     PlainNumber::return_velocity_time},
     {"transient.first_reversal_time",
-     [](const Summary& s) { return s.transient.first_reversal_time; }, Block::first_reversal_time},
+     [](const Summary& s) { return s.transient.first_reversal_time; },
+     PlainNumber::first_reversal_time},
     {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; },
-     Block::settling_time},
+     PlainNumber::settling_time},
     {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; },
      Block::rest_time},
     {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; },
@@ -180,32 +183,33 @@ constexpr Number<Summary> numbers[] = {
     {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
     {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
     {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; },
-     Block::plate_reversals},
+     PlainNumber::plate_reversals},
     {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; },
-     Block::plate_time_stuck},
+     PlainNumber::plate_time_stuck},
     {"transient.plate.distance_slid",
-     [](const Summary& s) { return s.transient.plate.distance_slid; }, Block::plate_distance_slid},
+     [](const Summary& s) { return s.transient.plate.distance_slid; },
+     PlainNumber::plate_distance_slid},
     {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; },
-     Block::plate_dissipated},
+     PlainNumber::plate_dissipated},
     {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; },
-     Block::plate_peak_force},
+     PlainNumber::plate_peak_force},
     {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; },
-     Block::finger_reversals},
+     PlainNumber::finger_reversals},
     {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; },
-     Block::finger_time_stuck},
+     PlainNumber::finger_time_stuck},
     {"transient.finger.distance_slid",
      [](const Summary& s) { return s.transient.finger.distance_slid; },
-     Block::finger_distance_slid},
+     PlainNumber::finger_distance_slid},
     {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; },
-     Block::finger_dissipated},
+     PlainNumber::finger_dissipated},
     {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; },
-     Block::finger_peak_force},
+     PlainNumber::finger_peak_force},
     {"ending.position", [](const Summary& s) { return s.transient.end_position; },
      Block::rest_position},
     {"ending.steady_since", [](const Summary& s) { return s.transient.steady_since; }},
     {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
     {"ending.period", [](const Summary& s) { return s.outcome.period; }},
-    {"duration", [](const Summary& s) { return s.duration; }, Block::duration},
+    {"duration", [](const Summary& s) { return s.duration; }, PlainNumber::duration},
     {"final.position", [](const Summary& s) { return s.final_position; }, Block::final_position},
     {"final.velocity", [](const Summary& s) { return s.final_velocity; }, Block::final_velocity},
 };
@@ -240,7 +244,7 @@ struct Row {
     using pd::detail::Asked;
     if (!number || number->column == no_column || number->column >= Block::rest_position)
       return Asked::state;
-    return number->column == Block::settling_time ? Asked::settling : Asked::numbers;
+    return number->column == PlainNumber::settling_time ? Asked::settling : Asked::numbers;
   }
 };
 
@@ -394,7 +398,7 @@ class Batch {
     }
     if (events_.size() == 0) return;
     for (std::size_t i = 0; i < count; ++i)
-      events_[first + i] = static_cast<std::int32_t>(block.output[Block::events][i]);
+      events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
   }
 
   void leave_out(std::size_t i, std::int8_t status) {
