@@ -26,12 +26,13 @@ inline constexpr double least_oscillation = 0.02;
 /// Half turns that are followed; each costs a few operations, of a whole pack if one drive needs it.
 inline constexpr int most_half_turns = 4096;
 
-/// What goes in, SI units. Both contacts have friction and are rigid.
+/// What goes in, SI units. Both contacts have friction and are rigid; others are given up.
 template <class V>
 struct PlainRelease {
   V mass, stiffness, damping;       ///< kg, N/m, N s/m
   V plate_kinetic, plate_static;    ///< N
   V finger_kinetic, finger_static;  ///< N
+  V finger_stiffness;               ///< N/m
   V mouse_velocity;                 ///< m/s
   V displacement, velocity;         ///< x(0), x'(0): m, m/s
   V duration;                       ///< s; infinite: until it rests
@@ -159,8 +160,8 @@ class Kernel {
     outside_ = (fp_ + ff_) * flexibility_;
     const V reach = absolute(x_) + (absolute(v_) + vp_) * per_omega_;
     size_ = stiffness_ * reach + fp_ + sp_ + ff_ + sf_ + drag_ + r.damping * absolute(v_);
-    given_up_ = !((zero < vp_) & (zero < sp_) & (zero < sf_) &
-                  (V(least_oscillation) * omega0_squared_ < squared));
+    given_up_ = !((r.finger_stiffness == V(__builtin_inf())) & (zero < vp_) & (zero < sp_) &
+                  (zero < sf_) & (V(least_oscillation) * omega0_squared_ < squared));
   }
 
   LastState<V> run() {

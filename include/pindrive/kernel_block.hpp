@@ -17,7 +17,7 @@ struct KernelBlock {
   /// From a column to the next: not a power of two, which would put all columns in the same few sets
   /// of the processor's cache.
   static constexpr int stride = capacity + 8;
-  static constexpr int inputs = 12;
+  static constexpr int inputs = 13;
   /// Of the output: a PlainNumber, or of the state.
   enum State : signed char {
     rest_position = PlainNumber::count,
@@ -47,8 +47,8 @@ void follow_pack(const double* input, double* output, std::ptrdiff_t stride, Ask
                  const Flags& flags) {
   const auto in = [&](std::ptrdiff_t k) { return load<V>(input + k * stride); };
   const auto out = [&](std::ptrdiff_t k, const V& value) { store(value, output + k * stride); };
-  const PlainRelease<V> release{in(0), in(1), in(2), in(3), in(4),  in(5),
-                                in(6), in(7), in(8), in(9), in(10), in(11)};
+  const PlainRelease<V> release{in(0), in(1), in(2), in(3),  in(4),  in(5), in(6),
+                                in(7), in(8), in(9), in(10), in(11), in(12)};
   LastState<V> last;
   MaskOf<V> unsure(false);
   if (asked == Asked::state) {

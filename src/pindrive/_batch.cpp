@@ -46,7 +46,7 @@ constexpr std::size_t keep = 1U << 12;          // segments that a thread keeps 
 
 // ---- in ------------------------------------------------------------------------------------------
 
-/// The arguments of a point, in the order of `inputs` below.
+/// The arguments of a point, in the order of `inputs` below and of the kernel's blocks.
 enum : std::size_t {
   mass,
   stiffness,
@@ -63,12 +63,9 @@ enum : std::size_t {
   settling_band,
   input_count
 };
+static_assert(input_count == Block::inputs, "the kernel takes them all");
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
-/// Of a number: the least and the largest that are allowed, and one beside them or NaN.
-using Interval = std::array<double, 3>;
-/// Of the arguments, then of the damping ratio and of the phase.
-using Bounds = std::array<Interval, input_count + 2>;
 using Point = std::array<double, input_count>;
 
 /// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
@@ -90,46 +87,20 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
     for (std::size_t k = 0; k < input_count; ++k) {
       const double* from = inputs[k].data() + offset[k];
       const std::int64_t stride = axes == 0 ? 0 : inputs[k].stride(axes - 1);
-      for (std::size_t i = 0; i < run; ++i)
-        columns[k][done + i] = from[static_cast<std::int64_t>(i) * stride];
+      double* to = columns[k] + done;
+      if (stride == 1)
+        std::copy_n(from, run, to);
+      else if (stride == 0)
+        std::fill_n(to, run, *from);
+      else
+        for (std::size_t i = 0; i < run; ++i) to[i] = from[static_cast<std::int64_t>(i) * stride];
     }
     done += run;
   }
 }
 
-constexpr std::int8_t first_bad = static_cast<std::int8_t>(pd::Status::standstill) + 1;
-
-/// 0, or the flag of the first bound that a point breaks: those of its arguments, a static friction
-/// below the kinetic one, and those of what they make together.
-void judge(const double (*given)[Block::stride], std::size_t count, const Bounds& bounds,
-           std::int8_t* status) {
-  std::fill_n(status, count, std::int8_t{0});
-  const auto mark = [&](std::size_t flag, auto&& good) {
-    bool all = true;
-    for (std::size_t i = 0; i < count; ++i) all = all & good(i);
-    if (all) return;
-    for (std::size_t i = 0; i < count; ++i)
-      if (status[i] == 0 && !good(i)) status[i] = static_cast<std::int8_t>(first_bad + flag);
-  };
-  const auto within = [](double value, const Interval& bound) {
-    return ((bound[0] <= value) & (value <= bound[1])) | (value == bound[2]);
-  };
-  for (std::size_t k = 0; k < input_count; ++k)
-    mark(k, [&, column = given[k], bound = bounds[k]](std::size_t i) {
-      return within(column[i], bound);
-    });
-  for (const auto k : {plate_static, finger_static})
-    mark(k, [&](std::size_t i) { return given[k][i] >= given[k - 1][i]; });
-  mark(input_count, [&, bound = bounds[input_count]](std::size_t i) {
-    const double critical = 2 * std::sqrt(given[mass][i]) * std::sqrt(given[stiffness][i]);
-    return within(given[damping][i] / critical, bound);
-  });
-  mark(input_count + 1, [&, bound = bounds[input_count + 1]](std::size_t i) {
-    const double length = given[duration][i];
-    const double rate = std::sqrt(given[stiffness][i] / given[mass][i]);
-    return length == std::numeric_limits<double>::infinity() || within(rate * length, bound);
-  });
-}
+/// The status of a point that breaks the first bound is one more; then those of the others.
+constexpr auto last_failure = static_cast<std::int8_t>(pd::Status::standstill);
 
 pd::Drive<double> drive_of(const Point& p) {
   return {p[mass],
@@ -271,7 +242,7 @@ class Column {
 class Batch {
  public:
   /// A point that breaks a bound is left out, and marked.
-  Batch(const Inputs& inputs, const Bounds& bounds, const std::vector<std::string>& outputs,
+  Batch(const Inputs& inputs, const pe::Bounds& bounds, const std::vector<std::string>& outputs,
         bool events, const pe::KernelFunctions& kernel)
       : inputs_(inputs),
         bounds_(bounds),
@@ -329,8 +300,7 @@ class Batch {
  private:
   /// What a thread works with.
   struct Space {
-    double given[input_count][Block::stride];
-    std::int8_t status[Block::capacity];
+    signed char broken[Block::capacity];
     Block block;
     std::vector<pd::Segment<double>> segments;
   };
@@ -349,37 +319,38 @@ class Batch {
       if (first >= size()) return;
       const std::size_t count = std::min(share, size() - first);
       if (!go_on(count)) return;
-      points(inputs_, first, count, space->given);
-      judge(space->given, count, bounds_, space->status);
-      by_kernel(first, count, *space);
+      Block& block = space->block;
+      points(inputs_, first, count, block.input);
+      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
+      const bool followed = by_kernel(first, count, block);
+      if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
-        if (space->status[i] != 0) {
-          leave_out(first + i, space->status[i]);
+        if (space->broken[i] != 0) {
+          leave_out(first + i, static_cast<std::int8_t>(last_failure + space->broken[i]));
           continue;
         }
-        // The kernel knows rigid fingers alone.
-        const bool general =
-            space->block.given_up[i] ||
-            space->given[finger_stiffness][i] < std::numeric_limits<double>::infinity();
-        if (!general && !energy_) continue;
+        const Left left = left_by_kernel(block, i);
+        if (left == Left::nothing && !energy_) continue;
         if (!go_on(1)) return;
         Point p;
-        for (std::size_t k = 0; k < input_count; ++k) p[k] = space->given[k][i];
-        by_general_core(first + i, p, general, space->segments, [&] { return go_on(1); });
+        for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
+        by_general_core(first + i, p, left, space->segments, [&] { return go_on(1); });
         if (space->segments.capacity() > keep)
           std::vector<pd::Segment<double>>().swap(space->segments);
       }
     }
   }
 
-  /// All points of a share; those that the kernel gives up are overwritten.
-  void by_kernel(std::size_t first, std::size_t count, Space& space) {
-    constexpr std::size_t of[Block::inputs] = {
-        mass,          stiffness,      damping,      plate_kinetic, plate_static, finger_kinetic,
-        finger_static, mouse_velocity, displacement, velocity,      duration,     settling_band};
-    Block& block = space.block;
-    for (std::size_t k = 0; k < Block::inputs; ++k)
-      std::copy_n(space.given[of[k]], count, block.input[k]);
+  /// What the general core has to find of a point.
+  enum class Left : signed char { nothing, settling_time, all };
+  static Left left_by_kernel(const Block& block, std::size_t i) {
+    if (block.given_up[i]) return Left::all;
+    return block.unsure[i] ? Left::settling_time : Left::nothing;
+  }
+
+  /// All points of a share; what the kernel leaves to the general core is overwritten. Whether there is
+  /// nothing.
+  bool by_kernel(std::size_t first, std::size_t count, Block& block) {
     kernel_.follow(block, static_cast<int>(count), asked_);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].number) continue;
@@ -390,15 +361,19 @@ class Batch {
       else
         std::copy_n(block.output[column], count, row);
     }
+    constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
+    constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
+    bool followed = true;
     for (std::size_t i = 0; i < count; ++i) {
       const double since = block.output[Block::rest_time][i];
       status_[first + i] = static_cast<std::int8_t>(pd::Status::ok);
-      ending_[first + i] =
-          static_cast<std::int8_t>(since == since ? pd::End::resting : pd::End::moving);
+      ending_[first + i] = since == since ? resting : moving;
+      followed = followed & !block.given_up[i] & !block.unsure[i];
     }
-    if (events_.size() == 0) return;
-    for (std::size_t i = 0; i < count; ++i)
-      events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
+    if (events_.size() > 0)
+      for (std::size_t i = 0; i < count; ++i)
+        events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
+    return followed;
   }
 
   void leave_out(std::size_t i, std::int8_t status) {
@@ -409,9 +384,9 @@ class Batch {
       numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// One point, or its energies alone.
+  /// One point, or what is left of it, and its energies.
   template <class GoOn>
-  void by_general_core(std::size_t i, const Point& p, bool numbers,
+  void by_general_core(std::size_t i, const Point& p, Left left,
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
     const pd::Drive<double> drive = drive_of(p);
     const pd::Inputs<double> inputs = inputs_of(p);
@@ -420,17 +395,23 @@ class Batch {
         pd::summarise(drive, inputs, p[settling_band], segments, go_on);
     const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
                                     summary.outcome);
-    if (numbers) {
+    if (left != Left::nothing) {
       ++general_;
       const auto [segment, tau] = motion.locate(summary.duration, pd::Side::left);
       const auto moved = segment->after(tau);
       summary.final_position = segment->flow.position.at(moved, tau);
       summary.final_velocity = segment->flow.velocity.at(moved, tau);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const Number<Summary>* number = rows_[k].number;
+        if (!number) continue;
+        if (left == Left::all || number->column == PlainNumber::settling_time)
+          numbers_[k * size() + i] = number->of(summary);
+      }
+    }
+    if (left == Left::all) {
       status_[i] = static_cast<std::int8_t>(summary.outcome.status);
       ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
       if (events_.size() > 0) events_[i] = static_cast<std::int32_t>(summary.events);
-      for (std::size_t k = 0; k < rows_.size(); ++k)
-        if (rows_[k].number) numbers_[k * size() + i] = rows_[k].number->of(summary);
     }
     if (!energy_) return;
     const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
@@ -439,7 +420,7 @@ class Batch {
   }
 
   const Inputs& inputs_;
-  const Bounds& bounds_;
+  const pe::Bounds& bounds_;
   std::size_t size_;
   const std::vector<std::string>& names_;
   std::vector<Row> rows_;
@@ -460,7 +441,7 @@ const pe::KernelFunctions& kernel_for(int width) {
   return *found;
 }
 
-nb::dict simulate_batch(const Inputs& inputs, const Bounds& bounds, std::size_t threads,
+nb::dict simulate_batch(const Inputs& inputs, const pe::Bounds& bounds, std::size_t threads,
                         const std::vector<std::string>& outputs, bool events, int width) {
   Batch batch(inputs, bounds, outputs, events, kernel_for(width));
   Interrupt interrupt;

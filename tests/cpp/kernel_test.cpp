@@ -79,22 +79,23 @@ Releases drawn(std::size_t size, unsigned seed, bool wide) {
                         plate,
                         finger,
                         finger,
+                        inf,
                         uniform(20e-3, 0.3),
                         uniform(0.5e-3, 3e-3),
                         0,
                         0.3,
                         pd::settling_band};
-    p[9] = p[7];
+    p[10] = p[8];
     if (wide) {
       if (one_in(2)) p[4] *= uniform(1, 2);
       if (one_in(2)) p[6] *= uniform(1, 2);
-      if (one_in(2)) p[7] = -p[7];
       if (one_in(2)) p[8] = -p[8];
-      if (one_in(10)) p[8] *= 10;
-      p[9] = one_in(3) ? p[7] : one_in(3) ? 0 : uniform(-0.3, 0.3);
-      p[10] = one_in(3) ? 0.3 : one_in(2) ? inf : one_in(2) ? 0.05 : 1e-3;
-      if (one_in(50)) p[7] = 0;
-      if (one_in(3)) p[11] = one_in(9) ? 1 : std::exp(uniform(std::log(1e-4), 0));
+      if (one_in(2)) p[9] = -p[9];
+      if (one_in(10)) p[9] *= 10;
+      p[10] = one_in(3) ? p[8] : one_in(3) ? 0 : uniform(-0.3, 0.3);
+      p[11] = one_in(3) ? 0.3 : one_in(2) ? inf : one_in(2) ? 0.05 : 1e-3;
+      if (one_in(50)) p[8] = 0;
+      if (one_in(3)) p[12] = one_in(9) ? 1 : std::exp(uniform(std::log(1e-4), 0));
     }
     for (int j = 0; j < inputs; ++j) all.of[j].push_back(p[j]);
   }
@@ -146,8 +147,9 @@ bool agree(const Answers& one, const Answers& other, int from, const char* how) 
 bool at_once(const Releases& releases, const Answers& found) {
   for (std::size_t i = 0; i < releases.size(); ++i) {
     const auto& p = releases.of;
-    const pk::PlainRelease<double> r{p[0][i], p[1][i], p[2][i], p[3][i], p[4][i],  p[5][i],
-                                     p[6][i], p[7][i], p[8][i], p[9][i], p[10][i], p[11][i]};
+    const pk::PlainRelease<double> r{p[0][i],  p[1][i],  p[2][i], p[3][i], p[4][i],
+                                     p[5][i],  p[6][i],  p[7][i], p[8][i], p[9][i],
+                                     p[10][i], p[11][i], p[12][i]};
     const auto last = pk::Kernel<double, true, false>(r).run();
     if (found.given_up[i] != 0) continue;
     if (!last.given_up && !last.put_off &&
@@ -163,7 +165,7 @@ bool at_once(const Releases& releases, const Answers& found) {
 
 bool plain(const Releases& r, std::size_t i) {
   const double ratio = r.of[2][i] / (2 * std::sqrt(r.of[0][i] * r.of[1][i]));
-  return r.of[4][i] > 0 && r.of[6][i] > 0 && r.of[7][i] != 0 && ratio < 0.98;
+  return r.of[4][i] > 0 && r.of[6][i] > 0 && r.of[8][i] != 0 && ratio < 0.98;
 }
 
 bool beside_core(const Releases& releases, const Answers& found, bool wide) {
@@ -174,8 +176,8 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide) {
     double p[inputs];
     for (int j = 0; j < inputs; ++j) p[j] = releases.of[j][i];
     const pd::Drive<double> drive{p[0], p[1], p[2], {p[3], p[4]}, {p[5], p[6]}};
-    const pd::Inputs<double> release{p[7], p[8], p[9], p[10]};
-    const auto s = pd::summarise(drive, release, p[11], segments);
+    const pd::Inputs<double> release{p[8], p[9], p[10], p[11]};
+    const auto s = pd::summarise(drive, release, p[12], segments);
     if (found.given_up[i] != 0) {
       ++given_up;
       if (!plain(releases, i)) {
@@ -220,9 +222,9 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide) {
                                    last[1],
                                    t.rest_time};
     const double rate = std::sqrt(p[1] / p[0]);
-    const double reach = std::abs(p[8]) + (std::abs(p[7]) + std::abs(p[9])) / rate;
+    const double reach = std::abs(p[9]) + (std::abs(p[8]) + std::abs(p[10])) / rate;
     const double slid = reach + t.plate.distance_slid + t.finger.distance_slid;
-    const double largest = p[1] * reach + p[2] * std::abs(p[7]) + p[3] + p[5];
+    const double largest = p[1] * reach + p[2] * std::abs(p[8]) + p[3] + p[5];
     const double sizes[] = {reach, slid,    rate * reach,         1 / rate + s.duration,
                             1,     largest, (p[3] + p[5]) * slid, 1};
     // An event at a velocity that all but grazes the plate's keeps half of its digits.
