@@ -88,9 +88,10 @@ V angle_from_turn(const V& part, const V& rho) {
   using Mask = MaskOf<V>;
   const V zero(0.0), pi(0x1.921fb54442d18p+1);
   const V scale = V(1.0) + rho * rho, lack = larger(V(1.0) - part, zero);
-  // Of the first two terms of its power series.
+  // Of the first terms of its power series.
   const V arc = root(V(2.0) * lack / scale);
-  const V arched = arc * (V(1.0) + lack * V(1.0 / 12)) * (V(1.0) + rho * arc * V(1.0 / 3));
+  const V bend_of_arc = rho * rho * V(11.0 / 72) + (V(1.0 / 24) + arc * arc * V(3.0 / 640));
+  const V arched = arc * (V(1.0) + arc * (rho * V(1.0 / 3) + arc * bend_of_arc));
   V low = zero, high = pi;
   V angle = select((zero < arched) & (arched < V(3.0)), arched, V(1.5));
   Mask open = zero < lack;
@@ -259,6 +260,7 @@ class Kernel {
       const Extreme most = extreme_velocity(V(1.0));
       give_up(speeding & grazes(most.velocity));
       rising_ = speeding & (vp_ < most.velocity) & !given_up_;
+      rise_ = most;
       falling_ = falling_ & !rising_ & !given_up_;
     }
     if constexpr (!Meets) {
@@ -272,7 +274,7 @@ class Kernel {
   /// Sliding forward, it comes up to the plate.
   void meet_plate() {
     const Mask now = rising_;
-    const Extreme most = extreme_velocity(V(1.0));
+    const Extreme most = rise_;
     const V angle = most.angle - angle_from_turn(vp_ / most.velocity, V(0.0) - rho_);
     const Mask on = now & !too_late(now, angle * per_omega_);
     if constexpr (Measured) {
@@ -438,7 +440,12 @@ class Kernel {
     v_ = select(goes_on, zero, v_);  // which may have been −0
     centre_ = select(goes_on, select(x_ < middle, between_, outside_), centre_);
     acceleration_ = select(goes_on, V(0.0) - omega0_squared_ * (x_ - centre_), acceleration_);
-    if constexpr (Meets) rising_ = rising_ | (on & left & !late);
+    if constexpr (Meets) {
+      const Mask rises = on & left & !late;
+      rising_ = rising_ | rises;
+      rise_.angle = select(rises, to_extreme_ * omega_, rise_.angle);
+      rise_.velocity = select(rises, fastest, rise_.velocity);
+    }
     still_ = Mask(false);
   }
 
@@ -720,6 +727,8 @@ class Kernel {
   Mask resting_{false}, late_{false}, carried_late_{false}, released_{false};
   Mask given_up_{false}, put_off_{false};
 
+  Extreme rise_{V(1.0), V(1.0)};  ///< of a velocity that comes up to the plate's
+
   V outward_{1.0}, turns_{0.0};
   V peak_{none}, peak_time_{none}, trough_{none}, trough_time_{none};
   V return_speed_{0.0}, return_time_{none}, first_reversal_{none};
@@ -731,7 +740,7 @@ class Kernel {
   bool knows_rest_{false}, full_{false};
   Entry entry_{{V(none), V(0.0), V(1.0), V(0.0), V(0.0)}, Mask(false), Mask(false)};
   static constexpr int most_slides =
-      Meets ? 8 : 2;  ///< one that meets no plate is carried, then slides
+      Meets ? 16 : 2;  ///< one that meets no plate is carried, then slides
   Slide slide_[most_slides];
   int slides_{0};
   V last_from_{0.0}, last_begin_{0.0}, last_turns_{0.0}, last_w_{0.0};  ///< of the last decay

@@ -1,6 +1,6 @@
-/// Packs of 2, 4 or 8 numbers that are computed with as one, and the same operations for a number.
+/// Packs of 2, 4, 8 or 16 numbers that are computed with as one, and the same operations for a number.
 ///
-/// A pack is a vector register where the compiler targets one that holds it, else an array. Every
+/// A pack is a vector register where the compiler targets one that holds it, else two halves. Every
 /// operation rounds as that of a single double does, so a text that is written with these gives the
 /// same bits for a number, for a pack of any width, and for a GPU thread.
 #pragma once
@@ -16,7 +16,7 @@ using uint64_t = unsigned long long;
 }  // namespace std
 #endif
 
-#ifdef PINDRIVE_PLAIN_PACKS  // arrays alone, as for a compiler without vector extensions
+#ifdef PINDRIVE_PLAIN_PACKS  // numbers alone, as for a compiler without vector extensions
 #elif defined(__AVX512F__) && defined(__GNUC__)
 #include <immintrin.h>
 #define PINDRIVE_VECTOR_LANES 8
@@ -41,96 +41,114 @@ inline namespace PINDRIVE_TARGET {
 
 // ---- how a pack is held ------------------------------------------------------------------------
 
-/// As an array.
+/// As a number by itself.
+struct ScalarLanes {
+  using Number = double;
+  using Integer = std::uint64_t;
+  using Truth = bool;
+
+  static Number all(double a) { return a; }
+  static Integer all(std::uint64_t a) { return a; }
+  static Number add(Number a, Number b) { return a + b; }
+  static Number subtract(Number a, Number b) { return a - b; }
+  static Number multiply(Number a, Number b) { return a * b; }
+  static Number divide(Number a, Number b) { return a / b; }
+  static Number root(Number a) { return std::sqrt(a); }
+  static Truth less(Number a, Number b) { return a < b; }
+  static Truth less_equal(Number a, Number b) { return a <= b; }
+  static Truth equal(Number a, Number b) { return a == b; }
+  static Number choose(Truth t, Number a, Number b) { return t ? a : b; }
+  static Truth both(Truth a, Truth b) { return a && b; }
+  static Truth either(Truth a, Truth b) { return a || b; }
+  static Truth opposite(Truth a) { return !a; }
+  static Truth truth(bool a) { return a; }
+  static bool any(Truth a) { return a; }
+  static bool at(Truth a, int) { return a; }
+  static Integer plus(Integer a, Integer b) { return a + b; }
+  static Integer minus(Integer a, Integer b) { return a - b; }
+  static Integer conjunction(Integer a, Integer b) { return a & b; }
+  static Integer disjunction(Integer a, Integer b) { return a | b; }
+  static Integer difference(Integer a, Integer b) { return a ^ b; }
+  static Integer left(Integer a, int count) { return a << count; }
+  static Integer right(Integer a, int count) { return a >> count; }
+};
+
 template <int N>
-struct ArrayLanes {
+struct LanesOf;
+
+/// As two packs of half the width.
+template <int N>
+struct PairLanes {
+  using Half = typename LanesOf<N / 2>::type;
   struct Number {
-    double lane[N];
+    typename Half::Number low, high;
   };
   struct Integer {
-    std::uint64_t lane[N];
+    typename Half::Integer low, high;
   };
   struct Truth {
-    bool lane[N];
+    typename Half::Truth low, high;
   };
 
-  template <class Result, class Operation>
-  static Result each(Operation&& operation) {
-    Result result;
-    for (int i = 0; i < N; ++i) result.lane[i] = operation(i);
-    return result;
-  }
-  static Number all(double a) {
-    return each<Number>([&](int) { return a; });
-  }
-  static Integer all(std::uint64_t a) {
-    return each<Integer>([&](int) { return a; });
-  }
+  static Number all(double a) { return {Half::all(a), Half::all(a)}; }
+  static Integer all(std::uint64_t a) { return {Half::all(a), Half::all(a)}; }
   static Number add(const Number& a, const Number& b) {
-    return each<Number>([&](int i) { return a.lane[i] + b.lane[i]; });
+    return {Half::add(a.low, b.low), Half::add(a.high, b.high)};
   }
   static Number subtract(const Number& a, const Number& b) {
-    return each<Number>([&](int i) { return a.lane[i] - b.lane[i]; });
+    return {Half::subtract(a.low, b.low), Half::subtract(a.high, b.high)};
   }
   static Number multiply(const Number& a, const Number& b) {
-    return each<Number>([&](int i) { return a.lane[i] * b.lane[i]; });
+    return {Half::multiply(a.low, b.low), Half::multiply(a.high, b.high)};
   }
   static Number divide(const Number& a, const Number& b) {
-    return each<Number>([&](int i) { return a.lane[i] / b.lane[i]; });
+    return {Half::divide(a.low, b.low), Half::divide(a.high, b.high)};
   }
-  static Number root(const Number& a) {
-    return each<Number>([&](int i) { return std::sqrt(a.lane[i]); });
-  }
+  static Number root(const Number& a) { return {Half::root(a.low), Half::root(a.high)}; }
   static Truth less(const Number& a, const Number& b) {
-    return each<Truth>([&](int i) { return a.lane[i] < b.lane[i]; });
+    return {Half::less(a.low, b.low), Half::less(a.high, b.high)};
   }
   static Truth less_equal(const Number& a, const Number& b) {
-    return each<Truth>([&](int i) { return a.lane[i] <= b.lane[i]; });
+    return {Half::less_equal(a.low, b.low), Half::less_equal(a.high, b.high)};
   }
   static Truth equal(const Number& a, const Number& b) {
-    return each<Truth>([&](int i) { return a.lane[i] == b.lane[i]; });
+    return {Half::equal(a.low, b.low), Half::equal(a.high, b.high)};
   }
   static Number choose(const Truth& t, const Number& a, const Number& b) {
-    return each<Number>([&](int i) { return t.lane[i] ? a.lane[i] : b.lane[i]; });
+    return {Half::choose(t.low, a.low, b.low), Half::choose(t.high, a.high, b.high)};
   }
   static Truth both(const Truth& a, const Truth& b) {
-    return each<Truth>([&](int i) { return a.lane[i] && b.lane[i]; });
+    return {Half::both(a.low, b.low), Half::both(a.high, b.high)};
   }
   static Truth either(const Truth& a, const Truth& b) {
-    return each<Truth>([&](int i) { return a.lane[i] || b.lane[i]; });
+    return {Half::either(a.low, b.low), Half::either(a.high, b.high)};
   }
-  static Truth opposite(const Truth& a) {
-    return each<Truth>([&](int i) { return !a.lane[i]; });
-  }
-  static Truth truth(bool a) {
-    return each<Truth>([&](int) { return a; });
-  }
-  static bool any(const Truth& a) {
-    bool found = false;
-    for (int i = 0; i < N; ++i) found = found || a.lane[i];
-    return found;
-  }
-  static bool at(const Truth& a, int i) { return a.lane[i]; }
+  static Truth opposite(const Truth& a) { return {Half::opposite(a.low), Half::opposite(a.high)}; }
+  static Truth truth(bool a) { return {Half::truth(a), Half::truth(a)}; }
   static Integer plus(const Integer& a, const Integer& b) {
-    return each<Integer>([&](int i) { return a.lane[i] + b.lane[i]; });
+    return {Half::plus(a.low, b.low), Half::plus(a.high, b.high)};
   }
   static Integer minus(const Integer& a, const Integer& b) {
-    return each<Integer>([&](int i) { return a.lane[i] - b.lane[i]; });
+    return {Half::minus(a.low, b.low), Half::minus(a.high, b.high)};
   }
   static Integer conjunction(const Integer& a, const Integer& b) {
-    return each<Integer>([&](int i) { return a.lane[i] & b.lane[i]; });
+    return {Half::conjunction(a.low, b.low), Half::conjunction(a.high, b.high)};
   }
   static Integer disjunction(const Integer& a, const Integer& b) {
-    return each<Integer>([&](int i) { return a.lane[i] | b.lane[i]; });
+    return {Half::disjunction(a.low, b.low), Half::disjunction(a.high, b.high)};
   }
   static Integer difference(const Integer& a, const Integer& b) {
-    return each<Integer>([&](int i) { return a.lane[i] ^ b.lane[i]; });
+    return {Half::difference(a.low, b.low), Half::difference(a.high, b.high)};
   }
   static Integer left(const Integer& a, int count) {
-    return each<Integer>([&](int i) { return a.lane[i] << count; });
+    return {Half::left(a.low, count), Half::left(a.high, count)};
   }
   static Integer right(const Integer& a, int count) {
-    return each<Integer>([&](int i) { return a.lane[i] >> count; });
+    return {Half::right(a.low, count), Half::right(a.high, count)};
+  }
+  static bool any(const Truth& a) { return Half::any(Half::either(a.low, a.high)); }
+  static bool at(const Truth& a, int i) {
+    return i < N / 2 ? Half::at(a.low, i) : Half::at(a.high, i - N / 2);
   }
 };
 
@@ -246,7 +264,11 @@ struct MaskedLanes : VectorLanes<8> {
 
 template <int N>
 struct LanesOf {
-  using type = ArrayLanes<N>;
+  using type = PairLanes<N>;
+};
+template <>
+struct LanesOf<1> {
+  using type = ScalarLanes;
 };
 #ifdef PINDRIVE_VECTOR_LANES
 template <>

@@ -308,9 +308,16 @@ def _warn(name: str, given: Values) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
     quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
     seen = quantity.seen
+    if seen is None or not values.size:
+        return
+    ends = float(values.min()), float(values.max())
+    if ends[0] * ends[1] > 0.0 and all(
+        abs(end) in seen and end in quantity.bounds and end in quantity.limits for end in ends
+    ):
+        return  # nothing beyond, without a look at each
     good = _within(quantity.bounds, values) & _within(quantity.limits, values) & np.isfinite(values)
     sizes = np.abs(values[good])
-    if seen is None or not sizes.size:
+    if not sizes.size:
         return
     for size in (sizes.max(), sizes.min()):
         if float(size) not in seen:
