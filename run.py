@@ -263,7 +263,9 @@ def cpp_files() -> list[Path]:
 def clang_tidy() -> int:
     """The core's headers, as the programs that use them instantiate them."""
     programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] == "tests"]
-    return run("clang-tidy", "--quiet", *programs, "--", "-std=c++17", "-Iinclude")
+    return run(
+        "clang-tidy", "--quiet", *programs, "--", "-std=c++17", "-Iinclude", "-Isrc/pindrive"
+    )
 
 
 def installed_stub() -> Path:

@@ -1,9 +1,11 @@
 """Throughput of pindrive beside a compiled Moreau-Jean stepper, on one thread, in one run.
 
-Both are timed twice: keeping nothing but the last state (of pindrive the core alone, by
-build/cpp/core), and with numbers: all that `simulate_batch` gives, and what the stepper
-(racing/moreau_jean.py) can measure of them on the way. Its error is the largest |x - x_exact| over
-its steps, as a part of the release displacement.
+Both are timed twice: keeping nothing but the last state, and with numbers: all that
+`simulate_batch` gives, and what the stepper (racing/moreau_jean.py) can measure of them on the way.
+Its error is the largest |x - x_exact| over its steps, as a part of the release displacement.
+
+A table follows of the kernel in packs of every width that the processor has, with the share of
+drives that it left to the general core. Where build/cpp/core is built, that core is timed alone.
 """
 
 from __future__ import annotations
@@ -14,13 +16,16 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numba
 import numpy as np
 
 from pindrive import Contact, Drive, Motion, simulate, simulate_batch
+from pindrive._core import kernel_widths
+from pindrive._core import simulate_batch as by_core
+from pindrive.motion import batch
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
@@ -69,9 +74,10 @@ def exact_errors(drives: Floats, count: int = 31) -> Floats:
 
 
 def seconds(call: Callable[[], object]) -> float:
-    begin = perf_counter()
+    """Of the processor, which other programs do not add to; one thread alone works."""
+    begin = process_time()
     call()
-    return perf_counter() - begin
+    return process_time() - begin
 
 
 def core_alone(program: Path, count: int) -> Callable[[], float]:
@@ -84,9 +90,35 @@ def core_alone(program: Path, count: int) -> Callable[[], float]:
     return run
 
 
+STATE = ("final_position", "final_velocity")
+
+
+def width_table(points: dict[str, Any], rounds: int) -> None:
+    """A drive's time by the kernel of each width, to the last state and with all numbers."""
+    count = len(points["mass"])
+    same = {"plate_static": "plate_kinetic", "finger_static": "finger_kinetic"}
+    given = {name: points[of] for name, of in same.items()} | {"velocity": points["mouse_velocity"]}
+    given |= points | {"finger_stiffness": np.inf, "duration": DURATION, "settling_band": 0.05}
+    arrays = [np.broadcast_to(np.asarray(given[k], np.float64), count) for k in batch._ARGUMENTS]
+    state = [batch._NUMBERS[name] for name in STATE]
+    numbers = [*batch._USUAL.values()]
+    print(f"\n{'packs of':>10}{'last state':>16}{'all numbers':>16}{'general core':>16}")
+    for width in kernel_widths():
+
+        def took(names: list[str], events: bool, width: int = width) -> float:
+            def once() -> float:
+                return seconds(lambda: by_core(arrays, batch._BOUNDS, 1, names, events, width))
+
+            return median(once() for _ in range(rounds)) / count
+
+        share = by_core(arrays, batch._BOUNDS, 1, numbers, True, width)["general"] / count
+        times = (1e9 * took(state, False), 1e9 * took(numbers, True))
+        print(f"{width:10}{times[0]:13.1f} ns{times[1]:13.1f} ns{100.0 * share:14.4f} %")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=1 << 16, help="drives; a sweep's chunk")
+    parser.add_argument("--count", type=int, default=1 << 18, help="drives")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--step", type=float, default=1e-4, help="of the stepper, s")
     parser.add_argument("--rounds", type=int, default=15, help="timings of which the median counts")
@@ -98,7 +130,7 @@ def main() -> None:
     points = drawn(given.count, given.seed)
     drives = columns(points)
     steps = round(DURATION / given.step)
-    fewer = drives[:, : max(1, given.count // 20)]  # the stepper is slow
+    fewer = drives[:, : max(1, given.count // 80)]  # the stepper is slow
     states, table = np.empty((fewer.shape[1], 2)), np.empty((fewer.shape[1], 15))
     arguments: dict[str, Any] = {**points, "duration": DURATION, "threads": 1}
     last_states(fewer[:, :1], given.step, steps, states)
@@ -112,6 +144,9 @@ def main() -> None:
         "stepper, with its numbers": lambda: of_stepper(numbers, table),
         "simulate_batch, all numbers": lambda: (
             seconds(lambda: simulate_batch(**arguments)) / given.count
+        ),
+        "simulate_batch, last state": lambda: (
+            seconds(lambda: simulate_batch(**arguments, outputs=STATE)) / given.count
         ),
     }
     if given.core.exists():
@@ -131,12 +166,15 @@ def main() -> None:
     ours = took["simulate_batch, all numbers"]
     like = took["stepper, with its numbers"] / ours
     bare = took["stepper, last state alone"] / ours
-    print(f"\nall numbers by both: {like:.1f} times; by simulate_batch alone: {bare:.1f} times")
+    least = took["stepper, last state alone"] / took["simulate_batch, last state"]
+    print(f"\nlast state alone by both: {least:.1f} times")
+    print(f"all numbers by both: {like:.1f} times; by simulate_batch alone: {bare:.1f} times")
     if "core, last state alone" in took:
-        least = took["stepper, last state alone"] / took["core, last state alone"]
-        print(f"last state alone by both: {least:.1f} times")
+        general = took["stepper, last state alone"] / took["core, last state alone"]
+        print(f"last state alone, by the general core: {general:.1f} times")
+    width_table(points, given.rounds)
     coarse, fine = stepper_errors(drives[:, :500], given.step, steps), exact_errors(drives[:, :20])
-    print(f"stepper's error: median {np.median(coarse):.1e}, largest {coarse.max():.1e} of 500")
+    print(f"\nstepper's error: median {np.median(coarse):.1e}, largest {coarse.max():.1e} of 500")
     print(f"pindrive's error against thirty digits: largest {fine.max():.1e} of 20")
 
 

@@ -2,39 +2,51 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <future>
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "_kernel.hpp"
 #include "interrupt.hpp"
 #include "pindrive/batch.hpp"
 #include "pindrive/energy.hpp"
 
 namespace nb = nanobind;
 namespace pd = pindrive;
+namespace pe = pindrive_extension;
 using nb::literals::operator""_a;
 
 namespace {
 
-using Summary = pd::Summary<double>;
+/// Of one point: all its numbers, and where it is in the end.
+struct Summary : pd::Summary<double> {
+  double final_position, final_velocity;
+};
 using Ledger = pd::Ledger<double>;
+using Block = pd::detail::KernelBlock;
+using pd::detail::PlainNumber;
 
-constexpr std::size_t share = 32;       // points that a thread takes at a time
-constexpr std::size_t keep = 1U << 12;  // segments that a thread keeps room for
+constexpr std::size_t share = Block::capacity;  // points that a thread takes at a time
+constexpr std::size_t keep = 1U << 12;          // segments that a thread keeps room for
 
 // ---- in ------------------------------------------------------------------------------------------
 
-/// The arguments of a point, in the order of `inputs` below.
+/// The arguments of a point, in the order of `inputs` below and of the kernel's blocks.
 enum : std::size_t {
   mass,
   stiffness,
@@ -51,24 +63,44 @@ enum : std::size_t {
   settling_band,
   input_count
 };
+static_assert(input_count == Block::inputs, "the kernel takes them all");
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
-using Statuses = nb::ndarray<const std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Point = std::array<double, input_count>;
 
-/// Point i, in C order, of arrays that have one shape; along an axis an array may stand still.
-Point point(const Inputs& inputs, std::size_t i) {
-  std::array<std::int64_t, input_count> offset{};
-  for (std::size_t axis = inputs[0].ndim(); axis-- > 0;) {
-    const auto length = inputs[0].shape(axis);
-    const auto index = static_cast<std::int64_t>(i % length);
-    i /= length;
-    for (std::size_t k = 0; k < input_count; ++k) offset[k] += index * inputs[k].stride(axis);
+/// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
+/// array may stand still.
+void points(const Inputs& inputs, std::size_t first, std::size_t count,
+            double (*columns)[Block::stride]) {
+  const std::size_t axes = inputs[0].ndim();
+  const std::size_t along = axes == 0 ? 1 : inputs[0].shape(axes - 1);
+  for (std::size_t done = 0; done < count;) {
+    // As far as the last axis goes.
+    std::array<std::int64_t, input_count> offset{};
+    std::size_t rest = first + done;
+    for (std::size_t axis = axes; axis-- > 0;) {
+      const auto index = static_cast<std::int64_t>(rest % inputs[0].shape(axis));
+      rest /= inputs[0].shape(axis);
+      for (std::size_t k = 0; k < input_count; ++k) offset[k] += index * inputs[k].stride(axis);
+    }
+    const std::size_t run = std::min(count - done, along - (first + done) % along);
+    for (std::size_t k = 0; k < input_count; ++k) {
+      const double* from = inputs[k].data() + offset[k];
+      const std::int64_t stride = axes == 0 ? 0 : inputs[k].stride(axes - 1);
+      double* to = columns[k] + done;
+      if (stride == 1)
+        std::copy_n(from, run, to);
+      else if (stride == 0)
+        std::fill_n(to, run, *from);
+      else
+        for (std::size_t i = 0; i < run; ++i) to[i] = from[static_cast<std::int64_t>(i) * stride];
+    }
+    done += run;
   }
-  Point found;
-  for (std::size_t k = 0; k < input_count; ++k) found[k] = inputs[k].data()[offset[k]];
-  return found;
 }
+
+/// The status of a point that breaks the first bound is one more; then those of the others.
+constexpr auto last_failure = static_cast<std::int8_t>(pd::Status::inconsistent);
 
 pd::Drive<double> drive_of(const Point& p) {
   return {p[mass],
@@ -84,47 +116,73 @@ pd::Inputs<double> inputs_of(const Point& p) {
 
 // ---- out -----------------------------------------------------------------------------------------
 
-/// A number that is read off a summary or a ledger.
+constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
+
+/// A number that is read off a summary or a ledger, or a column of the kernel's.
 template <class Source>
 struct Number {
   const char* name;  ///< in the table of quantities
   double (*of)(const Source&);
+  int column = no_column;
 };
 
 constexpr Number<Summary> numbers[] = {
-    {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; }},
-    {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; }},
+    {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; },
+     PlainNumber::peak_displacement},
+    {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; },
+     PlainNumber::peak_time},
     {"transient.trough_displacement",
-     [](const Summary& s) { return s.transient.trough_displacement; }},
-    {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; }},
-    {"transient.swing", [](const Summary& s) { return s.transient.swing; }},
-    {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; }},
+     [](const Summary& s) { return s.transient.trough_displacement; },
+     PlainNumber::trough_displacement},
+    {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; },
+     PlainNumber::trough_time},
+    {"transient.swing", [](const Summary& s) { return s.transient.swing; }, PlainNumber::swing},
+    {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; },
+     PlainNumber::return_velocity},
     {"transient.return_velocity_time",
-     [](const Summary& s) { return s.transient.return_velocity_time; }},
+     [](const Summary& s) { return s.transient.return_velocity_time; },
+     PlainNumber::return_velocity_time},
     {"transient.first_reversal_time",
-     [](const Summary& s) { return s.transient.first_reversal_time; }},
-    {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; }},
-    {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; }},
-    {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; }},
+     [](const Summary& s) { return s.transient.first_reversal_time; },
+     PlainNumber::first_reversal_time},
+    {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; },
+     PlainNumber::settling_time},
+    {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; },
+     Block::rest_time},
+    {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; },
+     Block::rest_time},  // the event is that it comes to rest
     {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
     {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
-    {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; }},
-    {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; }},
+    {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; },
+     PlainNumber::plate_reversals},
+    {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; },
+     PlainNumber::plate_time_stuck},
     {"transient.plate.distance_slid",
-     [](const Summary& s) { return s.transient.plate.distance_slid; }},
-    {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; }},
-    {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; }},
-    {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; }},
-    {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; }},
+     [](const Summary& s) { return s.transient.plate.distance_slid; },
+     PlainNumber::plate_distance_slid},
+    {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; },
+     PlainNumber::plate_dissipated},
+    {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; },
+     PlainNumber::plate_peak_force},
+    {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; },
+     PlainNumber::finger_reversals},
+    {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; },
+     PlainNumber::finger_time_stuck},
     {"transient.finger.distance_slid",
-     [](const Summary& s) { return s.transient.finger.distance_slid; }},
-    {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; }},
-    {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; }},
-    {"ending.position", [](const Summary& s) { return s.transient.end_position; }},
+     [](const Summary& s) { return s.transient.finger.distance_slid; },
+     PlainNumber::finger_distance_slid},
+    {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; },
+     PlainNumber::finger_dissipated},
+    {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; },
+     PlainNumber::finger_peak_force},
+    {"ending.position", [](const Summary& s) { return s.transient.end_position; },
+     Block::rest_position},
     {"ending.steady_since", [](const Summary& s) { return s.transient.steady_since; }},
     {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
     {"ending.period", [](const Summary& s) { return s.outcome.period; }},
-    {"duration", [](const Summary& s) { return s.duration; }},
+    {"duration", [](const Summary& s) { return s.duration; }, PlainNumber::duration},
+    {"final.position", [](const Summary& s) { return s.final_position; }, Block::final_position},
+    {"final.velocity", [](const Summary& s) { return s.final_velocity; }, Block::final_velocity},
 };
 constexpr Number<Ledger> energies[] = {
     {"energy.kinetic_start", [](const Ledger& l) { return l.kinetic_start; }},
@@ -140,7 +198,26 @@ constexpr Number<Ledger> energies[] = {
     {"energy.finger_dissipated", [](const Ledger& l) { return l.finger_dissipated; }},
     {"energy.residual", [](const Ledger& l) { return l.residual(); }},
 };
-constexpr std::size_t number_count = std::size(numbers), energy_count = std::size(energies);
+/// A row of the results: one of those tables.
+struct Row {
+  const Number<Summary>* number{nullptr};
+  const Number<Ledger>* energy{nullptr};
+
+  explicit Row(const std::string& name) {
+    for (const auto& each : numbers)
+      if (name == each.name) number = &each;
+    for (const auto& each : energies)
+      if (name == each.name) energy = &each;
+    if (!number && !energy) throw std::invalid_argument("there is no number " + name);
+  }
+  /// What the kernel must be asked for it.
+  pd::detail::Asked asked() const {
+    using pd::detail::Asked;
+    if (!number || number->column == no_column || number->column >= Block::rest_position)
+      return Asked::state;
+    return number->column == PlainNumber::settling_time ? Asked::settling : Asked::numbers;
+  }
+};
 
 /// A column of flags or counts over all points, each of which is written once.
 template <class T>
@@ -148,6 +225,7 @@ class Column {
  public:
   explicit Column(std::size_t size) : values_(new T[size]), size_(size) {}
   T& operator[](std::size_t i) { return values_[i]; }
+  std::size_t size() const { return size_; }
   nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig> array() {
     T* values = values_.release();
     const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });
@@ -163,30 +241,39 @@ class Column {
 
 class Batch {
  public:
-  /// A point whose status is not 0 is bad: it is left out, and marked.
-  Batch(const Inputs& inputs, const Statuses& given, bool energy)
+  /// A point that breaks a bound is left out, and marked.
+  Batch(const Inputs& inputs, const pe::Bounds& bounds, const std::vector<std::string>& outputs,
+        bool events, const pe::KernelFunctions& kernel)
       : inputs_(inputs),
-        given_(given),
-        energy_(energy),
+        bounds_(bounds),
+        size_(size_of(inputs)),
+        names_(outputs),
+        rows_(outputs.begin(), outputs.end()),
+        asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
+        kernel_(kernel),
         // One block, which NumPy asks the system for in large pages.
-        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(rows(), size()))),
+        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(rows_.size(), size()))),
         numbers_(nb::cast<nb::ndarray<double, nb::c_contig, nb::device::cpu>>(block_).data()),
         status_(size()),
         ending_(size()),
-        events_(size()) {}
+        events_(events ? size() : 0) {
+    for (const Row& row : rows_) {
+      asked_ = std::max(asked_, row.asked());
+      energy_ = energy_ || row.energy;
+    }
+  }
 
-  std::size_t size() const { return given_.size(); }
-  std::size_t rows() const { return number_count + (energy_ ? energy_count : 0); }
+  std::size_t size() const { return size_; }
 
   /// Works all points off with so many threads, of which the caller's is one and alone looks for an
   /// interrupt; when it finds one, all of them stop.
   void run(std::size_t threads, Interrupt& interrupt) {
-    const auto go_on = [&] { return !stopped_.load(std::memory_order_relaxed); };
+    const auto go_on = [&](std::size_t) { return !stopped_.load(std::memory_order_relaxed); };
     std::vector<std::future<void>> others;
     try {
       while (others.size() + 1 < std::min(threads, size() / share + 1))
         others.push_back(std::async(std::launch::async, [this, go_on] { work(go_on); }));
-      work([&] { return interrupt.go_on(); });
+      work([&](std::size_t done) { return interrupt.go_on(done); });
     } catch (...) {
       stopped_ = true;
       throw;
@@ -199,78 +286,164 @@ class Batch {
     }
   }
 
+  /// The columns; and how many points the general core followed.
   nb::dict table() {
     nb::dict columns;
-    for (std::size_t k = 0; k < rows(); ++k)
-      columns[k < number_count ? numbers[k].name : energies[k - number_count].name] = block_[k];
+    for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = block_[k];
     columns["status"] = status_.array();
     columns["ending"] = ending_.array();
-    columns["events"] = events_.array();
+    if (events_.size() > 0 || size() == 0) columns["events"] = events_.array();
+    columns["general"] = general_.load();
     return columns;
   }
 
  private:
+  /// What a thread works with.
+  struct Space {
+    signed char broken[Block::capacity];
+    Block block;
+    std::vector<pd::Segment<double>> segments;
+  };
+
+  static std::size_t size_of(const Inputs& inputs) {
+    std::size_t size = 1;
+    for (std::size_t axis = 0; axis < inputs[0].ndim(); ++axis) size *= inputs[0].shape(axis);
+    return size;
+  }
+
   template <class GoOn>
   void work(GoOn go_on) {
-    std::vector<pd::Segment<double>> segments;
+    const auto space = std::make_unique<Space>();
     for (;;) {
       const std::size_t first = next_.fetch_add(share);
       if (first >= size()) return;
-      for (std::size_t i = first; i < std::min(first + share, size()); ++i) {
-        if (!go_on()) return;
-        settle(i, segments, go_on);
-        if (segments.capacity() > keep) std::vector<pd::Segment<double>>().swap(segments);
+      const std::size_t count = std::min(share, size() - first);
+      if (!go_on(count)) return;
+      Block& block = space->block;
+      points(inputs_, first, count, block.input);
+      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
+      const bool followed = by_kernel(first, count, block);
+      if (good && followed && !energy_) continue;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (space->broken[i] != 0) {
+          leave_out(first + i, static_cast<std::int8_t>(last_failure + space->broken[i]));
+          continue;
+        }
+        const Left left = left_by_kernel(block, i);
+        if (left == Left::nothing && !energy_) continue;
+        if (!go_on(1)) return;
+        Point p;
+        for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
+        by_general_core(first + i, p, left, space->segments, [&] { return go_on(1); });
+        if (space->segments.capacity() > keep)
+          std::vector<pd::Segment<double>>().swap(space->segments);
       }
     }
   }
 
-  template <class GoOn>
-  void settle(std::size_t i, std::vector<pd::Segment<double>>& segments, GoOn go_on) {
-    if (given_.data()[i] != 0) {
-      status_[i] = given_.data()[i];
-      ending_[i] = -1;
-      events_[i] = 0;
-      for (std::size_t k = 0; k < rows(); ++k)
-        numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
-      return;
-    }
-    const Point p = point(inputs_, i);
-    const pd::Drive<double> drive = drive_of(p);
-    const pd::Inputs<double> inputs = inputs_of(p);
-    const Summary summary = pd::summarise(drive, inputs, p[settling_band], segments, go_on);
-    status_[i] = static_cast<std::int8_t>(summary.outcome.status);
-    ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
-    events_[i] = static_cast<std::int32_t>(summary.events);
-    write(numbers, summary, numbers_ + i, std::make_index_sequence<number_count>{});
-    if (!energy_) return;
-    const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
-                                    summary.outcome);
-    write(energies, pd::energy_ledger(motion, summary.duration, summary.transient, go_on),
-          numbers_ + number_count * size() + i, std::make_index_sequence<energy_count>{});
+  /// What the general core has to find of a point.
+  enum class Left : signed char { nothing, settling_time, all };
+  static Left left_by_kernel(const Block& block, std::size_t i) {
+    if (block.given_up[i]) return Left::all;
+    return block.unsure[i] ? Left::settling_time : Left::nothing;
   }
 
-  /// Each number to its own row, one below the other.
-  template <class Source, std::size_t count, std::size_t... k>
-  void write(const Number<Source> (&of)[count], const Source& source, double* first,
-             std::index_sequence<k...>) {
-    const std::size_t stride = size();
-    ((first[k * stride] = of[k].of(source)), ...);
+  /// All points of a share; what the kernel leaves to the general core is overwritten. Whether there is
+  /// nothing.
+  bool by_kernel(std::size_t first, std::size_t count, Block& block) {
+    kernel_.follow(block, static_cast<int>(count), asked_);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (!rows_[k].number) continue;
+      const int column = rows_[k].number->column;
+      double* row = numbers_ + k * size() + first;
+      if (column == no_column)
+        std::fill_n(row, count, std::numeric_limits<double>::quiet_NaN());
+      else
+        std::copy_n(block.output[column], count, row);
+    }
+    constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
+    constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
+    bool followed = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double since = block.output[Block::rest_time][i];
+      status_[first + i] = static_cast<std::int8_t>(pd::Status::ok);
+      ending_[first + i] = since == since ? resting : moving;
+      followed = followed & !block.given_up[i] & !block.unsure[i];
+    }
+    if (events_.size() > 0)
+      for (std::size_t i = 0; i < count; ++i)
+        events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
+    return followed;
+  }
+
+  void leave_out(std::size_t i, std::int8_t status) {
+    status_[i] = status;
+    ending_[i] = -1;
+    if (events_.size() > 0) events_[i] = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// One point, or what is left of it, and its energies.
+  template <class GoOn>
+  void by_general_core(std::size_t i, const Point& p, Left left,
+                       std::vector<pd::Segment<double>>& segments, GoOn go_on) {
+    const pd::Drive<double> drive = drive_of(p);
+    const pd::Inputs<double> inputs = inputs_of(p);
+    Summary summary{};
+    static_cast<pd::Summary<double>&>(summary) =
+        pd::summarise(drive, inputs, p[settling_band], segments, go_on);
+    const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
+                                    summary.outcome);
+    if (left != Left::nothing) {
+      ++general_;
+      const auto [segment, tau] = motion.locate(summary.duration, pd::Side::left);
+      const auto moved = segment->after(tau);
+      summary.final_position = segment->flow.position.at(moved, tau);
+      summary.final_velocity = segment->flow.velocity.at(moved, tau);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const Number<Summary>* number = rows_[k].number;
+        if (!number) continue;
+        if (left == Left::all || number->column == PlainNumber::settling_time)
+          numbers_[k * size() + i] = number->of(summary);
+      }
+    }
+    if (left == Left::all) {
+      status_[i] = static_cast<std::int8_t>(summary.outcome.status);
+      ending_[i] = static_cast<std::int8_t>(summary.outcome.end);
+      if (events_.size() > 0) events_[i] = static_cast<std::int32_t>(summary.events);
+    }
+    if (!energy_) return;
+    const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (rows_[k].energy) numbers_[k * size() + i] = rows_[k].energy->of(ledger);
   }
 
   const Inputs& inputs_;
-  const Statuses& given_;
-  bool energy_;
+  const pe::Bounds& bounds_;
+  std::size_t size_;
+  const std::vector<std::string>& names_;
+  std::vector<Row> rows_;
+  pd::detail::Asked asked_;
+  bool energy_{false};
+  const pe::KernelFunctions& kernel_;
   nb::object block_;
   double* numbers_;  ///< its rows are the columns
   Column<std::int8_t> status_, ending_;
   Column<std::int32_t> events_;
-  std::atomic<std::size_t> next_{0};
+  std::atomic<std::size_t> next_{0}, general_{0};
   std::atomic<bool> stopped_{false};
 };
 
-nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_t threads,
-                        bool energy) {
-  Batch batch(inputs, status, energy);
+const pe::KernelFunctions& kernel_for(int width) {
+  const pe::KernelFunctions* found = pe::kernel_of(width);
+  if (!found) throw std::invalid_argument("this processor has no kernel of that width");
+  return *found;
+}
+
+nb::dict simulate_batch(const Inputs& inputs, const pe::Bounds& bounds, std::size_t threads,
+                        const std::vector<std::string>& outputs, bool events, int width) {
+  Batch batch(inputs, bounds, outputs, events, kernel_for(width));
   Interrupt interrupt;
   {
     const nb::gil_scoped_release unlocked;
@@ -280,15 +453,42 @@ nb::dict simulate_batch(const Inputs& inputs, const Statuses& status, std::size_
   return batch.table();
 }
 
+// ---- the kernel by itself ------------------------------------------------------------------------
+
+std::vector<int> kernel_widths() {
+  std::vector<int> widths;
+  for (const pe::KernelFunctions* each = pe::kernels(); each->width != 0; ++each)
+    widths.push_back(each->width);
+  return widths;
+}
+
+using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, const Numbers& a,
+                                                                     const Numbers& b, int width) {
+  Column<double> found(a.size());
+  if (a.size() > 0) kernel_for(width).elementary(which, a.data(), b.data(), &found[0], a.size());
+  return found.array();
+}
+
 }  // namespace
 
 void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
   m.def(
-      "simulate_batch", &simulate_batch, "inputs"_a, "status"_a, "threads"_a, "energy"_a,
-      "Columns of numbers, one row for each point of the inputs in C order: arrays of one shape "
-      "(mass, stiffness, damping, plate kinetic and static, finger kinetic, static and "
-      "stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose "
-      "status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.");
+      "simulate_batch", &simulate_batch, "inputs"_a, "bounds"_a, "threads"_a, "outputs"_a,
+      "events"_a, "width"_a = 0,
+      "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
+      "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
+      "static and stiffness, mouse velocity, displacement, velocity, duration, settling band). A "
+      "point that breaks one of the bounds (the least value, the largest, and one beside them or "
+      "NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its "
+      "status says which, its numbers are NaN. The column of events is there if asked for; "
+      "`general` says how many points the general core followed. The kernel works in packs of "
+      "`width`; 0: the widest.");
+  m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
+  m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
+        "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "
+        "the angle of the points (b, a), by the kernel of a width.");
 }

@@ -108,9 +108,17 @@ def differentiate(numbers: tuple[float, float, float, tuple[float, float, float,
     The derivatives of a motion along a direction; both as the arguments of simulate.
     """
 
-def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], threads: int, energy: bool) -> dict:
+def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], bounds: Sequence[Sequence[float]], threads: int, outputs: Sequence[str], events: bool, width: int = 0) -> dict:
     """
-    Columns of numbers, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration, settling band). A point whose status is not 0 is left out: its numbers are NaN. With `energy` the ledger's terms too.
+    Columns of the numbers named in outputs, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration, settling band). A point that breaks one of the bounds (the least value, the largest, and one beside them or NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its status says which, its numbers are NaN. The column of events is there if asked for; `general` says how many points the general core followed. The kernel works in packs of `width`; 0: the widest.
+    """
+
+def kernel_widths() -> list[int]:
+    """The widths of the kernel that this processor runs."""
+
+def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], b: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], width: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+    """
+    Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or the angle of the points (b, a), by the kernel of a width.
     """
 
 settling_band: float = 0.05

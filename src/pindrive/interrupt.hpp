@@ -8,9 +8,11 @@
 /// Looks for a signal that Python has not handled yet, now and then; only the main thread finds any.
 class Interrupt {
  public:
-  /// Whether to go on; called without Python's lock, once a segment, panel or point.
-  bool go_on() {
-    if (++calls_ % between_looks != 0) return !found_;
+  /// Whether to go on; called without Python's lock, after so many segments, panels or points.
+  bool go_on(std::size_t done = 1) {
+    done_ += done;
+    if (done_ < between_looks) return !found_;
+    done_ = 0;
     return look();
   }
   /// The same, looking at once.
@@ -24,7 +26,7 @@ class Interrupt {
  private:
   static constexpr std::size_t between_looks = 1U << 14;  // some milliseconds
 
-  std::size_t calls_{0};
+  std::size_t done_{0};  ///< since the last look
   bool found_{false};
 };
 

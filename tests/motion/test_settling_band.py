@@ -73,9 +73,10 @@ def test_many_points_have_the_band_of_each() -> None:
             for band in bands
         ]
         expected = [motion.transient.settling_time for motion in motions]
-        assert found.transient_settling_time.values.tolist() == expected
+        assert found.transient_settling_time.values.tolist() == pytest.approx(expected, rel=1e-12)
         assert expected == sorted(expected, reverse=True) and expected[0] > expected[-1]
-        assert found.duration.values.tolist() == [motion.duration for motion in motions]
+        durations = [motion.duration for motion in motions]
+        assert found.duration.values.tolist() == pytest.approx(durations, rel=1e-13)
         assert found.settling_band.attrs["symbol"] == "ε"
     bad = simulate_batch(
         **PIN,
@@ -195,7 +196,8 @@ def test_a_sweep_uses_it(how: str) -> None:
             data.mouse_velocity.values, data.transient_settling_time.values.ravel(), strict=True
         ):
             motion = motion_of(load(EXAMPLE, [f"mouse_velocity={float(speed)!r} m/s"]))
-            assert time == motion.settling_time(0.02) > motion.settling_time(0.05)
+            assert time == pytest.approx(motion.settling_time(0.02), rel=1e-12)
+            assert time > motion.settling_time(0.05)
     assert run("map", "study.nc", "-o", "map.svg").exit_code == 0
     assert "ε" in Path("map.svg").read_text("utf-8")
 
@@ -241,7 +243,8 @@ def test_a_swept_band_and_slow_devices() -> None:
         motion = motion_of(load(device))
         with xr.open_dataset("study.nc", decode_timedelta=False) as data:
             expected = [motion.settling_time(band) for band in (0.01, 0.2)]
-            assert data.transient_settling_time.values.tolist() == expected
+            found = data.transient_settling_time.values.tolist()
+            assert found == pytest.approx(expected, rel=1e-12)
 
 
 def test_scans_have_no_part_in_it() -> None:

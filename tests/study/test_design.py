@@ -158,7 +158,7 @@ def test_a_sobol_sample_is_scipys_sequence() -> None:
 # ---- numbers of the points -----------------------------------------------------------------------
 
 
-def test_one_by_one_is_the_batch_bit_for_bit(tmp_path: Path) -> None:
+def test_one_by_one_is_the_batch(tmp_path: Path) -> None:
     """A device that takes the slow way gives the numbers that the batch gives of its like."""
     axes = """
         [axes]
@@ -185,8 +185,10 @@ def test_one_by_one_is_the_batch_bit_for_bit(tmp_path: Path) -> None:
     good = one["status"] == 0
     assert good.any() and not good.all()
     assert (good == (two["status"] == 0)).all()
-    for name in (*MEASURED, "transient_settled", "ending", "events"):
+    for name in ("transient_settled", "ending", "events"):
         np.testing.assert_array_equal(one[name][good], two[name][good], err_msg=name)
+    for name in MEASURED:  # the batch rounds in another order
+        np.testing.assert_allclose(one[name][good], two[name][good], 1e-11, 1e-15, err_msg=name)
     assert not two["transient_settled"][~good].any()
     assert np.isnan(two["transient_swing"][~good]).all()
 

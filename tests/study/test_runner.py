@@ -54,7 +54,9 @@ def test_numbers_are_those_of_simulate() -> None:
                 for name, value in numbers.items():
                     variable = name.replace(".", "_")
                     if variable in data:
-                        np.testing.assert_array_equal(at[variable], value, err_msg=name)
+                        np.testing.assert_allclose(
+                            at[variable], value, rtol=1e-9, atol=1e-15, err_msg=name
+                        )
                 assert at.events == len(motion.events)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import inf
+from difflib import get_close_matches
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -12,10 +13,11 @@ from pindrive.lazy import xr
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
+from pindrive.quantities.results import ENDING, ENERGY, FINAL, TRANSIENT
 from pindrive.quantities.table import QUANTITIES, refusal, warn_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -51,6 +53,26 @@ _SAME_AS: Final = {
 _INFINITE: Final = ("finger_stiffness", "duration")
 _LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
 
+
+def _interval(*sets: Bounds) -> tuple[float, float, float]:
+    """The smallest and the largest value that all of the sets hold, and one beside them or NaN."""
+    least = max(b.lower if b.lower_closed else float(np.nextafter(b.lower, inf)) for b in sets)
+    most = min(b.upper if b.upper_closed else float(np.nextafter(b.upper, -inf)) for b in sets)
+    beside = [value for b in sets for value in b.also if all(value in other for other in sets)]
+    return least, most, beside[0] if beside else nan
+
+
+# Of the arguments, then of what they make together.
+_BOUNDS: Final = [
+    *(
+        _interval(POSITIVE_OR_RIGID, OR_INFINITE)
+        if name in _INFINITE
+        else _interval(quantity.bounds, quantity.limits)
+        for name, quantity in _ARGUMENTS.items()
+    ),
+    *(_interval(QUANTITIES[name].limits) for name in ("damping_ratio", "phase")),
+]
+
 # In the order of `Status` and `End` in model.hpp.
 _FAILURES: Final = ("too_many_events", "standstill", "stopped", "inconsistent")
 _ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
@@ -59,6 +81,18 @@ _FLAGS: Final = {
     "status": {meaning: flag for flag, meaning in enumerate(("ok", *_FAILURES, *_BAD))},
     "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
 }
+
+# Variables that hold numbers, by the names of the table of quantities; the one that says yes or no.
+_SETTLED: Final = "transient_settled"
+_SETTLING_TIME: Final = "transient_settling_time"
+_USUAL: Final = {
+    name.replace(".", "_"): name
+    for name in (*(q.name for q in (*TRANSIENT, *ENDING)), "duration")
+    if name.replace(".", "_") != _SETTLED
+}
+_LEDGER: Final = {q.name.replace(".", "_"): q.name for q in ENERGY}
+_NUMBERS: Final = _USUAL | _LEDGER | {q.name.replace(".", "_"): q.name for q in FINAL}
+_OTHERS: Final = ("ending", "events", _SETTLED)
 
 
 def simulate_batch(
@@ -77,6 +111,7 @@ def simulate_batch(
     duration: Values | None = None,
     settling_band: Values | None = None,
     energy: bool = False,
+    outputs: Sequence[str] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
@@ -103,7 +138,11 @@ def simulate_batch(
             long enough to see each ending.
         settling_band: half the band about the end in which a motion counts as settled, a part of
             |x(0) - x_end|, above 0 and at most 1; None: 0.05.
-        energy: the terms of the energy ledger too; a point then takes some ten times as long.
+        energy: the terms of the energy ledger too; a point then takes some fifty times as long.
+        outputs: the variables to compute and return, among them `final_position` and
+            `final_velocity`, the state at the end; None: all others, and with `energy` those of the
+            ledger. `status` is always there. The fewer, the faster: the state alone takes a third
+            of the time of all numbers.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
 
     Returns:
@@ -115,8 +154,8 @@ def simulate_batch(
         does not stop the others: its status says which argument is bad, and its numbers are NaN.
 
     Raises:
-        ValueError: an argument holds something else than numbers, shapes do not fit together, or
-            `threads` is no count.
+        ValueError: an argument holds something else than numbers, shapes do not fit together,
+            `threads` is no count, or `outputs` names what there is not.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
@@ -125,16 +164,21 @@ def simulate_batch(
     for name, argument in given.items():
         if argument is not None:
             _warn(name, argument)
-    return batched(given, energy=energy, threads=threads)
+    return batched(given, energy=energy, outputs=outputs, threads=threads)
 
 
 def batched(
-    given: Mapping[str, Values | None], *, energy: bool = False, threads: int | None = None
+    given: Mapping[str, Values | None],
+    *,
+    energy: bool = False,
+    outputs: Sequence[str] | None = None,
+    threads: int | None = None,
 ) -> xr.Dataset:
     """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
     from pindrive import __version__
 
     workers = worker_count(threads)
+    wanted = _wanted(outputs, energy)
     named = {name: value for name, value in given.items() if value is not None}
     sizes, arguments, coordinates = _shared_shape(named)
     shape = tuple(sizes.values())
@@ -142,21 +186,41 @@ def batched(
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
     for name in _ARGUMENTS.keys() - named.keys():
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
-    status = _status(aligned, shape)
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
-    table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
-    table["transient.settled"] = ~np.isnan(table["transient.settling_time"])
-
     if np.isinf(aligned["duration"]).any():
         arguments.pop("duration", None)  # what the column says instead: until the ending was seen
     else:
-        del table["duration"]
+        wanted = [name for name in wanted if name != "duration"]
+    computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
+    numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
+    table = _core.simulate_batch(spread, _BOUNDS, workers, numbers, "events" in wanted)
+    if _SETTLED in wanted:
+        table[_SETTLED] = ~np.isnan(table[_NUMBERS[_SETTLING_TIME]])
+    columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
-        name.replace(".", "_"): (tuple(sizes), column.reshape(shape), _attributes(name))
-        for name, column in table.items()
+        name: (tuple(sizes), column.reshape(shape), _attributes(_NUMBERS.get(name, name)))
+        for name, column in columns.items()
     }
     return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+
+
+# ---- what is computed ----------------------------------------------------------------------------
+
+
+def _wanted(outputs: Sequence[str] | None, energy: bool) -> list[str]:
+    """The variables to return; `status` is always one."""
+    if outputs is None:
+        return [*_USUAL, *(_LEDGER if energy else ()), "status", *_OTHERS]
+    known = (*_NUMBERS, *_OTHERS, "status")
+    if isinstance(outputs, str):
+        raise ValueError(refusal("outputs", "a list of names", repr(outputs)))
+    for name in outputs:
+        if name not in known:
+            near = get_close_matches(str(name), known, 1)
+            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            raise ValueError(f"outputs: unknown variable {name!r}; {hint}")
+    return [*dict.fromkeys([*outputs, *(_LEDGER if energy else ()), "status"])]
 
 
 # ---- shapes --------------------------------------------------------------------------------------
@@ -229,9 +293,16 @@ def _warn(name: str, given: Values) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
     quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
     seen = quantity.seen
+    if seen is None or not values.size:
+        return
+    ends = float(values.min()), float(values.max())
+    if ends[0] * ends[1] > 0.0 and all(
+        abs(end) in seen and end in quantity.bounds and end in quantity.limits for end in ends
+    ):
+        return  # nothing beyond, without a look at each
     good = _within(quantity.bounds, values) & _within(quantity.limits, values) & np.isfinite(values)
     sizes = np.abs(values[good])
-    if seen is None or not sizes.size:
+    if not sizes.size:
         return
     for size in (sizes.max(), sizes.min()):
         if float(size) not in seen:
@@ -239,38 +310,14 @@ def _warn(name: str, given: Values) -> None:
             return
 
 
-# ---- bad points, and what the numbers mean -------------------------------------------------------
-
-
-def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDArray[np.int8]:
-    """0, or the flag of the first argument that is bad, at every point."""
-    status = np.zeros(shape, np.int8)
-
-    def mark(name: str, bad: NDArray[np.bool_]) -> None:
-        if bad.any():
-            status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
-
-    for name, quantity in _ARGUMENTS.items():
-        bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
-        limits = OR_INFINITE if name in _INFINITE else quantity.limits
-        mark(name, ~(_within(bounds, a[name]) & _within(limits, a[name])))
-    for contact in ("plate", "finger"):
-        mark(f"{contact}_static", a[f"{contact}_static"] < a[f"{contact}_kinetic"])
-    with np.errstate(all="ignore"):
-        ratio = a["damping"] / (2.0 * np.sqrt(a["mass"]) * np.sqrt(a["stiffness"]))
-        phase = np.sqrt(a["stiffness"] / a["mass"]) * np.where(
-            np.isinf(a["duration"]), 0.0, a["duration"]
-        )
-    mark("damping_ratio", ~_within(QUANTITIES["damping_ratio"].limits, ratio))
-    mark("phase", ~_within(QUANTITIES["phase"].limits, phase))
-    return status
-
-
 def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which of the values the bounds hold; NaN is never one."""
     above = values >= bounds.lower if bounds.lower_closed else values > bounds.lower
     below = values <= bounds.upper if bounds.upper_closed else values < bounds.upper
     return (above & below) | np.isin(values, bounds.also) if bounds.also else above & below
+
+
+# ---- what the numbers mean -----------------------------------------------------------------------
 
 
 def _attributes(name: str) -> dict[str, Any]:
@@ -284,6 +331,7 @@ def _attributes(name: str) -> dict[str, Any]:
             "flag_values": np.array([*meanings.values()], np.int8),
             "flag_meanings": " ".join(meanings),
         }
-    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[name]
+    named = "transient.settled" if name == _SETTLED else name
+    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]
     attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
     return attributes | ({"units": quantity.unit} if quantity.unit else {})

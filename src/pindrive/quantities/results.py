@@ -119,6 +119,12 @@ ENDING: Final[tuple[Quantity, ...]] = (
 )
 """How a motion ends, in numbers."""
 
+FINAL: Final[tuple[Quantity, ...]] = (
+    Quantity("final.position", "x_T", "m", "position at the end of the duration, or at rest"),
+    Quantity("final.velocity", "v_T", "m/s", "velocity at the end of the duration, or at rest"),
+)
+"""The state at the end, which `simulate_batch` gives on request."""
+
 ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.kinetic_start", "E_k,0", "J", "kinetic energy at release"),
     Quantity("energy.kinetic_end", "E_k", "J", "kinetic energy at the end"),

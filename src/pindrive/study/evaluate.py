@@ -13,7 +13,7 @@ from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion
 from pindrive.motion.simulate import simulated
 from pindrive.study.design import flags, variable
-from pindrive.study.outputs import LEDGER, MEASURED
+from pindrive.study.outputs import MEASURED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,9 +69,9 @@ def evaluate(
         inputs["plate_kinetic"] = inputs["plate_kinetic"] * inputs["plate_load"]
         given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
         given["mass"] = np.broadcast_to(given["mass"], (count,))
-        energy = not set(LEDGER).isdisjoint(outputs)
-        found = batched(given, energy=energy, threads=threads)
-        table = {name: found[name].values for name in outputs if name != "reason"}
+        kept = [name for name in outputs if name != "reason"]
+        found = batched(given, outputs=kept, threads=threads)
+        table = {name: found[name].values for name in kept}
         if "reason" in outputs:
             table["reason"] = _bad_arguments(found["status"].values)
     return {name: table[name] for name in outputs}

@@ -1,0 +1,119 @@
+// The kernel for one width, PINDRIVE_WIDTH, and the instruction set that this file is compiled for.
+#include "_kernel.hpp"
+
+namespace pk = pindrive::detail;
+
+namespace pindrive_extension {
+
+namespace {
+
+template <int N>
+struct OfWidth {
+  using type = pk::Pack<N>;
+};
+template <>
+struct OfWidth<1> {
+  using type = double;
+};
+using V = OfWidth<PINDRIVE_WIDTH>::type;
+
+/// The inputs of a block that bounds refer to, in their order.
+enum : int { mass, stiffness, damping, plate_kinetic, plate_static, finger_kinetic, finger_static };
+constexpr int duration = 11, inputs = pk::KernelBlock::inputs;
+
+/// Whether the inputs keep a bound of `checks`.
+template <class T>
+pk::MaskOf<T> keeps(int check, const T (&in)[inputs], const Bounds& bounds) {
+  const auto within = [](const T& value, const Interval& bound) {
+    return ((T(bound[0]) <= value) & (value <= T(bound[1]))) | (value == T(bound[2]));
+  };
+  if (check < inputs) return within(in[check], bounds[check]);
+  switch (check - inputs) {
+    case 0:
+      return in[plate_kinetic] <= in[plate_static];
+    case 1:
+      return in[finger_kinetic] <= in[finger_static];
+    case 2: {
+      const T critical = T(2.0) * pk::root(in[mass]) * pk::root(in[stiffness]);
+      return within(in[damping] / critical, bounds[inputs]);
+    }
+    default: {
+      const T phase = pk::root(in[stiffness] / in[mass]) * in[duration];
+      return (in[duration] == T(__builtin_inf())) | within(phase, bounds[inputs + 1]);
+    }
+  }
+}
+constexpr int checks = inputs + 4;
+/// Which bound it is that breaks, from 1 on.
+int flag(int check) {
+  constexpr int of_others[] = {plate_static, finger_static, inputs, inputs + 1};
+  return 1 + (check < inputs ? check : of_others[check - inputs]);
+}
+
+bool judge(const pk::KernelBlock& block, int count, const Bounds& bounds, signed char* broken) {
+  bool all = true;
+  for (int first = 0; first < count; first += PINDRIVE_WIDTH) {
+    V in[inputs];
+    for (int k = 0; k < inputs; ++k) in[k] = pk::load<V>(&block.input[k][first]);
+    pk::MaskOf<V> good(true);
+    for (int check = 0; check < checks; ++check) good = good & keeps(check, in, bounds);
+    const int end = first + PINDRIVE_WIDTH < count ? first + PINDRIVE_WIDTH : count;
+    for (int i = first; i < end; ++i) broken[i] = 0;
+    using pk::any;
+    if (!any(!good)) continue;
+    for (int i = first; i < end; ++i) {
+      double alone[inputs];
+      for (int k = 0; k < inputs; ++k) alone[k] = block.input[k][i];
+      int check = 0;
+      while (check < checks && keeps(check, alone, bounds)) ++check;
+      if (check == checks) continue;
+      broken[i] = static_cast<signed char>(flag(check));
+      all = false;
+    }
+  }
+  return all;
+}
+
+V function(int which, const V& a, const V& b) {
+  switch (which) {
+    case 0:
+      return pk::sine_and_cosine(a).sine;
+    case 1:
+      return pk::sine_and_cosine(a).cosine;
+    case 2:
+      return pk::exponential(a);
+    case 3:
+      return pk::exponential_minus_1(a);
+    case 4:
+      return pk::logarithm(a);
+    case 5:
+      return pk::logarithm_of_1_plus(a);
+    default:
+      return pk::angle_of(a, b);
+  }
+}
+
+void elementary(int which, const double* a, const double* b, double* found, std::size_t count) {
+  constexpr std::size_t width = PINDRIVE_WIDTH;
+  double one[width], other[width], both[width];
+  for (std::size_t first = 0; first < count; first += width) {
+    for (std::size_t i = 0; i < width; ++i) {
+      const std::size_t at = first + i < count ? first + i : count - 1;
+      one[i] = a[at];
+      other[i] = b[at];
+    }
+    pk::store(function(which, pk::load<V>(one), pk::load<V>(other)), both);
+    for (std::size_t i = 0; i < width && first + i < count; ++i) found[first + i] = both[i];
+  }
+}
+
+}  // namespace
+
+#define PINDRIVE_JOINED(name, width) name##width
+#define PINDRIVE_OF_WIDTH(name, width) PINDRIVE_JOINED(name, width)
+
+extern const KernelFunctions PINDRIVE_OF_WIDTH(kernel_, PINDRIVE_WIDTH);
+const KernelFunctions PINDRIVE_OF_WIDTH(kernel_, PINDRIVE_WIDTH){
+    PINDRIVE_WIDTH, &pk::follow_block<V>, &judge, &elementary};
+
+}  // namespace pindrive_extension
