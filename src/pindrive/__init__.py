@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from pindrive.motion.batch import simulate_batch
     from pindrive.motion.drive import Contact, Drive, Profile
     from pindrive.motion.motion import Motion
+    from pindrive.motion.release import Release
     from pindrive.motion.simulate import simulate
     from pindrive.quantities.table import ImplausibleValueWarning
 
@@ -19,6 +20,7 @@ __all__ = [
     "ImplausibleValueWarning",
     "Motion",
     "Profile",
+    "Release",
     "__version__",
     "simulate",
     "simulate_batch",
@@ -30,6 +32,7 @@ _HOME = {
     "ImplausibleValueWarning": "pindrive.quantities.table",
     "Motion": "pindrive.motion.motion",
     "Profile": "pindrive.motion.drive",
+    "Release": "pindrive.motion.release",
     "simulate": "pindrive.motion.simulate",
     "simulate_batch": "pindrive.motion.batch",
 }

@@ -27,6 +27,7 @@ from pindrive.device.trajectory import Way, check_vibration
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
@@ -81,8 +82,6 @@ class PinScan:
     """What it made of it: when the coil was switched."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
-    load: float | Profile
-    """Factor on the plate's friction, over the time since `begin`."""
     motion: Motion
     """The pin's motion, over the time since `begin`."""
     coil: CoilState
@@ -116,6 +115,11 @@ class PinScan:
             required = f"from {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("t", required, f"{times.min()!s} to {times.max()!s} s"))
         return times - self.begin
+
+    @property
+    def load(self) -> float | Profile:
+        """Factor on the plate's friction, over the time since `begin`."""
+        return self.motion.release.plate_load
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -258,23 +262,15 @@ class PreparedPin:
     luminance: NDArray[np.float64]
     commands: Commands
     current: Current
-    load: float | Profile
-    plate_velocity: Profile
-    start: PinState
+    release: Release
+    """The state at `begin`, and the inputs over the time since."""
     coil: CoilState
     decision: Decision
 
     def follow(self) -> PinScan:
         """The motion that they lead to."""
-        motion = simulated(
-            self.device.drive,
-            mouse_velocity=self.plate_velocity,
-            displacement=self.start.position,
-            velocity=self.start.velocity,
-            plate_load=self.load,
-            skin_stretch=self.start.skin_stretch,
-            duration=self.end - self.begin,
-        )
+        lasts = self.end - self.begin
+        motion = simulated(self.device.drive, self.release, duration=lasts)
         if motion.status != "ok":
             raise ValueError(f"pin {self.number}: the simulation {motion.status}")
         return PinScan(
@@ -285,7 +281,6 @@ class PreparedPin:
             luminance=self.luminance,
             commands=self.commands,
             current=self.current,
-            load=self.load,
             motion=motion,
             coil=self.coil,
             decision=self.decision,
@@ -322,9 +317,9 @@ def prepare(
                 luminance=luminance,
                 commands=commands,
                 current=current,
-                load=load,
-                plate_velocity=plate_velocity,
-                start=state,
+                release=Release(
+                    plate_velocity, state.position, state.velocity, load, state.skin_stretch
+                ),
                 coil=coil,
                 decision=decision,
             )
