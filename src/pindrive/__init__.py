@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
     from pindrive.motion.release import Release
     from pindrive.motion.simulate import simulate
+    from pindrive.quantities.status import Status
     from pindrive.quantities.table import ImplausibleValueWarning
 
     __version__: str
@@ -21,6 +22,7 @@ __all__ = [
     "Motion",
     "Profile",
     "Release",
+    "Status",
     "__version__",
     "simulate",
     "simulate_batch",
@@ -33,6 +35,7 @@ _HOME = {
     "Motion": "pindrive.motion.motion",
     "Profile": "pindrive.motion.drive",
     "Release": "pindrive.motion.release",
+    "Status": "pindrive.quantities.status",
     "simulate": "pindrive.motion.simulate",
     "simulate_batch": "pindrive.motion.batch",
 }

@@ -32,6 +32,7 @@ from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
@@ -171,6 +172,11 @@ class Scan:
         return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
 
     @property
+    def status(self) -> Status:
+        """Whether all pins were followed to the scan's end: the largest of their codes."""
+        return max(pin.motion.status for pin in self.pins)
+
+    @property
     def smallest_gap(self) -> Gap | None:
         """The smallest of its gaps; None where no pin stands ahead of another."""
         return min(self.gaps, key=lambda gap: gap.size, default=None)
@@ -227,8 +233,8 @@ def scan(
 
     Raises:
         ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation
-            had to be given up.
+            count, or there is more to do than `pindrive.quantities.budgets` allow.
+        SimulationError: the simulation of a pin had to be given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"
@@ -271,8 +277,8 @@ class PreparedPin:
         """The motion that they lead to."""
         lasts = self.end - self.begin
         motion = simulated(self.device.drive, self.release, duration=lasts)
-        if motion.status != "ok":
-            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        if motion.status != Status.ok:
+            raise SimulationError(f"pin {self.number}", motion.status)
         return PinScan(
             number=self.number,
             begin=self.begin,
