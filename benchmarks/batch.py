@@ -22,7 +22,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from pindrive import Contact, Drive, Motion, simulate, simulate_batch
+from pindrive import Contact, Drive, Motion, Release, simulate, simulate_batch
 from pindrive._core import kernel_widths
 from pindrive._core import simulate_batch as by_core
 from pindrive.motion import batch
@@ -32,7 +32,9 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.racing.moreau_jean import last_states, numbers, trajectory  # noqa: E402
 from benchmarks.racing.releases import (  # noqa: E402
+    DRIVE,
     DURATION,
+    RELEASE,
     Floats,
     columns,
     drawn,
@@ -46,8 +48,7 @@ def alone(drive: Floats) -> Motion:
     m, k, b, plate, finger, level, x = (float(value) for value in drive)
     return simulate(
         Drive(mass=m, stiffness=k, damping=b, plate=Contact(plate), finger=Contact(finger)),
-        mouse_velocity=level,
-        displacement=x,
+        Release(level, x),
         duration=DURATION,
     )
 
@@ -98,7 +99,8 @@ def width_table(points: dict[str, Any], rounds: int) -> None:
     count = len(points["mass"])
     same = {"plate_static": "plate_kinetic", "finger_static": "finger_kinetic"}
     given = {name: points[of] for name, of in same.items()} | {"velocity": points["mouse_velocity"]}
-    given |= points | {"finger_stiffness": np.inf, "duration": DURATION, "settling_band": 0.05}
+    given |= points | {"finger_stiffness": np.inf, "duration": DURATION}
+    given |= {"settling_band": 0.05, "plate_load": 1.0}
     arrays = [np.broadcast_to(np.asarray(given[k], np.float64), count) for k in batch._ARGUMENTS]
     state = [batch._NUMBERS[name] for name in STATE]
     numbers = [*batch._USUAL.values()]
@@ -143,10 +145,11 @@ def main() -> None:
         "stepper, last state alone": lambda: of_stepper(last_states, states),
         "stepper, with its numbers": lambda: of_stepper(numbers, table),
         "simulate_batch, all numbers": lambda: (
-            seconds(lambda: simulate_batch(**arguments)) / given.count
+            seconds(lambda: simulate_batch(DRIVE, RELEASE, **arguments)) / given.count
         ),
         "simulate_batch, last state": lambda: (
-            seconds(lambda: simulate_batch(**arguments, outputs=STATE)) / given.count
+            seconds(lambda: simulate_batch(DRIVE, RELEASE, outputs=STATE, **arguments))
+            / given.count
         ),
     }
     if given.core.exists():

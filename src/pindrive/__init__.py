@@ -8,7 +8,9 @@ if TYPE_CHECKING:
     from pindrive.motion.batch import simulate_batch
     from pindrive.motion.drive import Contact, Drive, Profile
     from pindrive.motion.motion import Motion
+    from pindrive.motion.release import Release
     from pindrive.motion.simulate import simulate
+    from pindrive.quantities.status import Status
     from pindrive.quantities.table import ImplausibleValueWarning
 
     __version__: str
@@ -19,6 +21,8 @@ __all__ = [
     "ImplausibleValueWarning",
     "Motion",
     "Profile",
+    "Release",
+    "Status",
     "__version__",
     "simulate",
     "simulate_batch",
@@ -30,6 +34,8 @@ _HOME = {
     "ImplausibleValueWarning": "pindrive.quantities.table",
     "Motion": "pindrive.motion.motion",
     "Profile": "pindrive.motion.drive",
+    "Release": "pindrive.motion.release",
+    "Status": "pindrive.quantities.status",
     "simulate": "pindrive.motion.simulate",
     "simulate_batch": "pindrive.motion.batch",
 }

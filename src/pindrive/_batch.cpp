@@ -61,6 +61,7 @@ enum : std::size_t {
   velocity,
   duration,
   settling_band,
+  plate_load,
   input_count
 };
 static_assert(input_count == Block::inputs, "the kernel takes them all");
@@ -99,8 +100,9 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
   }
 }
 
-/// The status of a point that breaks the first bound is one more; then those of the others.
-constexpr auto last_failure = static_cast<std::int8_t>(pd::Status::inconsistent);
+/// The status of a point that breaks the first bound is one more; then those of the others. As in
+/// quantities/status.py.
+constexpr std::int8_t refused = 15;
 
 pd::Drive<double> drive_of(const Point& p) {
   return {p[mass],
@@ -322,11 +324,12 @@ class Batch {
       Block& block = space->block;
       points(inputs_, first, count, block.input);
       const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
+      press(block, count);
       const bool followed = by_kernel(first, count, block);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (space->broken[i] != 0) {
-          leave_out(first + i, static_cast<std::int8_t>(last_failure + space->broken[i]));
+          leave_out(first + i, static_cast<std::int8_t>(refused + space->broken[i]));
           continue;
         }
         const Left left = left_by_kernel(block, i);
@@ -339,6 +342,12 @@ class Batch {
           std::vector<pd::Segment<double>>().swap(space->segments);
       }
     }
+  }
+
+  /// The load of the plate multiplies its friction forces.
+  static void press(Block& block, std::size_t count) {
+    for (const std::size_t force : {plate_kinetic, plate_static})
+      for (std::size_t i = 0; i < count; ++i) block.input[force][i] *= block.input[plate_load][i];
   }
 
   /// What the general core has to find of a point.
@@ -481,7 +490,7 @@ void bind_batch(nb::module_& m) {
       "events"_a, "width"_a = 0,
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
-      "static and stiffness, mouse velocity, displacement, velocity, duration, settling band). A "
+      "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, plate load). A "
       "point that breaks one of the bounds (the least value, the largest, and one beside them or "
       "NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its "
       "status says which, its numbers are NaN. The column of events is there if asked for; "

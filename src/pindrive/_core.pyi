@@ -124,3 +124,5 @@ def elementary(which: int, a: Annotated[NDArray[numpy.float64], dict(shape=(None
 settling_band: float = 0.05
 
 event_limit: int = 1000000
+
+statuses: dict = ...

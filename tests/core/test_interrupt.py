@@ -17,10 +17,11 @@ PROGRAM = """
 from collections import deque
 from itertools import repeat, starmap
 import numpy as np
-from pindrive import Contact, Drive, _core, batch, simulate
+from pindrive import Contact, Drive, Release, _core, simulate
+from pindrive.motion import batch
 
 drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(1e-9))
-motion = simulate(drive, mouse_velocity=0.06, displacement=0.002)
+motion = simulate(drive, Release(0.06, 0.002))
 core, numbers, duration = motion._core, motion.core_numbers, motion.duration
 t = np.linspace(0.0, 1.0, 1_000_000)
 call, arguments = {call}
@@ -29,7 +30,7 @@ deque(starmap(call, repeat(arguments)), maxlen=0)
 """
 BATCH = (
     "_core.simulate_batch, ([np.broadcast_to(np.array(x), 10**6) for x in (0.01, 100.0, 0.0, 0.0, "
-    "0.0, 1e-9, 1e-9, np.inf, 0.06, 0.002, 0.06, np.inf, 0.05)], batch._BOUNDS, 3, [], True)"
+    "0.0, 1e-9, 1e-9, np.inf, 0.06, 0.002, 0.06, np.inf, 0.05, 1.0)], batch._BOUNDS, 3, [], True)"
 )
 CALLS = {
     "simulate": "_core.simulate, numbers",

@@ -15,13 +15,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pindrive import Contact, Drive, simulate, simulate_batch
+from pindrive import Contact, Drive, Release, simulate, simulate_batch
 from pindrive._core import elementary, kernel_widths
 from pindrive._core import simulate_batch as by_core
 from pindrive.motion import batch
 
 Floats = NDArray[np.float64]
 ALL = [*batch._NUMBERS.values()]
+# What the points of this file do not vary.
+ANY = (
+    Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005)),
+    Release(0.1, 1.5e-3),
+)
 
 
 def plain(count: int, seed: int) -> dict[str, Any]:
@@ -48,7 +53,7 @@ def plain(count: int, seed: int) -> dict[str, Any]:
 
 def columns(points: dict[str, Any]) -> list[Floats]:
     """The same in the order of the core."""
-    given = points | {"finger_stiffness": inf}
+    given = points | {"finger_stiffness": inf, "plate_load": 1.0}
     return [np.broadcast_to(given[name], points["mass"].shape) for name in batch._ARGUMENTS]
 
 
@@ -102,11 +107,11 @@ def test_outputs_are_computed_alone_and_the_same(outputs: list[str]) -> None:
     points = plain(2000, seed=9)
     if outputs == ["transient_peak_force_unknown"]:
         with pytest.raises(ValueError, match="outputs: unknown variable 'transient_peak_force_u"):
-            simulate_batch(**points, outputs=outputs)
+            simulate_batch(*ANY, **points, outputs=outputs)
         return
     everything = [*batch._NUMBERS, *batch._OTHERS]
-    whole = simulate_batch(**points, outputs=everything)
-    part = simulate_batch(**points, outputs=outputs)
+    whole = simulate_batch(*ANY, **points, outputs=everything)
+    part = simulate_batch(*ANY, **points, outputs=outputs)
     assert {str(name) for name in part.data_vars} == {*outputs, "status"}
     for name in part.data_vars:
         assert part[name].values.tobytes() == whole[name].values.tobytes()
@@ -115,14 +120,14 @@ def test_outputs_are_computed_alone_and_the_same(outputs: list[str]) -> None:
 
 def test_a_name_alone_is_no_list_of_outputs() -> None:
     with pytest.raises(ValueError, match="outputs must be a list of names, got 'events'"):
-        simulate_batch(**plain(1, seed=1), outputs="events")
+        simulate_batch(*ANY, **plain(1, seed=1), outputs="events")
     with pytest.raises(ValueError, match="did you mean final_position"):
-        simulate_batch(**plain(1, seed=1), outputs=["final_positon"])
+        simulate_batch(*ANY, **plain(1, seed=1), outputs=["final_positon"])
 
 
 def test_the_last_state_is_that_of_the_motion() -> None:
     points = plain(200, seed=10)
-    found = simulate_batch(**points, outputs=["final_position", "final_velocity"])
+    found = simulate_batch(*ANY, **points, outputs=["final_position", "final_velocity"])
     for i in range(200):
         p = {name: float(values[i]) for name, values in points.items()}
         motion = simulate(
@@ -133,9 +138,7 @@ def test_the_last_state_is_that_of_the_motion() -> None:
                 plate=Contact(p["plate_kinetic"], p["plate_static"]),
                 finger=Contact(p["finger_kinetic"], p["finger_static"]),
             ),
-            mouse_velocity=p["mouse_velocity"],
-            displacement=p["displacement"],
-            velocity=p["velocity"],
+            Release(p["mouse_velocity"], p["displacement"], p["velocity"]),
             duration=None if p["duration"] == inf else p["duration"],
         )
         end = motion.duration

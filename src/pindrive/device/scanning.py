@@ -27,10 +27,12 @@ from pindrive.device.trajectory import Way, check_vibration
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
@@ -81,8 +83,6 @@ class PinScan:
     """What it made of it: when the coil was switched."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
-    load: float | Profile
-    """Factor on the plate's friction, over the time since `begin`."""
     motion: Motion
     """The pin's motion, over the time since `begin`."""
     coil: CoilState
@@ -116,6 +116,11 @@ class PinScan:
             required = f"from {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("t", required, f"{times.min()!s} to {times.max()!s} s"))
         return times - self.begin
+
+    @property
+    def load(self) -> float | Profile:
+        """Factor on the plate's friction, over the time since `begin`."""
+        return self.motion.release.plate_load
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -165,6 +170,11 @@ class Scan:
         """The smallest gap of each two neighbouring pins, as the array's `neighbours` has them."""
         motions = [pin.motion for pin in self.pins]
         return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
+
+    @property
+    def status(self) -> Status:
+        """Whether all pins were followed to the scan's end: the largest of their codes."""
+        return max(pin.motion.status for pin in self.pins)
 
     @property
     def smallest_gap(self) -> Gap | None:
@@ -223,8 +233,8 @@ def scan(
 
     Raises:
         ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation
-            had to be given up.
+            count, or there is more to do than `pindrive.quantities.budgets` allow.
+        SimulationError: the simulation of a pin had to be given up.
     """
     if start is not None and len(start) != len(device.array):
         required = f"one state for each pin, {len(device.array)}"
@@ -258,25 +268,17 @@ class PreparedPin:
     luminance: NDArray[np.float64]
     commands: Commands
     current: Current
-    load: float | Profile
-    plate_velocity: Profile
-    start: PinState
+    release: Release
+    """The state at `begin`, and the inputs over the time since."""
     coil: CoilState
     decision: Decision
 
     def follow(self) -> PinScan:
         """The motion that they lead to."""
-        motion = simulated(
-            self.device.drive,
-            mouse_velocity=self.plate_velocity,
-            displacement=self.start.position,
-            velocity=self.start.velocity,
-            plate_load=self.load,
-            skin_stretch=self.start.skin_stretch,
-            duration=self.end - self.begin,
-        )
-        if motion.status != "ok":
-            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        lasts = self.end - self.begin
+        motion = simulated(self.device.drive, self.release, duration=lasts)
+        if motion.status != Status.ok:
+            raise SimulationError(f"pin {self.number}", motion.status)
         return PinScan(
             number=self.number,
             begin=self.begin,
@@ -285,7 +287,6 @@ class PreparedPin:
             luminance=self.luminance,
             commands=self.commands,
             current=self.current,
-            load=self.load,
             motion=motion,
             coil=self.coil,
             decision=self.decision,
@@ -322,9 +323,9 @@ def prepare(
                 luminance=luminance,
                 commands=commands,
                 current=current,
-                load=load,
-                plate_velocity=plate_velocity,
-                start=state,
+                release=Release(
+                    plate_velocity, state.position, state.velocity, load, state.skin_stretch
+                ),
                 coil=coil,
                 decision=decision,
             )

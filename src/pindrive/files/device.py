@@ -21,6 +21,7 @@ from pindrive.files.ratios import keep_ratios
 from pindrive.files.schema import Place, Schema, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
+from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Rows
 from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
@@ -70,11 +71,7 @@ class DeviceFile:
     name: str
     description: str
     drive: Drive
-    mouse_velocity: float | Profile
-    plate_load: float | Profile
-    displacement: float
-    velocity: float | None
-    skin_stretch: float | None
+    release: Release
     duration: float | None
     settling_band: float
     tables: Mapping[str, Any]
@@ -93,9 +90,14 @@ class DeviceFile:
 
         What changes is its rows: (speed, force) or (time, value).
         """
-        owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
+        drive = self.drive
+        parts = {"plate": drive.plate, "finger": drive.finger, "motion": self.release}
+        own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
         places = ((key, *key.split(".")) for key in DRIVE)
-        values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        values = {
+            key: own[key] if key in own else getattr(parts.get(table, drive), name)
+            for key, table, name in places
+        }
         if self.whole:
             values |= {key: self.whole.value(key) for key in WHOLE}
         return {
@@ -179,11 +181,7 @@ def motion_of(device: DeviceFile) -> Motion:
 
     return simulated(
         device.drive,
-        mouse_velocity=device.mouse_velocity,
-        displacement=device.displacement,
-        velocity=device.velocity,
-        plate_load=device.plate_load,
-        skin_stretch=device.skin_stretch,
+        device.release,
         duration=device.duration,
         settling_band=device.settling_band,
     )
@@ -365,7 +363,7 @@ def _value_problems(error: ValidationError, meant: Set[str | None], place: Place
     for problem in error.errors():
         key = ".".join(str(part) for part in problem["loc"])
         if problem["type"] == "value_error":
-            problems.append(str(problem["ctx"]["error"]))
+            problems.append(problem["ctx"]["error"].args[0])
         elif problem["type"] == "missing" and not {key, f"{key.partition('.')[0]}.curve"} & meant:
             table, written = key.partition(".")[0], line(NUMBERS[key])
             problems.append(f"{place(key)}: {key} is missing; write {written} in [{table}]")
@@ -405,13 +403,13 @@ def _device(
         else Drive.with_damping_ratio(
             **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
         ),
-        mouse_velocity=whole.scan.hand_speed
-        if whole and hand
-        else over_time(motion.mouse_velocity),
-        plate_load=over_time(motion.plate_load),
-        displacement=motion.displacement,
-        velocity=motion.velocity,
-        skin_stretch=motion.skin_stretch,
+        release=Release(
+            whole.scan.hand_speed if whole and hand else over_time(motion.mouse_velocity),
+            motion.displacement,
+            motion.velocity,
+            over_time(motion.plate_load),
+            motion.skin_stretch,
+        ),
         duration=motion.duration,
         settling_band=motion.settling_band,
         tables=tables,

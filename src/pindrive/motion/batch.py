@@ -10,16 +10,22 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.lazy import xr
+from pindrive.motion.drive import Profile
+from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
 from pindrive.quantities.results import ENDING, ENERGY, FINAL, TRANSIENT
-from pindrive.quantities.table import QUANTITIES, refusal, warn_of
+from pindrive.quantities.status import End, Status, flag_attributes
+from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
 
     Values = ArrayLike | xr.DataArray
 
@@ -42,6 +48,7 @@ _ARGUMENTS: Final = {
         "velocity",
         "duration",
         "settling_band",
+        "plate_load",
     )
 }
 # What an argument is where it is left out: another one, infinite, or the usual value.
@@ -51,7 +58,9 @@ _SAME_AS: Final = {
     "velocity": "mouse_velocity",
 }
 _INFINITE: Final = ("finger_stiffness", "duration")
-_LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
+_LEFT_OUT: Final = {"settling_band": _core.settling_band, "plate_load": 1.0} | dict.fromkeys(
+    _INFINITE, inf
+)
 
 
 def _interval(*sets: Bounds) -> tuple[float, float, float]:
@@ -62,7 +71,7 @@ def _interval(*sets: Bounds) -> tuple[float, float, float]:
     return least, most, beside[0] if beside else nan
 
 
-# Of the arguments, then of what they make together.
+# Of the arguments, then of what they make together: in the order of the codes of `Status`.
 _BOUNDS: Final = [
     *(
         _interval(POSITIVE_OR_RIGID, OR_INFINITE)
@@ -73,14 +82,7 @@ _BOUNDS: Final = [
     *(_interval(QUANTITIES[name].limits) for name in ("damping_ratio", "phase")),
 ]
 
-# In the order of `Status` and `End` in model.hpp.
-_FAILURES: Final = ("too_many_events", "standstill", "stopped", "inconsistent")
-_ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
-_BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "damping_ratio", "phase"))
-_FLAGS: Final = {
-    "status": {meaning: flag for flag, meaning in enumerate(("ok", *_FAILURES, *_BAD))},
-    "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
-}
+_CODES: Final[dict[str, type[Status | End]]] = {"status": Status, "ending": End}
 
 # Variables that hold numbers, by the names of the table of quantities; the one that says yes or no.
 _SETTLED: Final = "transient_settled"
@@ -96,90 +98,81 @@ _OTHERS: Final = ("ending", "events", _SETTLED)
 
 
 def simulate_batch(
+    drive: Drive,
+    release: Release,
     *,
-    mass: Values,
-    stiffness: Values,
-    damping: Values,
-    plate_kinetic: Values,
-    plate_static: Values | None = None,
-    finger_kinetic: Values,
-    finger_static: Values | None = None,
-    finger_stiffness: Values | None = None,
-    mouse_velocity: Values,
-    displacement: Values,
-    velocity: Values | None = None,
-    duration: Values | None = None,
-    settling_band: Values | None = None,
     energy: bool = False,
     outputs: Sequence[str] | None = None,
     threads: int | None = None,
+    **varied: Values | None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
 
-    The arguments broadcast as NumPy's do: numbers, arrays, or xarray DataArrays, whose dimensions
-    go by their names. No trajectory is stored. Python runs on meanwhile, and Ctrl-C ends a batch.
+    The varied arguments broadcast as NumPy's do: numbers, arrays, or xarray DataArrays, whose
+    dimensions go by their names; where text has a unit, it may stand for a number. No trajectory is
+    stored. Python runs on meanwhile, and Ctrl-C ends a batch.
 
     Args:
-        mass: m, kg, from 1e-12 to 1e12.
-        stiffness: k, N/m, from 1e-12 to 1e12.
-        damping: b, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
-        plate_kinetic: friction force of the sliding plate, N, at least 0.
-        plate_static: largest force of the plate without sliding, N, at least the kinetic one; None:
-            the kinetic one.
-        finger_kinetic: friction force of the sliding finger, N, at least 0.
-        finger_static: largest force of the finger without sliding, N, at least the kinetic one;
-            None: the kinetic one.
-        finger_stiffness: tangential stiffness of the finger's skin, N/m, greater than 0; infinite
-            or None: rigid.
-        mouse_velocity: v_p, m/s.
-        displacement: x(0), m.
-        velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
-        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; infinite or None:
-            long enough to see each ending.
-        settling_band: half the band about the end in which a motion counts as settled, a part of
-            |x(0) - x_end|, above 0 and at most 1; None: 0.05.
+        drive: what every drive has, but for what is varied.
+        release: what every release has, but for what is varied.
         energy: the terms of the energy ledger too; a point then takes some fifty times as long.
         outputs: the variables to compute and return, among them `final_position` and
             `final_velocity`, the state at the end; None: all others, and with `energy` those of the
             ledger. `status` is always there. The fewer, the faster: the state alone takes a third
             of the time of all numbers.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
+        **varied: of the drive `mass`, `stiffness`, `damping`, `plate_kinetic`, `plate_static`,
+            `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite: rigid); of the release
+            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; and `duration` (infinite:
+            long enough to see each ending) and `settling_band`, as for `simulate`, which has their
+            ranges. Static friction that is None in a contact is the kinetic one, and a velocity
+            that is None the plate's, at every point.
 
     Returns:
-        Variables in the shape that the arguments have together, with unit and meaning in their
-        attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
+        Variables in the shape that the varied arguments have together, with unit and meaning in
+        their attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
         ending, and with `energy` those of the ledger; `ending`, how it ends, and `status`, both
         with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
-        number of `events`. The arguments are the coordinates. A point that `simulate` would refuse
-        does not stop the others: its status says which argument is bad, and its numbers are NaN.
+        number of `events`. The coordinates are what was varied, and what drive and release have. A
+        point that `simulate` would refuse does not stop the others: its status says which argument
+        is bad, and its numbers are NaN.
 
     Raises:
-        ValueError: an argument holds something else than numbers, shapes do not fit together,
-            `threads` is no count, or `outputs` names what there is not.
+        ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
+            together, `threads` is no count, or `outputs` names what there is not; a drive or a
+            release has what only `simulate` follows: a friction curve, an input that changes, a
+            given stretch of the skin.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    given: dict[str, Values | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
-    for name, argument in given.items():
+    unknown = varied.keys() - _ARGUMENTS.keys()
+    if unknown:
+        raise ValueError(refusal("varied", f"of {', '.join(_ARGUMENTS)}", min(unknown)))
+    for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
             _warn(name, argument)
-    return batched(given, energy=energy, outputs=outputs, threads=threads)
+    return batched(drive, release, varied, energy=energy, outputs=outputs, threads=threads)
 
 
 def batched(
-    given: Mapping[str, Values | None],
+    drive: Drive,
+    release: Release,
+    varied: Mapping[str, Values | None],
     *,
     energy: bool = False,
     outputs: Sequence[str] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
-    """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
+    """What `simulate_batch` does, without its warnings; None is an argument that is not varied."""
     from pindrive import __version__
 
     workers = worker_count(threads)
     wanted = _wanted(outputs, energy)
-    named = {name: value for name, value in given.items() if value is not None}
+    named: dict[str, Values] = {
+        **_constants(drive, release, varied),
+        **{name: value for name, value in varied.items() if value is not None},
+    }
     sizes, arguments, coordinates = _shared_shape(named)
     shape = tuple(sizes.values())
 
@@ -203,6 +196,46 @@ def batched(
         for name, column in columns.items()
     }
     return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+
+
+def _constants(
+    drive: Drive, release: Release, varied: Mapping[str, Values | None]
+) -> dict[str, Values]:
+    """What drive and release have of the arguments that are not varied, but what is left out."""
+    check_fits(drive, release)
+    plate, finger = drive.plate, drive.finger
+    for name, contact in (("plate", plate), ("finger", finger)):
+        if contact.curved:
+            required = "without a friction curve; `simulate` follows one"
+            raise ValueError(refusal(name, required, f"{len(contact.curve or ())} rows"))
+    if release.skin_stretch is not None:
+        given = f"{release.skin_stretch!r} m"
+        raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))
+    has = {
+        "mass": drive.mass,
+        "stiffness": drive.stiffness,
+        "damping": drive.damping,
+        "plate_kinetic": plate.kinetic,
+        "plate_static": plate.static,
+        "finger_kinetic": finger.kinetic,
+        "finger_static": finger.static,
+        "finger_stiffness": None if finger.rigid else finger.stiffness,
+        "mouse_velocity": release.mouse_velocity,
+        "displacement": release.displacement,
+        "velocity": release.velocity,
+        "plate_load": release.plate_load,
+    }
+    found: dict[str, Values] = {}
+    for name, value in has.items():
+        if value is None or varied.get(name) is not None:
+            continue
+        if isinstance(value, Profile):
+            if value.changes:
+                required = "constant; `simulate` follows one that changes"
+                raise ValueError(refusal(name, required, f"a Profile of {len(value.times)} rows"))
+            value = value.values[0]
+        found[name] = value
+    return found
 
 
 # ---- what is computed ----------------------------------------------------------------------------
@@ -282,11 +315,14 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
     """An argument as an array of floats, if it holds numbers."""
     try:
         array = np.asarray(values)
-        if array.dtype.kind not in "iuf":
-            raise TypeError
-        return array.astype(np.float64, copy=False)
-    except (TypeError, ValueError):
-        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
+    except ValueError:  # rows of unlike length
+        array = np.empty(0, np.object_)
+    if array.dtype.kind == "U":
+        texts = (check(_ARGUMENTS[name].name, str(text), label=name) for text in array.flat)
+        return np.fromiter(texts, np.float64, array.size).reshape(array.shape)
+    if array.dtype.kind not in "iuf":
+        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values)))
+    return array.astype(np.float64, copy=False)
 
 
 def _warn(name: str, given: Values) -> None:
@@ -324,13 +360,8 @@ def _attributes(name: str) -> dict[str, Any]:
     """Unit and meaning of an argument or a number, or the values and meanings of a flag."""
     if name == "events":
         return {"long_name": "changes at a contact; of a cycle, those of one round"}
-    if name in _FLAGS:
-        meanings = _FLAGS[name]
-        return {
-            "long_name": {"status": "what was wrong", "ending": "how the motion ends"}[name],
-            "flag_values": np.array([*meanings.values()], np.int8),
-            "flag_meanings": " ".join(meanings),
-        }
+    if name in _CODES:
+        return flag_attributes(_CODES[name])
     named = "transient.settled" if name == _SETTLED else name
     quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]
     attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}

@@ -10,6 +10,7 @@ import warnings
 from operator import index
 from typing import Final, SupportsFloat, SupportsIndex, cast
 
+from pindrive import lazy
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.evaluation import JUDGE
@@ -24,14 +25,38 @@ QUANTITIES: Final[dict[str, Quantity]] = {
 }
 
 
-def refusal(label: str, required: str, given: object, where: str = "") -> str:
+class Refusal(str):
+    """The words of a refused value, which know the quantity that they refuse."""
+
+    label: str
+    """What the message calls the quantity."""
+    said: str
+    """The words without the place where the value was written."""
+
+
+def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
-    return f"{where}: {label} must be {required}, got {given}".removeprefix(": ")
+    said = f"{label} must be {required}, got {given}"
+    words = Refusal(f"{where}: {said}" if where else said)
+    words.label, words.said = label, said
+    return words
+
+
+def told_by(error: Exception) -> Refusal | str:
+    """The first thing that an error tells, as it was made."""
+    told = getattr(error, "problems", error.args)
+    return told[0] if told and isinstance(told[0], str) else str(error)
+
+
+def refused_by(error: Exception) -> str:
+    """What an error refuses: the label of the quantity, or the kind of an error that has none."""
+    told = told_by(error)
+    return told.label if isinstance(told, Refusal) else type(error).__name__
 
 
 def check(
     name: str,
-    value: SupportsFloat,
+    value: SupportsFloat | str,
     *,
     where: str = "",
     label: str | None = None,
@@ -41,13 +66,13 @@ def check(
 
     Args:
         name: a name of the table.
-        value: SI value.
+        value: SI value, or text with a unit: "12 g".
         where: the place it was written, said first in the message: file and key.
         label: what the message calls the quantity; its name unless given.
         given: how the value was written, for the message; `value` with its SI unit unless given.
 
     Raises:
-        ValueError: no number, not finite, or out of bounds.
+        ValueError: no number, text without the unit, not finite, or out of bounds.
     """
     quantity = QUANTITIES[name]
     label = name if label is None else label
@@ -60,9 +85,16 @@ def check(
         size = getattr(value, "shape", None)
         shown = f"{len(cast(list[object], value))} values" if size is None else f"an array {size}"
         raise ValueError(refusal(label, many, shown, where))
+    elif isinstance(value, str):
+        given = lazy.call("pindrive.quantities.units:quoted", value) if given is None else given
+        try:
+            example, unit = quantity.usual, quantity.unit or "1"
+            number = lazy.call("pindrive.quantities.units:to_si", value, unit, example)
+        except ValueError as error:
+            raise ValueError(refusal(label, str(error), given, where)) from None
     else:
         try:
-            if isinstance(value, (str, bytes, bool)):
+            if isinstance(value, (bytes, bool)):
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError, OverflowError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,8 +12,11 @@ from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
-from pindrive.study.design import flags, variable
+from pindrive.quantities.status import End, Status
+from pindrive.quantities.table import refused_by
+from pindrive.study.design import variable
 from pindrive.study.outputs import MEASURED
 
 if TYPE_CHECKING:
@@ -27,14 +31,11 @@ _WHOLE: Final = {
     **dict.fromkeys(("status", "ending", "events"), np.int64),
     "transient_settled": np.bool_,
 }
+_NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
+"""What is asked of a motion, beside its drive and its release."""
+_RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
-
-_BATCH = (
-    *("mass", "stiffness", "damping", "plate_kinetic", "plate_static", "finger_kinetic"),
-    *("finger_static", "finger_stiffness", "mouse_velocity", "displacement", "velocity"),
-    *("duration", "settling_band"),
-)
 
 
 def evaluate(
@@ -50,30 +51,29 @@ def evaluate(
         plan: whose device.
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
-        outputs: names of variables; `reason` among them is text: why a point cannot exist, or in
-            short which argument is bad, and empty where it exists.
+        outputs: names of variables; `reason` among them is text: what is refused of a point that
+            cannot exist, the same for points that are refused alike, and empty where it exists.
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
         from pindrive.study.scans import evaluate_scans
 
         return evaluate_scans(plan, columns, count, outputs, threads)
-    inputs = _inputs(plan.device, columns)
-    if is_slow(plan.device, columns):
+    device = plan.device
+    inputs = _inputs(device, columns)
+    if is_slow(device, columns):
         table = _one_by_one(inputs, count)
     else:
-        for static in ("plate_static", "finger_static"):
-            if inputs[static] is None:
-                inputs[static] = inputs[static.replace("static", "kinetic")]
-        inputs["plate_static"] = inputs["plate_static"] * inputs["plate_load"]
-        inputs["plate_kinetic"] = inputs["plate_kinetic"] * inputs["plate_load"]
-        given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
-        given["mass"] = np.broadcast_to(given["mass"], (count,))
+        varied = {name: inputs[name] for name in (*map(variable, columns), *_NOT_OF_THE_DRIVE)}
+        if "damping_ratio" in varied or device.by_ratio:
+            varied["damping"] = inputs["damping"]
+            varied.pop("damping_ratio", None)
+        varied["mass"] = np.broadcast_to(inputs["mass"], (count,))
         kept = [name for name in outputs if name != "reason"]
-        found = batched(given, outputs=kept, threads=threads)
+        found = batched(device.drive, device.release, varied, outputs=kept, threads=threads)
         table = {name: found[name].values for name in kept}
         if "reason" in outputs:
-            table["reason"] = _bad_arguments(found["status"].values)
+            table["reason"] = _refused(found["status"].values)
     return {name: table[name] for name in outputs}
 
 
@@ -90,14 +90,14 @@ def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Whether the points of a device must be simulated one by one."""
     changes = {
-        "motion.mouse_velocity": isinstance(device.mouse_velocity, Profile),
-        "motion.plate_load": isinstance(device.plate_load, Profile),
+        "motion.mouse_velocity": isinstance(device.release.mouse_velocity, Profile),
+        "motion.plate_load": isinstance(device.release.plate_load, Profile),
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
         or device.drive.plate.curved
         or device.drive.finger.curved
-        or device.skin_stretch is not None
+        or device.release.skin_stretch is not None
         or "motion.skin_stretch" in swept
     )
 
@@ -105,7 +105,7 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
 def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     """Every input of a motion by its name in Python: a column, or what the device has."""
     given: dict[str, Any] = {variable(key): value for key, value in device.values().items()}
-    given |= {"mouse_velocity": device.mouse_velocity, "plate_load": device.plate_load}
+    given |= {name: getattr(device.release, name) for name in _RELEASE}
     given |= {variable(key): values for key, values in columns.items()}
     if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
         mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
@@ -113,9 +113,11 @@ def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     return given
 
 
-def _bad_arguments(status: NDArray[np.int8]) -> NDArray[Any]:
-    """Of each point which argument is bad, by its flag; empty where none is."""
-    names = np.array([name if name.startswith("bad_") else "" for name in flags("status")], object)
+def _refused(status: NDArray[np.int8]) -> NDArray[Any]:
+    """Of each point which argument is refused, by its status; empty where none is."""
+    names = np.full(max(Status) + 1, "", object)
+    for code in Status:
+        names[code] = "" if code.exists else code.name
     return names[status]
 
 
@@ -143,15 +145,12 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
     try:
         motion = _motion(given)
     except ValueError as error:
-        refused = {"status": flags("status").index("refused"), "ending": -1, "events": 0}
-        unsettled = {"transient_settled": False, "reason": str(error)}
+        refused = {"status": Status.refused, "ending": End.unknown, "events": 0}
+        unsettled = {"transient_settled": False, "reason": refused_by(error)}
         return dict.fromkeys(MEASURED, nan) | refused | unsettled
-    end = motion.ending
-    failures = {"ok": 0, "stopped after": 1, "stopped at": 2}
     return {name.replace(".", "_"): value for name, value in motion.numbers().items()} | {
-        "status": next(flag for text, flag in failures.items() if motion.status.startswith(text)),
-        "ending": flags("ending").index((end.cycle or end.kind).replace("-", "_").replace(" ", "_"))
-        - 1,
+        "status": motion.status,
+        "ending": motion.ending.end,
         "events": len(motion.events),
         "reason": "",
     }
@@ -168,10 +167,8 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         for name, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf))
     )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    start = (
-        *("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration"),
-        "settling_band",
-    )
     return simulated(
-        Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
+        Drive(**body, plate=plate, finger=finger),
+        Release(**{name: given[name] for name in _RELEASE}),
+        **{name: given[name] for name in _NOT_OF_THE_DRIVE},
     )

@@ -13,7 +13,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate, follow
-from pindrive.study.refusals import Refusal, exist, refusals
+from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sensitivity import Ranges, ranges_of
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class Robustness:
     """Numbers of the design itself."""
     values: Mapping[str, Values]
     """Watched numbers of every design that exists; NaN where it has none."""
-    refusals: tuple[Refusal, ...]
+    refusals: tuple[RefusedPoints, ...]
     """Draws that cannot exist, as their values contradict each other: no designs."""
     stopped: int
     """Designs whose motion was stopped early, after too many events."""

@@ -13,7 +13,7 @@ from pindrive.study.distributions import Distribution, Linked, as_distribution, 
 from pindrive.study.evaluate import evaluate
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED
-from pindrive.study.refusals import Refusal, exist, refusals
+from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sobol import Indices, sobol_indices
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Influence:
     over: Mapping[str, Indices]
     rows: int
     points: int
-    refusals: tuple[Refusal, ...]
+    refusals: tuple[RefusedPoints, ...]
     """Points that cannot exist, as their values contradict each other; left out."""
 
 
@@ -132,7 +132,7 @@ def influence(
     each = (varied + 2) * (varied + len(outputs)) + 3 * (varied + 1) * len(outputs)
     of = f"{rows} rows of {each}, for {varied} keys and {len(outputs)} results"
     budgets.DESIGN_VALUES.check(rows * each, of)
-    refused: tuple[Refusal, ...] = ()
+    refused: tuple[RefusedPoints, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
