@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive import Drive, ImplausibleValueWarning, Motion, Profile, simulate
+from pindrive import Drive, ImplausibleValueWarning, Motion, Profile, Release, simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,10 +104,4 @@ def follow(
     """The motion of a drive; the cases are larger and faster than any tactile device."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ImplausibleValueWarning)
-        return simulate(
-            drive,
-            mouse_velocity=mouse_velocity,
-            displacement=displacement,
-            velocity=velocity,
-            duration=duration,
-        )
+        return simulate(drive, Release(mouse_velocity, displacement, velocity), duration=duration)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pindrive.events import QuantityName
 from scipy.optimize import brentq
 
-from drives import Release, releases
+from drives import Case, cases
 from oracle import explicit_modes
-from pindrive import Contact, Drive, Motion, Profile, budgets, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
+from pindrive.motion.results import QuantityName
+from pindrive.quantities import budgets
 
 QUANTITIES: tuple[QuantityName, ...] = ("position", "velocity", "acceleration")
 DAMPED = {
@@ -44,7 +45,7 @@ def damped(duration: float) -> tuple[explicit_modes.Run, Motion]:
         plate=Contact(DAMPED["plate_kinetic"], DAMPED["plate_static"]),
         finger=Contact(DAMPED["finger_kinetic"], DAMPED["finger_static"]),
     )
-    motion = simulate(drive, mouse_velocity=0.07, displacement=2e-3, duration=duration)
+    motion = simulate(drive, Release(0.07, 2e-3), duration=duration)
     return run, motion
 
 
@@ -92,7 +93,7 @@ def test_a_free_oscillation_in_closed_form() -> None:
         Drive(mass=0.010, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(0.0)),
         100.0,
     )
-    motion = simulate(drive, mouse_velocity=1.0, displacement=1e-3, velocity=0.0, duration=0.1)
+    motion = simulate(drive, Release(1.0, 1e-3, 0.0), duration=0.1)
     time, value = motion.extrema("position")
     assert time[:-1] == pytest.approx(np.arange(4) * pi / omega, abs=1e-16)
     assert value[:-1] == pytest.approx([1e-3, -1e-3, 1e-3, -1e-3], rel=1e-15)
@@ -106,7 +107,7 @@ def test_a_free_oscillation_in_closed_form() -> None:
 
 
 def test_where_the_acceleration_jumps_both_sides_are_extrema() -> None:
-    motion = simulate(CYCLE, mouse_velocity=0.05, displacement=0.0)
+    motion = simulate(CYCLE, Release(0.05))
     time, value = motion.extrema("acceleration")
     jumps = np.flatnonzero(np.diff(time) == 0.0)
     assert jumps.size > 3
@@ -123,9 +124,10 @@ def test_what_rests_before_it_turns_back_turns_where_it_comes_to_rest() -> None:
     )
     velocity = Profile([0.0, 0.05, 0.2, 0.3], [0.0, 0.0, 0.0, 0.04])
     motion = simulate(
-        drive, mouse_velocity=velocity, displacement=2e-3, velocity=0.0,
-        plate_load=Profile([0.0, 0.19, 0.2], [0.0, 0.0, 1.0]), duration=0.3,
-    )  # fmt: skip
+        drive,
+        Release(velocity, 2e-3, 0.0, plate_load=Profile([0.0, 0.19, 0.2], [0.0, 0.0, 1.0])),
+        duration=0.3,
+    )
     rest = next(e for e in motion.events if e.kind == "stick")
     time, value = motion.extrema("position")
     assert rest.time in time.tolist()
@@ -134,7 +136,7 @@ def test_what_rests_before_it_turns_back_turns_where_it_comes_to_rest() -> None:
 
 
 def test_events_of_a_cycle_come_again() -> None:
-    motion = simulate(CYCLE, mouse_velocity=0.05, displacement=0.0)
+    motion = simulate(CYCLE, Release(0.05))
     assert motion.ending.cycle == "stick-slip"
     period = motion.ending.period
     assert motion.events_between(0.0, motion.events[-1].time) == motion.events
@@ -148,9 +150,9 @@ def test_events_of_a_cycle_come_again() -> None:
     assert steps == pytest.approx([period] * len(steps), rel=1e-9)
 
 
-@given(releases())
-def test_samples_lie_between_neighbouring_extrema(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_samples_lie_between_neighbouring_extrema(case: Case) -> None:
+    motion = case.run()
     t = np.linspace(0.0, motion.duration, 97)
     for which in QUANTITIES:
         time, value = motion.extrema(which)
@@ -163,9 +165,9 @@ def test_samples_lie_between_neighbouring_extrema(release: Release) -> None:
         assert ((low - slack <= samples) & (samples <= high + slack))[beside].all()
 
 
-@given(releases(), st.sampled_from(QUANTITIES), st.floats(-0.9, 0.9))
-def test_crossings_alternate(release: Release, which: QuantityName, part: float) -> None:
-    motion = release.run()
+@given(cases(), st.sampled_from(QUANTITIES), st.floats(-0.9, 0.9))
+def test_crossings_alternate(case: Case, which: QuantityName, part: float) -> None:
+    motion = case.run()
     level = part * float(np.abs(motion.extrema(which).value).max())
     time, direction = motion.crossings(which, level)
     assert (direction[1:] == -direction[:-1]).all()
@@ -174,7 +176,7 @@ def test_crossings_alternate(release: Release, which: QuantityName, part: float)
 
 
 def test_what_is_refused() -> None:
-    motion = simulate(CYCLE, mouse_velocity=0.05, displacement=0.0)
+    motion = simulate(CYCLE, Release(0.05))
     with pytest.raises(ValueError, match=r"which must be 'position' or .*, got 'force'"):
         motion.extrema("force")  # type: ignore[arg-type]
     for level in (nan, inf):
@@ -188,6 +190,6 @@ def test_what_is_refused() -> None:
 
 def test_more_than_the_budget_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(budgets, "MOMENTS", budgets.Budget("the moments", 10, "for this test"))
-    motion = simulate(CYCLE, mouse_velocity=0.05, displacement=0.0)
+    motion = simulate(CYCLE, Release(0.05))
     with pytest.raises(ValueError, match="the moments must be at most 10, got 11"):
         motion.events_between(0.0, 1e9)
