@@ -25,7 +25,7 @@ from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.trajectory import Way, check_vibration
 from pindrive.lazy import xr
-from pindrive.motion.drive import Profile
+from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.motion import Motion
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
@@ -64,12 +64,16 @@ class PinState:
     """Where the control block stands."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class PinScan:
-    """What happened to one pin in a scan. Times are those of the hand's path."""
+    """One pin in a scan: its inputs, and the motion to which they lead, computed when first asked.
+
+    Times are those of the hand's path.
+    """
 
     number: int
     """Its place in the array, from 0."""
+    drive: Drive
     begin: float
     end: float
     """Of the scan, s."""
@@ -81,14 +85,43 @@ class PinScan:
     """What it made of it: when the coil was switched."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
+    plate_velocity: Profile
+    """Of the plate in the housing along the drive axis, m/s, over the time since `begin`."""
     load: float | Profile
     """Factor on the plate's friction, over the time since `begin`."""
-    motion: Motion
-    """The pin's motion, over the time since `begin`."""
+    start: PinState
+    """Where it stands at the begin."""
     coil: CoilState
     """The coil's last switching."""
     decision: Decision
     """Where the control block stands at the end."""
+
+    @property
+    def motion(self) -> Motion:
+        """The pin's motion, over the time since `begin`.
+
+        Raises:
+            ValueError: the simulation had to be given up.
+        """
+        kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
+        if "_motion" not in kept:
+            kept["_motion"] = self._followed()
+        found: Motion = kept["_motion"]
+        return found
+
+    def _followed(self) -> Motion:
+        motion = simulated(
+            self.drive,
+            mouse_velocity=self.plate_velocity,
+            displacement=self.start.position,
+            velocity=self.start.velocity,
+            plate_load=self.load,
+            skin_stretch=self.start.skin_stretch,
+            duration=self.end - self.begin,
+        )
+        if motion.status != "ok":
+            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        return motion
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Deflection of the pin in the housing at times t (s, any shape), m.
@@ -230,77 +263,32 @@ def scan(
         required = f"one state for each pin, {len(device.array)}"
         raise ValueError(refusal("start", required, str(len(start))))
     workers = worker_count(threads)
-    prepared = prepare(device, scene, path, start)
-    pins: list[PinScan] = []
+    pins = prepare(device, scene, path, start)
     segments = 0
-    pool = ThreadPoolExecutor(max_workers=min(workers, len(prepared)))
+    pool = ThreadPoolExecutor(max_workers=min(workers, len(pins)))
     try:
-        for pin in pool.map(PreparedPin.follow, prepared):
-            pins.append(pin)
-            segments += pin.motion.segment_count
-            budgets.SEGMENTS.check(segments, f"after {len(pins)} of {len(prepared)} pins")
+        for done, motion in enumerate(pool.map(lambda pin: pin.motion, pins), 1):
+            segments += motion.segment_count
+            budgets.SEGMENTS.check(segments, f"after {done} of {len(pins)} pins")
             if progress:
-                progress(len(pins), len(prepared))
+                progress(done, len(pins))
     finally:  # what has not begun never does, after an error or Ctrl-C
         pool.shutdown(wait=False, cancel_futures=True)
     return Scan(device=device, scene=scene, path=path, pins=tuple(pins), max_angle=max_angle)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PreparedPin:
-    """A pin's inputs, known before anything moves: the scene is read, the coil is switched."""
-
-    number: int
-    device: Device
-    begin: float
-    end: float
-    looks: NDArray[np.float64]
-    luminance: NDArray[np.float64]
-    commands: Commands
-    current: Current
-    load: float | Profile
-    plate_velocity: Profile
-    start: PinState
-    coil: CoilState
-    decision: Decision
-
-    def follow(self) -> PinScan:
-        """The motion that they lead to."""
-        motion = simulated(
-            self.device.drive,
-            mouse_velocity=self.plate_velocity,
-            displacement=self.start.position,
-            velocity=self.start.velocity,
-            plate_load=self.load,
-            skin_stretch=self.start.skin_stretch,
-            duration=self.end - self.begin,
-        )
-        if motion.status != "ok":
-            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
-        return PinScan(
-            number=self.number,
-            begin=self.begin,
-            end=self.end,
-            looks=self.looks,
-            luminance=self.luminance,
-            commands=self.commands,
-            current=self.current,
-            load=self.load,
-            motion=motion,
-            coil=self.coil,
-            decision=self.decision,
-        )
-
-
 def prepare(
     device: Device, scene: Scene, path: HandPath, start: Sequence[PinState] | None = None
-) -> list[PreparedPin]:
-    """Read the scene under each spot and switch the coils; arguments and errors as for `scan`."""
+) -> list[PinScan]:
+    """Read the scene under each spot and switch the coils; nothing moves yet.
+
+    Arguments and errors as for `scan`.
+    """
     check_work(device, scene, path)
     looks = device.control.looks(path.begin, path.end)
     plate_velocity = path.plate_velocity(device.array.axis)
     states = [PinState()] * len(device.array) if start is None else start
-    prepared: list[PreparedPin] = []
+    prepared: list[PinScan] = []
     rows = switchings = 0
     for number, state in enumerate(states):
         luminance = _seen(device, scene, path, looks, number)
@@ -313,17 +301,17 @@ def prepare(
         rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
-            PreparedPin(
+            PinScan(
                 number=number,
-                device=device,
+                drive=device.drive,
                 begin=path.begin,
                 end=path.end,
                 looks=looks,
                 luminance=luminance,
                 commands=commands,
                 current=current,
-                load=load,
                 plate_velocity=plate_velocity,
+                load=load,
                 start=state,
                 coil=coil,
                 decision=decision,
