@@ -21,7 +21,7 @@ from timeit import Timer
 import numpy as np
 
 from pindrive import Drive, Motion, simulate
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
@@ -82,7 +82,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="timings of which the median counts")
     rounds = parser.parse_args().rounds
 
-    device = load(EXAMPLE)
+    device = load_device(EXAMPLE)
     assert isinstance(device.mouse_velocity, float)
     release = Release(device.drive, device.mouse_velocity, device.displacement)
 
