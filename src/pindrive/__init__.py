@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pindrive.motion.batch import simulate_batch
     from pindrive.motion.drive import Contact, Drive, Profile
     from pindrive.motion.motion import Motion
+    from pindrive.motion.release import Release
     from pindrive.motion.simulate import simulate
     from pindrive.quantities.table import ImplausibleValueWarning
     from pindrive.study.robustness import robustness
@@ -31,6 +32,7 @@ __all__ = [
     "Motion",
     "Page",
     "Profile",
+    "Release",
     "Scan",
     "Scene",
     "Study",
@@ -54,6 +56,7 @@ _HOME = {
     "Motion": "pindrive.motion.motion",
     "Page": "pindrive.device.reading",
     "Profile": "pindrive.motion.drive",
+    "Release": "pindrive.motion.release",
     "Scan": "pindrive.device.scanning",
     "Scene": "pindrive.device.page",
     "Study": "pindrive.study.study",

@@ -49,8 +49,8 @@ def test_a_file_is_read_in_si_to_the_last_bit(write: Write) -> None:
     drive = device.drive
     assert (drive.mass, drive.stiffness, drive.damping) == (0.010, 100.0, 0.40)
     assert (drive.plate.kinetic, drive.plate.static, drive.finger.kinetic) == (0.020, None, 0.005)
-    assert (device.mouse_velocity, device.displacement) == (0.1, 0.0)
-    assert (device.velocity, device.duration, device.name) == (None, None, "")
+    assert (device.release.mouse_velocity, device.release.displacement) == (0.1, 0.0)
+    assert (device.release.velocity, device.duration, device.name) == (None, None, "")
 
 
 def test_example_loads() -> None:

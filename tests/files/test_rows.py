@@ -60,13 +60,13 @@ def test_skin(write: Write) -> None:
         write(FINGER, f'{FINGER}\nstiffness = "1 N/mm"', SPEED, f'{SPEED}\nskin_stretch = "-2 µm"')
     )
     assert device.drive.finger.stiffness == 1000.0
-    assert device.skin_stretch == -2e-6
+    assert device.release.skin_stretch == -2e-6
     assert device.drive.plate.rigid
 
 
 @pytest.mark.parametrize("load_of_one", ["1", "1.0", '"100 %"', '"1"'])
 def test_a_constant_load(write: Write, load_of_one: str) -> None:
-    assert load_device(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).plate_load == 1.0
+    assert load_device(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).release.plate_load == 1.0
 
 
 def test_inputs_that_change(write: Write) -> None:
@@ -77,8 +77,8 @@ def test_inputs_that_change(write: Write) -> None:
             'plate_load = [["0 ms", 1], ["5 ms", "20 %"]]',
         )
     )
-    assert device.mouse_velocity == Profile((0.0, 0.04), (0.06, 0.0))
-    assert device.plate_load == Profile((0.0, 0.005), (1.0, 0.2))
+    assert device.release.mouse_velocity == Profile((0.0, 0.04), (0.06, 0.0))
+    assert device.release.plate_load == Profile((0.0, 0.005), (1.0, 0.2))
     values = device.values()
     assert values["motion.mouse_velocity"] == ((0.0, 0.06), (0.04, 0.0))
     assert values["motion.plate_load"] == ((0.0, 1.0), (0.005, 0.2))
@@ -86,7 +86,7 @@ def test_inputs_that_change(write: Write) -> None:
 
 def test_left_out_is_left_out(write: Write) -> None:
     device = load_device(write())
-    assert device.plate_load == 1.0
+    assert device.release.plate_load == 1.0
     values = device.values()
     for key in ("plate.curve", "finger.curve", "finger.stiffness", "motion.skin_stretch"):
         assert values[key] is None
@@ -301,4 +301,4 @@ def test_equal_rows_are_a_constant_load(write: Write) -> None:
     device: DeviceFile = load_device(
         write(PLATE, PLATE + FALLING), ['plate_load=[["0 ms", 1], ["5 ms", 1]]']
     )
-    assert device.plate_load == Profile((0.0, 0.005), (1.0, 1.0))
+    assert device.release.plate_load == Profile((0.0, 0.005), (1.0, 1.0))

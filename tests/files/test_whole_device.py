@@ -113,8 +113,8 @@ def test_a_release_is_at_the_hands_speed_unless_said(write: Write) -> None:
     assert bare != GOOD
     path = Path("bare.toml")
     path.write_text(bare + '\n[scan]\nhand_speed = "70 mm/s"\n', encoding="utf-8")
-    assert load_device(path).mouse_velocity == 0.07
-    assert load_device(write('\n[scan]\nhand_speed = "70 mm/s"\n')).mouse_velocity == 0.1
+    assert load_device(path).release.mouse_velocity == 0.07
+    assert load_device(write('\n[scan]\nhand_speed = "70 mm/s"\n')).release.mouse_velocity == 0.1
     path.write_text(bare, encoding="utf-8")
     with pytest.raises(ConfigError, match=r"motion.mouse_velocity is missing"):
         load_device(path)

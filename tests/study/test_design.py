@@ -204,14 +204,7 @@ def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:
     found = evaluate(plan, plan.columns(0, 2), 2, plan.outputs)["transient_settling_time"]
     for i, mass in enumerate(("5 g", "10 g")):
         device = load_device(example, [f"mass={mass}"])
-        motion = simulate(
-            device.drive,
-            mouse_velocity=device.mouse_velocity,
-            displacement=device.displacement,
-            plate_load=device.plate_load,
-            skin_stretch=device.skin_stretch,
-            duration=device.duration,
-        )
+        motion = simulate(device.drive, device.release, duration=device.duration)
         assert found[i] == motion.transient.settling_time
 
 

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
-from pindrive import Contact, Drive, simulate
+from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
 from pindrive.files.device import ConfigError, load_device, motion_of
 from pindrive.quantities.drive import INPUTS
@@ -105,10 +105,7 @@ def test_a_swept_point_is_the_device_with_that_value_set() -> None:
                 plate=Contact(plate, plate * 26.5 / 22.0, [(u, part * plate) for u, part in shape]),
                 finger=Contact(finger, 1.5 * finger, stiffness=at["finger.stiffness"]),
             ),
-            mouse_velocity=0.060,
-            displacement=0.002,
-            # 40 % of what the skin can hold
-            skin_stretch=0.4 * 1.5 * finger / at["finger.stiffness"],
+            Release(0.060, 0.002, skin_stretch=0.4 * 1.5 * finger / at["finger.stiffness"]),
         )
         set_so = load_device(
             "device.toml",
@@ -168,7 +165,7 @@ def test_damping_given_as_a_ratio_stays_that_ratio() -> None:
             damping = 2.0 * 0.16 * np.sqrt(mass * 100.0) if keep else 0.32
             contacts = {"plate": Contact(0.022, 0.0265), "finger": Contact(0.005)}
             drive = Drive(mass=mass, stiffness=100.0, damping=damping, **contacts)
-            motion = simulate(drive, mouse_velocity=0.060, displacement=0.002)
+            motion = simulate(drive, Release(0.060, 0.002))
             assert found[i] == pytest.approx(motion.transient.settling_time, rel=1e-12)
             one = motion_of(load_device("device.toml", [f"mass={mass} kg"]))
             assert one.transient.settling_time == pytest.approx(found[i], rel=1e-12)

@@ -29,6 +29,7 @@ from pindrive.device.trajectory import Way, check_vibration
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
@@ -104,12 +105,8 @@ class PinScan:
     """What it made of it: when the coil was switched."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
-    plate_velocity: Profile
-    """Of the plate in the housing along the drive axis, m/s, over the time since `begin`."""
-    load: float | Profile
-    """Factor on the plate's friction, over the time since `begin`."""
-    start: PinState
-    """Where it stands at the begin."""
+    release: Release
+    """The state at `begin`, and the inputs over the time since."""
     coil: CoilState
     """The coil's last switching."""
     decision: Decision
@@ -129,15 +126,7 @@ class PinScan:
         return found
 
     def _followed(self) -> Motion:
-        motion = simulated(
-            self.drive,
-            mouse_velocity=self.plate_velocity,
-            displacement=self.start.position,
-            velocity=self.start.velocity,
-            plate_load=self.load,
-            skin_stretch=self.start.skin_stretch,
-            duration=self.end - self.begin,
-        )
+        motion = simulated(self.drive, self.release, duration=self.end - self.begin)
         if motion.status != "ok":
             raise ValueError(f"pin {self.number}: the simulation {motion.status}")
         return motion
@@ -168,6 +157,11 @@ class PinScan:
             required = f"from {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("t", required, f"{times.min()!s} to {times.max()!s} s"))
         return times - self.begin
+
+    @property
+    def load(self) -> float | Profile:
+        """Factor on the plate's friction, over the time since `begin`."""
+        return self.motion.release.plate_load
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -408,9 +402,9 @@ def prepare(
                 luminance=luminance,
                 commands=commands,
                 current=current,
-                plate_velocity=plate_velocity,
-                load=load,
-                start=state,
+                release=Release(
+                    plate_velocity, state.position, state.velocity, load, state.skin_stretch
+                ),
                 coil=coil,
                 decision=decision,
             )

@@ -23,6 +23,7 @@ from pindrive.files.ratios import written as as_text
 from pindrive.files.schema import Place, Schema, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
+from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Rows, counted
 from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
@@ -75,11 +76,7 @@ class DeviceFile:
     name: str
     description: str
     drive: Drive
-    mouse_velocity: float | Profile
-    plate_load: float | Profile
-    displacement: float
-    velocity: float | None
-    skin_stretch: float | None
+    release: Release
     duration: float | None
     settling_band: float
     tables: Mapping[str, Any]
@@ -133,9 +130,14 @@ class DeviceFile:
 
         What changes is its rows: (speed, force) or (time, value).
         """
-        owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
+        drive = self.drive
+        parts = {"plate": drive.plate, "finger": drive.finger, "motion": self.release}
+        own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
         places = ((key, *key.split(".")) for key in DRIVE)
-        values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        values = {
+            key: own[key] if key in own else getattr(parts.get(table, drive), name)
+            for key, table, name in places
+        }
         if self.whole:
             values |= {key: self.whole.value(key) for key in WHOLE}
         return {
@@ -235,11 +237,7 @@ def motion_of(device: DeviceFile) -> Motion:
 
     return simulated(
         device.drive,
-        mouse_velocity=device.mouse_velocity,
-        displacement=device.displacement,
-        velocity=device.velocity,
-        plate_load=device.plate_load,
-        skin_stretch=device.skin_stretch,
+        device.release,
         duration=device.duration,
         settling_band=device.settling_band,
     )
@@ -475,13 +473,13 @@ def _device(
         else Drive.with_damping_ratio(
             **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
         ),
-        mouse_velocity=whole.scan.hand_speed
-        if whole and hand
-        else over_time(motion.mouse_velocity),
-        plate_load=over_time(motion.plate_load),
-        displacement=motion.displacement,
-        velocity=motion.velocity,
-        skin_stretch=motion.skin_stretch,
+        release=Release(
+            whole.scan.hand_speed if whole and hand else over_time(motion.mouse_velocity),
+            motion.displacement,
+            motion.velocity,
+            over_time(motion.plate_load),
+            motion.skin_stretch,
+        ),
         duration=motion.duration,
         settling_band=motion.settling_band,
         tables=tables,

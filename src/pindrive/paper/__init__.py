@@ -1,6 +1,6 @@
 """The paper "Dynamics of tactile device drive": its analysis, mended, and its results, recomputed.
 
-Here are equations (2) to (26) as functions of a `Release`; `pindrive paper` writes the report.
+Here are equations (2) to (26) as functions of `Releases`; `pindrive paper` writes the report.
 """
 
 from pindrive.paper.formulas import (
@@ -32,10 +32,10 @@ from pindrive.paper.formulas import (
     velocity,
     velocity_phase,
 )
-from pindrive.paper.release import Release
+from pindrive.paper.release import Releases
 
 __all__ = [
-    "Release",
+    "Releases",
     "acceleration",
     "amplitude",
     "applies",
