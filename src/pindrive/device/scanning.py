@@ -161,7 +161,7 @@ class PinScan:
     @property
     def load(self) -> float | Profile:
         """Factor on the plate's friction, over the time since `begin`."""
-        return self.motion.release.plate_load
+        return self.release.plate_load
 
     @property
     def events(self) -> tuple[Event, ...]:
