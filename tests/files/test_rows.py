@@ -66,7 +66,9 @@ def test_skin(write: Write) -> None:
 
 @pytest.mark.parametrize("load_of_one", ["1", "1.0", '"100 %"', '"1"'])
 def test_a_constant_load(write: Write, load_of_one: str) -> None:
-    assert load_device(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).release.plate_load == 1.0
+    assert (
+        load_device(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).release.plate_load == 1.0
+    )
 
 
 def test_inputs_that_change(write: Write) -> None:

@@ -20,6 +20,7 @@ from pydantic import ValidationError
 
 from pindrive.files.ratios import keep_ratios
 from pindrive.files.ratios import written as as_text
+from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import Place, Schema, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
@@ -115,6 +116,16 @@ class DeviceFile:
         """What counts as felt."""
         return self._whole.criteria()
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return self.path, *files_named(self.tables, self.path.parent).values()
+
+    @property
+    def recording_words(self) -> str:
+        """What the recording is that gives the mouse velocity, and its smoothing; empty: none."""
+        return recording_words(self.tables, self.path.parent)
+
     def with_whole(self) -> DeviceFile:
         """The same with `whole`, also of a file without a table of it."""
         return device_of(self.path, self.tables, whole=True)
@@ -158,7 +169,8 @@ def load_device(
         path: a TOML file; `pindrive init FILE` writes one.
         overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
             text has a unit. A key is given in full (plate.kinetic=30 mN) or by its last part where
-            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
+            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]) or a
+            CSV of them (mouse_velocity=speed.csv); a path is relative to the current folder.
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
             a value that is set keeps its ratio to it unless it is set too: static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
@@ -214,10 +226,12 @@ def device_of(
     meant = {nearest(key) for key in unknown}
     problems += [f"{file}: {not_known(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
+    read, found = with_files_read(tables, file.parent, place)
+    problems += found
     try:
-        schema = Schema.model_validate(tables, context=place)
+        schema = Schema.model_validate(read, context=place)
         problems += schema.conflicts(place)
-        around = _around(tables, place) if whole else None
+        around = _around(read, place) if whole else None
         if around:
             problems += around.conflicts(schema, tables, place)
         if not problems:
@@ -320,7 +334,9 @@ def settings_of(
             problems.append(f"--set {quoted(override)}: must be key=value")
             continue
         keys = keys_meant(given)
-        if len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
+        if len(keys) == 1 and is_file(keys[0], text):
+            value = str(Path(text).absolute())
+        elif len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
             try:
                 value = _rows_as_toml(text)
             except (ValueError, RecursionError) as error:
@@ -335,6 +351,8 @@ def _setting(given: str, value: object) -> Setting:
     keys = keys_meant(given)
     if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
         value = as_text(keys[0], float(value))
+    elif len(keys) == 1 and is_file(keys[0], value):
+        value = str(Path(str(value)).absolute())
     return Setting(given, value, f"overrides[{quoted(given)}]")
 
 
