@@ -222,8 +222,8 @@ def regime(damping_ratio: float) -> str:
 def motion_report(motion: Motion) -> RenderableType:
     """Phases, numbers, and how the motion ends."""
     words = [ending(motion), trust(motion)]
-    if motion.status != "ok":
-        words.append(f"The simulation {motion.status}.")
+    if motion.status:
+        words.append(f"The simulation {motion.status.explanation}.")
     lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
     return Group(_phases(motion), _numbers(motion), *lines)
 

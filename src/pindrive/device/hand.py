@@ -159,11 +159,11 @@ class HandPath:
 
 
 def strokes(
-    stops: Sequence[Point],
-    speeds: float | Sequence[float],
+    stops: Sequence[tuple[float | str, float | str]],
+    speeds: float | str | Sequence[float | str],
     *,
-    pause: float = 0.0,
-    deviation: float = 1e-4,
+    pause: float | str = 0.0,
+    deviation: float | str = 1e-4,
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -182,7 +182,7 @@ def strokes(
     """
     if len(stops) < 2:
         raise ValueError(refusal("stops", "at least two places", str(len(stops))))
-    peaks = [speeds] * (len(stops) - 1) if isinstance(speeds, (int, float)) else list(speeds)
+    peaks = [speeds] * (len(stops) - 1) if isinstance(speeds, (int, float, str)) else list(speeds)
     if len(peaks) != len(stops) - 1:
         raise ValueError(refusal("speeds", f"one or {len(stops) - 1}", str(len(peaks))))
     rest = check("pause", pause)
@@ -193,7 +193,8 @@ def strokes(
     shape = (s * s[::-1]) ** 2  # alike both ways, to the bit
     shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
     times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
-    for (x0, y0), (x1, y1), speed in zip(stops[:-1], stops[1:], peaks, strict=True):
+    places = [tuple(check("hand.place", at, label="stops") for at in stop) for stop in stops]
+    for (x0, y0), (x1, y1), speed in zip(places[:-1], places[1:], peaks, strict=True):
         dx, dy = (check("hand.place", way, label="stroke") for way in (x1 - x0, y1 - y0))
         length = check("stroke.length", hypot(dx, dy))
         lasts = PEAK * length / check("hand_speed", speed, label="speeds")
@@ -205,18 +206,20 @@ def strokes(
             times.append(np.array([begin + lasts + rest]))
             vx.append(np.zeros(1))
             vy.append(np.zeros(1))
-    return HandPath(np.concatenate(times), np.concatenate(vx), np.concatenate(vy), stops[0])
+    return HandPath(
+        np.concatenate(times), np.concatenate(vx), np.concatenate(vy), (places[0][0], places[0][1])
+    )
 
 
 def lines(
-    rows: Sequence[float],
-    left: float,
-    right: float,
+    rows: Sequence[float | str],
+    left: float | str,
+    right: float | str,
     *,
-    speed: float,
-    return_speed: float,
-    pause: float = 0.0,
-    deviation: float = 1e-4,
+    speed: float | str,
+    return_speed: float | str,
+    pause: float | str = 0.0,
+    deviation: float | str = 1e-4,
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 

@@ -177,7 +177,7 @@ class Page:
         *,
         text: str | None = None,
         image: str | PathLike[str] | None = None,
-        grating: Iterable[float] | None = None,
+        grating: Iterable[float | str] | None = None,
         font: str | PathLike[str] | None = None,
         path: str | PathLike[str] | None = None,
     ) -> None:

@@ -61,7 +61,7 @@ def through(
     x: ArrayLike,
     y: ArrayLike,
     *,
-    acceleration: float = ACCELERATION,
+    acceleration: float | str = ACCELERATION,
     where: str = "",
     rows: Sequence[int] | None = None,
     about: str = "",
@@ -170,7 +170,7 @@ class Recording:
         names = ("dx", "dy") if relative else ("x", "y")
         table.check_header(("t", *names), EXAMPLE)
         times = table.column("t", "hand.time", "s", _USUAL["t"])
-        step = 1.0 / check("mouse_resolution", resolution, label="resolution")
+        step = 1.0 / resolution
         counted = [table.unit(name) in COUNTS for name in names]
         places = [
             np.array(
@@ -303,9 +303,9 @@ class Recording:
 def read_csv(
     path: str | PathLike[str],
     *,
-    acceleration: float = ACCELERATION,
-    resolution: float = RESOLUTION,
-    cutoff: float = CUTOFF,
+    acceleration: float | str = ACCELERATION,
+    resolution: float | str = RESOLUTION,
+    cutoff: float | str = CUTOFF,
 ) -> HandPath:
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 
@@ -318,4 +318,6 @@ def read_csv(
     Raises:
         ValueError: as for `Recording.read` and `Recording.path`.
     """
-    return Recording.read(path, resolution).path(acceleration, cutoff)
+    recording = Recording.read(path, check("mouse_resolution", resolution, label="resolution"))
+    most = check("hand_acceleration", acceleration, label="acceleration")
+    return recording.path(most, check("smoothing_cutoff", cutoff))

@@ -451,7 +451,7 @@ def _value_problems(error: ValidationError, meant: Set[str | None], place: Place
     for problem in error.errors():
         key = ".".join(str(part) for part in problem["loc"])
         if problem["type"] == "value_error":
-            problems.append(str(problem["ctx"]["error"]))
+            problems.append(problem["ctx"]["error"].args[0])
         elif problem["type"] == "missing" and not {key, f"{key.partition('.')[0]}.curve"} & meant:
             table, written = key.partition(".")[0], line(NUMBERS[key])
             problems.append(f"{place(key)}: {key} is missing; write {written} in [{table}]")

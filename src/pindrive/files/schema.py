@@ -180,7 +180,7 @@ class Schema(BaseModel):
             try:
                 check(*values, where=place(*keys), label=keys[0])
             except ValueError as error:
-                problems.append(str(error))
+                problems.append(error.args[0])
 
         say(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
         say(check_load, plate, load, keys=("motion.plate_load", "plate.curve"))

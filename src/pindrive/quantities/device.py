@@ -308,6 +308,14 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("stroke.length", "D", "m", "length of a stroke", between(1e-9, 2e3)),
     Quantity("stroke.duration", "T", "s", "duration of a stroke", between(1e-12, 1e8)),
     Quantity("hand.time", "t", "s", "time in a recorded path", between(-1e6, 1e6)),
+    Quantity(
+        "margin",
+        "h_m",
+        "m",
+        "white around the text or the lines of a page",
+        between(0.0, 10.0),
+        0.005,
+    ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
         "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
