@@ -13,14 +13,14 @@ import xarray as xr
 
 import pindrive
 from command import EXAMPLE, SKIN, refused, run
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
 
 def example() -> pindrive.Motion:
     """The motion of the example file, from Python."""
-    device = load(EXAMPLE)
+    device = load_device(EXAMPLE)
     return pindrive.simulate(device.drive, device.release)
 
 

@@ -130,12 +130,29 @@ def init(
 
 
 @app.command(**shown("check"))
-def check(file: DeviceArgument) -> None:
-    """Say what is wrong with a device file, or what it describes."""
-    from pindrive.files.device import load
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or a recorded hand (CSV).")
+    ],
+) -> None:
+    """Say what is wrong with a device file, or what it describes; or what a recording (CSV) is.
+
+    Of a recording of the hand: its rate and resolution, and its peak speed before and after
+    smoothing.
+    """
+    if file.suffix.lower() == ".csv":
+        from pindrive.cli.tables import path_words
+        from pindrive.device.recording import read_csv
+
+        with refusing():
+            path = read_csv(file)
+        for line in (path.about, path_words(path, 0.0)):
+            typer.echo(line)
+        return
+    from pindrive.files.device import load_device
 
     with refusing():
-        device = load(file)
+        device = load_device(file)
         pressing = device.whole.magnet.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.friction import Coefficients
@@ -166,7 +183,7 @@ def simulate(
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive.files import export
-    from pindrive.files.device import load, motion_of
+    from pindrive.files.device import load_device, motion_of
     from pindrive.files.output import (
         MOTION_CSV,
         MOTION_JSON,
@@ -178,7 +195,7 @@ def simulate(
     from pindrive.quantities import budgets
 
     with refusing():
-        device = load(file, overrides or ())
+        device = load_device(file, overrides or ())
         wanted: list[tuple[Output, Callable[[Motion, Path], None]]] = []
         if plot:
             from pindrive.plot.motion import write_figure
@@ -195,7 +212,7 @@ def simulate(
             to_json = Output(json, MOTION_JSON, "--json")
             wanted.append((to_json, lambda m, part: export.write_json(m, device, part)))
         budgets.MOTION_SAMPLES.check(samples, where="--samples")
-        with writing([output for output, _ in wanted], [file]) as parts:
+        with writing([output for output, _ in wanted], device.inputs) as parts:
             motion = motion_of(device)
             for output, write in wanted:
                 with naming(output.path):
@@ -203,6 +220,8 @@ def simulate(
     from pindrive.cli.tables import motion_report, show
 
     show(motion_report(motion))
+    if device.recording_words:
+        typer.echo(device.recording_words)
     for output, _ in wanted:
         typer.echo(f"Wrote {output.path}")
 

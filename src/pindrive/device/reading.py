@@ -6,18 +6,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from math import radians
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.hand import HandPath, lines, read_csv
+from pindrive.device.hand import HandPath, lines
 from pindrive.device.page import Scene, in_words
+from pindrive.device.recording import CUTOFF, RESOLUTION, read_csv
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from pindrive.device.hand import HandPath
     from pindrive.device.page import Scene
     from pindrive.device.pin_array import PinArray
@@ -42,6 +42,8 @@ class Reading:
         pixel: of the scene, m; None: of an image its own, of text and lines 0.1 mm.
         max_angle: between motion and drive axis before a warning, rad, from 0 to a right angle.
         hand_acceleration: m/s²; more in a record is a jump of its speed.
+        mouse_resolution: of a record in counts of a mouse, counts per m.
+        smoothing_cutoff: with which a raw record is smoothed, Hz.
         path_deviation: of the strokes' piecewise-linear speed, a part of its peak, in (0, 0.1].
 
     Raises:
@@ -56,6 +58,8 @@ class Reading:
     pixel: float | None = None
     max_angle: float = radians(20.0)
     hand_acceleration: float = 30.0
+    mouse_resolution: float = RESOLUTION
+    smoothing_cutoff: float = CUTOFF
     path_deviation: float = 1e-4
 
     def __post_init__(self) -> None:
@@ -91,7 +95,12 @@ class Reading:
 
     def record(self, file: str | PathLike[str]) -> HandPath:
         """A recorded path; errors as for `read_csv`."""
-        return read_csv(file, acceleration=self.hand_acceleration)
+        return read_csv(
+            file,
+            acceleration=self.hand_acceleration,
+            resolution=self.mouse_resolution,
+            cutoff=self.smoothing_cutoff,
+        )
 
     def strokes(self, scene: Scene, array: PinArray) -> HandPath:
         """Line by line over a scene, as far as every spot stays on it.
@@ -144,7 +153,7 @@ def _size(extent: Iterable[float]) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page:
-    """One of `text`, `image` and `grating`.
+    """What is on a page, one of `text`, `image` and `grating`, and how the hand moves over it.
 
     Args:
         text: one or more lines.
@@ -152,13 +161,35 @@ class Page:
         grating: from line to line in each of several groups, m.
         font: a file for the text; None: DejaVu Sans.
         path: a CSV of the hand's path; None: strokes.
+
+    Raises:
+        ValueError: a pitch is no number or out of its range.
     """
 
-    text: str | None = None
-    image: Path | None = None
-    grating: tuple[float, ...] | None = None
-    font: Path | None = None
-    path: Path | None = None
+    text: str | None
+    image: Path | None
+    grating: tuple[float, ...] | None
+    font: Path | None
+    path: Path | None
+
+    def __init__(
+        self,
+        *,
+        text: str | None = None,
+        image: str | PathLike[str] | None = None,
+        grating: Iterable[float | str] | None = None,
+        font: str | PathLike[str] | None = None,
+        path: str | PathLike[str] | None = None,
+    ) -> None:
+        """Validate the pitches, and keep paths."""
+        if grating is not None:
+            found = [check("pitch", x, label=f"grating[{i}]") for i, x in enumerate(grating)]
+            object.__setattr__(self, "grating", tuple(found))
+        else:
+            object.__setattr__(self, "grating", None)
+        object.__setattr__(self, "text", text)
+        for name, file in (("image", image), ("font", font), ("path", path)):
+            object.__setattr__(self, name, None if file is None else Path(file))
 
     def check(self, label: str, where: str = "") -> None:
         """Refuse none or several of them, and a font without text.

@@ -42,7 +42,7 @@ class Table(BaseModel):
         if key not in NUMBERS or value is None:
             return value
         quantity, place = NUMBERS[key], cast(Place, info.context)(key)
-        if quantity.rows and (isinstance(value, list) or not quantity.may_be_constant):
+        if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
             return _rows(value, quantity, key, place)
         return number(value, quantity, usual(quantity), key, place)
 
@@ -60,6 +60,8 @@ def number(value: object, quantity: Quantity, example: str, label: str, place: s
 
 def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     """Rows in SI, each checked and in order; a mistake is said with its row, counted from 0."""
+    if isinstance(value, tuple):  # read from a file of their own, and checked there
+        return value
     across, along = (QUANTITIES[name] for name in COLUMNS[quantity.rows_of])
     words = [column.name.rpartition(".")[2] for column in (across, along)]
     examples = across.written(quantity.rows[-1][0]), quantity.written(quantity.rows[-1][1])

@@ -94,6 +94,8 @@ class _Scan(Table):
     pixel: float | None = None
     max_angle: float = _standard("max_angle")
     hand_acceleration: float = _standard("hand_acceleration")
+    mouse_resolution: float = _standard("mouse_resolution")
+    smoothing_cutoff: float = _standard("smoothing_cutoff")
     path_deviation: float = _standard("path_deviation")
 
 

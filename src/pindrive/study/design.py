@@ -94,7 +94,7 @@ class Plan:
     def inputs(self) -> tuple[Path, ...]:
         """The files that it was read from, or reads when it is worked out."""
         page = self.page.page.files.values() if self.page else ()
-        return (self.path, self.device.path, *page)
+        return (self.path, *self.device.inputs, *page)
 
     @property
     def shape(self) -> tuple[int, ...]:
