@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 from typer.testing import CliRunner, Result
@@ -27,3 +28,8 @@ def refused(*arguments: str | Path) -> str:
     assert {path: path.stat().st_mtime_ns for path in Path().rglob("*")} == before
     (line,) = result.stderr.splitlines()
     return line
+
+
+def taking_ctrl_c() -> None:
+    """In a process that begins: Ctrl-C is not ignored, whatever this one was told by its shell."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from command import EXAMPLES
+from command import EXAMPLES, taking_ctrl_c
 
 pytestmark = [
     pytest.mark.usefixtures("in_empty_folder"),
@@ -29,11 +29,13 @@ LONG = {
 def test_ctrl_c_ends_a_command(name: str) -> None:
     """Sent when the file that it is to write has been begun."""
     command = [sys.executable, "-m", "pindrive", *LONG[name].split()]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, preexec_fn=taking_ctrl_c
+    ) as running:
         while running.poll() is None and not any(Path().iterdir()):
             time.sleep(0.02)
         running.send_signal(signal.SIGINT)
         _, said = running.communicate()
-    assert running.returncode == 130
+    assert running.returncode == 130, said
     assert said.startswith("stopped") and said.count("\n") == 1
     assert list(Path().iterdir()) == []
