@@ -315,6 +315,7 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "white around the text or the lines of a page",
         between(0.0, 10.0),
         0.005,
+        "assumed: the hand starts and stops on white paper",
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
