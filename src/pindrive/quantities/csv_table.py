@@ -10,6 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Final
 
+from pindrive.quantities import budgets
 from pindrive.quantities.table import check, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 
@@ -40,7 +41,7 @@ class CsvTable:
             example: a header.
 
         Raises:
-            ValueError: it cannot be read, is empty, or a column is there twice.
+            ValueError: it cannot be read, is empty, or has too many rows.
         """
         file = Path(path)
         try:
@@ -57,6 +58,7 @@ class CsvTable:
         ]
         if not lines:
             raise ValueError(f"{file}: is empty; {what} begins with {quoted(example)}")
+        budgets.INPUT_ROWS.check(len(lines) - 1, where=str(file))
         head = lines[0][1]
         apart = max(",;\t", key=head.count)
         rows = tuple(tuple(row) for row in csv.reader([line for _, line in lines], delimiter=apart))

@@ -265,11 +265,11 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "1/m",
         "steps of the mouse per length, in which a recording may count",
         between(1e2, 1e8),
-        1000.0 / 0.0254,
+        1e7 / 254.0,
         "assumed: 1000 to the inch, as usual mice have",
         "scan",
         optional=True,
-        remark='1000 to the inch, "1000 dpi", unless given',
+        remark="1000 dpi unless given",
     ),
     Quantity(
         "smoothing_cutoff",
