@@ -20,7 +20,7 @@ from timeit import Timer
 import numpy as np
 
 from pindrive import Drive, Motion, Release, simulate
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
@@ -72,7 +72,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="timings of which the median counts")
     rounds = parser.parse_args().rounds
 
-    device = load(EXAMPLE)
+    device = load_device(EXAMPLE)
     drive, release = device.drive, device.release
 
     def exact() -> Motion:

@@ -22,7 +22,7 @@ from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Sce
 from pindrive.device.gaps import smallest_gaps
 from pindrive.device.pin_array import Neighbours
 from pindrive.evaluation import judge
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from random_scans import RandomScan
 
@@ -329,7 +329,7 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
     if what == "template":
         assert run("init", "device.toml", "--device").exit_code == 0
     example = Path(__file__).parents[2] / "examples" / "tactile-reader.toml"
-    file = load("device.toml" if what == "template" else example)
+    file = load_device("device.toml" if what == "template" else example)
     assert file.whole
     device, reading = file.whole.device(file.drive), file.whole.reading()
     assert "cannot meet" in " ".join(meeting_words(device, reading.return_speed))

@@ -14,10 +14,10 @@ import xarray as xr
 
 from command import EXAMPLE, GOOD, refused, run
 from pindrive import Contact, Drive, Release, Status, simulate, simulate_batch
-from pindrive.files.device import load, motion_of
+from pindrive.files.device import load_device, motion_of
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import influence
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -111,7 +111,7 @@ def test_simulate_says_uses_and_writes_it(how: str) -> None:
     )
     done = run("simulate", *arguments, "--json", "a.json", "--netcdf", "a.nc", "--plot", "a.svg")
     assert done.exit_code == 0, done.output
-    motion = motion_of(load("device.toml"))
+    motion = motion_of(load_device("device.toml"))
     time = motion.settling_time(0.02)
     assert time > motion.settling_time(0.05)
     (row,) = (line for line in done.stdout.splitlines() if " t_s " in line)
@@ -175,7 +175,7 @@ def test_a_sweep_uses_it(how: str) -> None:
         for speed, time in zip(
             data.mouse_velocity.values, data.transient_settling_time.values.ravel(), strict=True
         ):
-            motion = motion_of(load(EXAMPLE, [f"mouse_velocity={float(speed)!r} m/s"]))
+            motion = motion_of(load_device(EXAMPLE, [f"mouse_velocity={float(speed)!r} m/s"]))
             assert time == motion.settling_time(0.02) > motion.settling_time(0.05)
     assert run("map", "study.nc", "-o", "map.svg").exit_code == 0
     assert "ε" in Path("map.svg").read_text("utf-8")
@@ -197,7 +197,7 @@ def test_sensitivity_and_robustness_use_it() -> None:
     numbers = ("transient_settling_time",)
     one, other = (influence(plan, numbers=numbers, rows=128) for plan in (usual, narrow))
     assert one.near and other.near
-    motion = motion_of(load(EXAMPLE))
+    motion = motion_of(load_device(EXAMPLE))
     assert other.near.values["transient_settling_time"] == motion.settling_time(0.01)
     assert one.near.values["transient_settling_time"] == motion.settling_time(0.05)
     spreads = [found.over["transient_settling_time"].spread for found in (one, other)]
@@ -219,7 +219,7 @@ def test_a_swept_band_and_slow_devices() -> None:
     for device in (EXAMPLE.as_posix(), "curved.toml"):
         Path("study.toml").write_text(f'base = "{device}"\n[axes]\nsettling_band = [0.01, 0.2]\n')
         assert run("sweep", "study.toml", "--restart").exit_code == 0
-        motion = motion_of(load(device))
+        motion = motion_of(load_device(device))
         with xr.open_dataset("study.nc", decode_timedelta=False) as data:
             expected = [motion.settling_time(band) for band in (0.01, 0.2)]
             assert data.transient_settling_time.values.tolist() == expected
@@ -231,4 +231,4 @@ def test_scans_have_no_part_in_it() -> None:
         'grating = ["4 mm"]\n'
     )
     assert "motion.settling_band has no part in a scan" in refused("sweep", "study.toml")
-    assert not isnan(load(EXAMPLE).settling_band)
+    assert not isnan(load_device(EXAMPLE).settling_band)

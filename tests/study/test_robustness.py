@@ -13,7 +13,7 @@ from pindrive import Contact, Drive, Release, simulate_batch
 from pindrive.cli.app import app
 from pindrive.study.design import Plan
 from pindrive.study.robustness import Share, robustness
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 HERE = Path(__file__).parents[1]
 STUDY = HERE.parent / "examples" / "tactile-mouse-study.toml"

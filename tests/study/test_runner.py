@@ -19,8 +19,8 @@ from pindrive.files.output import OutputError
 from pindrive.study import runner
 from pindrive.study.checkpoint import Journal
 from pindrive.study.design import Plan
-from pindrive.study.spec import load_study
 from pindrive.study.store import Piece, Store
+from pindrive.study.study import load_study
 from studies import HERE, SAMPLED, files, plan, run, uninterrupted
 
 

@@ -11,6 +11,7 @@ from collections.abc import Container, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -18,15 +19,19 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from pydantic import ValidationError
 
 from pindrive.files.ratios import keep_ratios
+from pindrive.files.ratios import written as as_text
 from pindrive.files.schema import Place, Schema, over_time
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.release import Release
-from pindrive.quantities.quantity import Rows
+from pindrive.quantities.quantity import Rows, counted
 from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
+    from pindrive.device.device import Device
+    from pindrive.device.reading import Reading
+    from pindrive.evaluation.results import Criteria
     from pindrive.files.schema_device import Whole
     from pindrive.motion.motion import Motion
 
@@ -85,6 +90,41 @@ class DeviceFile:
         """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
         return "damping_ratio" in self.tables["drive"]
 
+    def __repr__(self) -> str:
+        """Which file, and what it describes, in a line."""
+        pins = f", {counted(len(self.whole.array.array()), 'pin')}" if self.whole else ""
+        name = f" {quoted(self.name)}" if self.name else ""
+        return f"<DeviceFile {self.path}{name}: {self.drive.mass:g} kg{pins}>"
+
+    @property
+    def device(self) -> Device:
+        """The whole device, with the usual values of what the file does not say.
+
+        Raises:
+            ConfigError: no magnet can hold by this drive's plate.
+        """
+        return self._whole.device(self.drive)
+
+    @property
+    def reading(self) -> Reading:
+        """How a hand reads with it."""
+        return self._whole.reading()
+
+    @property
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
+        return self._whole.criteria()
+
+    def with_whole(self) -> DeviceFile:
+        """The same with `whole`, also of a file without a table of it."""
+        return device_of(self.path, self.tables, whole=True)
+
+    @property
+    def _whole(self) -> Whole:
+        whole = self.whole or self.with_whole().whole
+        assert whole
+        return whole
+
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
 
@@ -106,22 +146,38 @@ class DeviceFile:
         }
 
 
-def load(
-    path: str | PathLike[str], overrides: Iterable[str] = (), *, whole: bool = False
+def load_device(
+    path: str | PathLike[str],
+    overrides: Iterable[str] | Mapping[str, object] = (),
+    *,
+    whole: bool = False,
 ) -> DeviceFile:
-    """The device file at `path`, with single values set otherwise.
+    """The device that the file at `path` describes, with single values set otherwise.
 
     Args:
-        path: a TOML file; `template()` is one.
-        overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
+        path: a TOML file; `pindrive init FILE` writes one.
+        overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
+            text has a unit. A key is given in full (plate.kinetic=30 mN) or by its last part where
             that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
             a value that is set keeps its ratio to it unless it is set too: static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
-        whole: the whole device is wanted, also of a file without a table of it.
+        whole: the whole device is wanted at once, also of a file without a table of it; otherwise
+            what such a file leaves out has its usual value where it is asked for.
+
+    Returns:
+        The drive and its release in SI; `device`, `reading` and `criteria` are the whole device,
+        how a hand reads with it and what counts as felt. `scan` and `Study` take it.
 
     Raises:
-        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
+        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds;
+            a line for each problem, with file, key, value and bound. It is a ValueError.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> device = pd.load_device("tactile-mouse.toml", {"mass": "12 g", "plate.kinetic": 0.03})
+        >>> device.drive.mass, device.drive.plate.kinetic
+        (0.012, 0.03)
     """
     file = Path(path)
     settings, problems = settings_of(overrides)
@@ -247,8 +303,14 @@ def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
     return tables
 
 
-def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
-    """What "key=value" on the command line sets, each, and what is wrong with it."""
+def settings_of(
+    overrides: Iterable[str] | Mapping[str, object],
+) -> tuple[list[Setting], list[str]]:
+    """What "key=value" on the command line, or a mapping, sets, and what is wrong with it."""
+    if isinstance(overrides, Mapping):
+        return [_setting(str(key), value) for key, value in overrides.items()], []
+    if isinstance(overrides, str):
+        raise ConfigError([refusal("overrides", 'a list, like ["mass=12 g"]', quoted(overrides))])
     settings, problems = [], []
     for override in overrides:
         given, equals, text = (part.strip() for part in override.partition("="))
@@ -266,6 +328,14 @@ def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
                 continue
         settings.append(Setting(given, value, place))
     return settings, problems
+
+
+def _setting(given: str, value: object) -> Setting:
+    """A value from Python: a number is SI."""
+    keys = keys_meant(given)
+    if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
+        value = as_text(keys[0], float(value))
+    return Setting(given, value, f"overrides[{quoted(given)}]")
 
 
 def _rows_as_toml(text: str) -> object:
