@@ -15,13 +15,13 @@ from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.evaluation import JUDGE
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.results import FINAL, OUTPUTS
+from pindrive.quantities.results import FINAL, OUTPUTS, RATE
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
 QUANTITIES: Final[dict[str, Quantity]] = {
-    q.name: q for q in INPUTS + PARTS + OUTPUTS + FINAL + DEVICE
+    q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE)
 }
 
 

@@ -51,6 +51,15 @@ class Elasticities:
         numbers, keys = counted(len(self.table), "number"), counted(len(self.keys), "key")
         return f"<Elasticities of {numbers} to {keys}, {self.status.name}>"
 
+    @property
+    def status(self) -> Status:
+        """`incomplete` where keys have no derivatives; `gaps` says why."""
+        return Status.incomplete if self.gaps else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
+
     def plot(self) -> Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
         figure: Figure = lazy.call("pindrive.plot.local_sensitivity:plot_elasticities", self)

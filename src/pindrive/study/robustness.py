@@ -120,8 +120,12 @@ class Robustness:
 
     @property
     def status(self) -> Status:
-        """`refused` where draws cannot exist and were left out, as `refusals` says; else `ok`."""
-        return Status.refused if self.refusals else Status.ok
+        """`incomplete` where draws cannot exist and were left out; `refusals` says why."""
+        return Status.incomplete if self.refusals else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """How the watched numbers spread, with the limits, as a figure that a notebook shows."""

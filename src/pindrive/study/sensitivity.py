@@ -105,8 +105,12 @@ class Influence:
 
     @property
     def status(self) -> Status:
-        """`refused` where points cannot exist and were left out, as `refusals` says; else `ok`."""
-        return Status.refused if self.refusals else Status.ok
+        """`incomplete` where points cannot exist and were left out; `refusals` says why."""
+        return Status.incomplete if self.refusals else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
