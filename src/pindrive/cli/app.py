@@ -127,7 +127,7 @@ def check(file: DeviceArgument) -> None:
 
     with refusing():
         device = load(file)
-        pressing = device.whole.magnet.magnet().pressing if device.whole else None
+        pressing = device.whole.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.friction import Coefficients
 

@@ -20,8 +20,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
         "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
         "judge",
-        optional=True,
-        remark="0.045 mm unless given",
+        absent=45e-6,
     ),
     Quantity(
         "direction",
@@ -32,8 +31,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         5e-5,
         f"{GLEESON}, from 0.05 mm",
         "judge",
-        optional=True,
-        remark="0.05 mm unless given",
+        absent=5e-5,
     ),
     Quantity(
         "direction_sure",
@@ -44,8 +42,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         2e-4,
         f"{GLEESON}, 0.2 mm",
         "judge",
-        optional=True,
-        remark="0.2 mm unless given",
+        absent=2e-4,
     ),
     Quantity(
         "direction_speed",
@@ -56,8 +53,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         2e-3,
         f"{GLEESON}, 2 mm/s",
         "judge",
-        optional=True,
-        remark="2 mm/s unless given",
+        absent=2e-3,
     ),
     Quantity(
         "echo",
@@ -68,8 +64,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         0.5,
         "assumed",
         "judge",
-        optional=True,
-        remark="0.5 unless given",
+        absent=0.5,
     ),
 )
 """The limits that a scan is judged by: a table of a device file."""

@@ -123,7 +123,7 @@ def usual_outputs(
 ) -> tuple[str, ...]:
     """All numbers that exist but the ledger's; the skin's only of a skin, the coil's likewise."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
-    coil = device.whole and device.whole.magnet.magnet().coil
+    coil = device.whole and device.whole.magnet().coil
     missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
     return tuple(name for name in among if name not in missing)
 
