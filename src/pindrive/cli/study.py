@@ -23,11 +23,10 @@ from pindrive.lazy import rich_console, rich_progress
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
     from pindrive.study.robustness import Robustness
     from pindrive.study.sensitivity import Influence
-
-    Tell = Callable[[int, int], None]
 
 Found = TypeVar("Found")
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -99,7 +98,7 @@ def sweep(
 
 
 @contextmanager
-def _bar() -> Iterator[Callable[[int, int], None]]:
+def _bar() -> Iterator[Progress]:
     """A progress bar with points per second and time left, where somebody looks on."""
     if not sys.stderr.isatty():
         yield lambda done, total: None
@@ -196,7 +195,7 @@ def sensitivity(
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
 
-    def answer(plan: Plan, tell: Tell) -> Influence:
+    def answer(plan: Plan, tell: Progress) -> Influence:
         from pindrive.study.outputs import known_output
         from pindrive.study.sensitivity import askable, influence
 
@@ -245,7 +244,7 @@ def robustness(
     exist all the same are counted apart, with the reason.
     """
 
-    def answer(plan: Plan, tell: Tell) -> Robustness:
+    def answer(plan: Plan, tell: Progress) -> Robustness:
         from pindrive.study.robustness import robustness
 
         return robustness(plan, count=draws, seed=seed, threads=threads, tell=tell)
@@ -277,7 +276,7 @@ def _say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
 def _answered(
     study: Path,
     overrides: list[str] | None,
-    answer: Callable[[Plan, Tell], Found],
+    answer: Callable[[Plan, Progress], Found],
     plot: Path | None,
     draw: Callable[[Found, str], Figure],
 ) -> tuple[Plan, Found]:

@@ -45,7 +45,7 @@ FINER: Final = 4.0
 """A scene is looked at for lines so many times in each pixel of the way."""
 
 Progress = Callable[[int, int], None]
-"""Told after each pin: how many are done, of how many."""
+"""Called after each part of a computation: how many are done, of how many."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

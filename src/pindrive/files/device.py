@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from pindrive.files.ratios import keep_ratios
 from pindrive.files.schema import (
     Place,
-    Values,
+    Value,
     contact_problems,
     drive_of,
     drive_problems,
@@ -397,7 +397,7 @@ def _warn(device: DeviceFile, place: Place) -> None:
             warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
 
 
-def _around(values: Values) -> Whole:
+def _around(values: Mapping[str, Value]) -> Whole:
     """The tables of the whole device; a plain drive does without what importing it takes."""
     from pindrive.files.whole_device import Whole
 

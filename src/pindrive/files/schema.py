@@ -33,8 +33,6 @@ Place = Callable[..., str]
 """Where keys were written: on the command line if one of them was, else in the file."""
 Value = float | Rows | None
 """Of a key, SI; None where it is left out and no value holds."""
-Values = Mapping[str, Value]
-"""Those of the keys of some tables, by the keys in full."""
 
 
 class Problems(list[str]):
@@ -142,20 +140,20 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
 # ---- the drive and its motion --------------------------------------------------------------------
 
 
-def table_of(values: Values, table: str) -> dict[str, Any]:
+def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
     """The values of one table, by the names of its keys."""
     parts = ((key.partition("."), value) for key, value in values.items())
     return {name: value for (where, _, name), value in parts if where == table}
 
 
-def contact_of(values: Values, table: str) -> Contact:
+def contact_of(values: Mapping[str, Value], table: str) -> Contact:
     """The contact that [plate] or [finger] describes."""
     given = table_of(values, table)
     stiffness = given.pop("stiffness", None)
     return Contact(**given, stiffness=inf if stiffness is None else stiffness)
 
 
-def drive_of(values: Values) -> Drive:
+def drive_of(values: Mapping[str, Value]) -> Drive:
     """The drive that a file's tables describe.
 
     Raises:
@@ -169,13 +167,13 @@ def drive_of(values: Values) -> Drive:
     return Drive(**given, damping=damping, plate=plate, finger=finger)
 
 
-def start_of(values: Values) -> dict[str, Any]:
+def start_of(values: Mapping[str, Value]) -> dict[str, Any]:
     """The inputs and the start of the motion that [motion] describes, as `simulate` takes them."""
     given = table_of(values, "motion")
     return {name: over_time(value) for name, value in given.items()}
 
 
-def contact_problems(values: Values, place: Place) -> list[str]:
+def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together within [plate] and [finger], as far as their values are known."""
     problems = Problems(place)
     for table in ("plate", "finger"):
@@ -189,7 +187,7 @@ def contact_problems(values: Values, place: Place) -> list[str]:
     return problems
 
 
-def drive_problems(values: Values, place: Place) -> list[str]:
+def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together between the tables, each of which fits within itself."""
     plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
     start = start_of(values)

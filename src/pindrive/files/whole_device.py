@@ -5,6 +5,7 @@ Imported only where such a device is wanted: it takes NumPy.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -15,7 +16,7 @@ from pindrive.device.electromagnet import Electromagnet
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
 from pindrive.device.reading import Reading
 from pindrive.evaluation.results import Criteria
-from pindrive.files.schema import Place, Problems, Value, Values, contact_of, table_of
+from pindrive.files.schema import Place, Problems, Value, contact_of, table_of
 from pindrive.motion.drive import Drive
 from pindrive.quantities.table import refusal
 
@@ -27,7 +28,7 @@ _GRID: Final = ("columns", "rows", "pitch")
 class Whole:
     """The values of the tables of the whole device, each in range."""
 
-    values: Values
+    values: Mapping[str, Value]
 
     def magnet(self) -> Electromagnet:
         """The electromagnet: by how it is made where the file says so, else by what it does."""

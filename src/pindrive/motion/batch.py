@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Values = ArrayLike | xr.DataArray
+    Broadcastable = ArrayLike | xr.DataArray
 
 __all__ = ["simulate_batch"]
 
@@ -63,19 +63,19 @@ _FLAGS: Final = {
 
 def simulate_batch(
     *,
-    mass: Values,
-    stiffness: Values,
-    damping: Values,
-    plate_kinetic: Values,
-    plate_static: Values | None = None,
-    finger_kinetic: Values,
-    finger_static: Values | None = None,
-    finger_stiffness: Values | None = None,
-    mouse_velocity: Values,
-    displacement: Values,
-    velocity: Values | None = None,
-    duration: Values | None = None,
-    settling_band: Values | None = None,
+    mass: Broadcastable,
+    stiffness: Broadcastable,
+    damping: Broadcastable,
+    plate_kinetic: Broadcastable,
+    plate_static: Broadcastable | None = None,
+    finger_kinetic: Broadcastable,
+    finger_static: Broadcastable | None = None,
+    finger_stiffness: Broadcastable | None = None,
+    mouse_velocity: Broadcastable,
+    displacement: Broadcastable,
+    velocity: Broadcastable | None = None,
+    duration: Broadcastable | None = None,
+    settling_band: Broadcastable | None = None,
     energy: bool = False,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -121,7 +121,7 @@ def simulate_batch(
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    given: dict[str, Values | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
+    given: dict[str, Broadcastable | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
     for name, argument in given.items():
         if argument is not None:
             _warn(name, argument)
@@ -129,7 +129,7 @@ def simulate_batch(
 
 
 def batched(
-    given: Mapping[str, Values | None], *, energy: bool = False, threads: int | None = None
+    given: Mapping[str, Broadcastable | None], *, energy: bool = False, threads: int | None = None
 ) -> xr.Dataset:
     """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
     from pindrive import __version__
@@ -165,7 +165,7 @@ Shared = tuple[dict[str, int], dict[str, "xr.Variable"], dict[str, Any]]
 """The dimensions that the arguments have together, each argument with its own, the coordinates."""
 
 
-def _shared_shape(given: Mapping[str, Values]) -> Shared:
+def _shared_shape(given: Mapping[str, Broadcastable]) -> Shared:
     """The arguments as variables, whose dimensions are named or, as arrays have none, counted."""
     named = {k: v for k, v in given.items() if isinstance(v, xr.DataArray)}
     arrays = {k: _floats(k, v) for k, v in given.items() if k not in named}
@@ -225,7 +225,7 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
         raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
 
 
-def _warn(name: str, given: Values) -> None:
+def _warn(name: str, given: Broadcastable) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
     quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
     seen = quantity.seen

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,9 +23,6 @@ from pindrive.motion.results import (
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
-
-if TYPE_CHECKING:
-    pass
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (

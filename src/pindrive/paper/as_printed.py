@@ -14,9 +14,7 @@ from pindrive.paper import formulas
 from pindrive.paper.release import Release
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from pindrive.paper.formulas import Array
 
 
 def initial_phase(r: Release) -> Array:

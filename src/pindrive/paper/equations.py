@@ -13,11 +13,8 @@ import numpy as np
 from pindrive.paper import as_printed, formulas
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from pindrive.paper.formulas import Array
     from pindrive.paper.population import Facts
-
-    Array = NDArray[np.float64]
 
 
 class Row(NamedTuple):

@@ -16,11 +16,9 @@ from pindrive.paper.release import Release
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
-    from pindrive.paper.release import Release
+    from pindrive.paper.formulas import Array
 
-    Array = NDArray[np.float64]
 
 SEED = 298
 """The paper's number in its journal."""

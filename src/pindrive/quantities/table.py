@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from operator import index
-from typing import TYPE_CHECKING, Final, SupportsFloat, SupportsIndex, cast
+from typing import Final, SupportsFloat, SupportsIndex, cast
 
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
@@ -18,9 +18,6 @@ from pindrive.quantities.quantity import (
     Rows,
 )
 from pindrive.quantities.results import OUTPUTS
-
-if TYPE_CHECKING:
-    pass
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""

@@ -13,7 +13,6 @@ from pindrive.files.output import OutputError, naming
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from types import TracebackType
 
 
 class Tally(NamedTuple):
@@ -50,12 +49,7 @@ class Journal:
     def __enter__(self) -> Journal:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._file.close()
 
     def note(self, chunk: int, checksum: int, tally: Tally) -> None:

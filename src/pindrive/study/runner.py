@@ -35,6 +35,7 @@ from pindrive.study.workers import DIED, workers
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
 
 
@@ -66,7 +67,7 @@ def sweep(
     restart: bool = False,
     stop_after: int | None = None,
     work: Work | None = None,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    tell: Progress = lambda done, total: None,
 ) -> Result:
     """Work off all points of a study into the NetCDF file `target`.
 

@@ -17,10 +17,11 @@ from pindrive.study.refusals import Refusal, exist, refusals
 from pindrive.study.sobol import Indices, sobol_indices
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Columns, Plan
 
 _SETTLED: Final = "transient_settled"
@@ -104,7 +105,7 @@ def influence(
     rows: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    tell: Progress = lambda done, total: None,
 ) -> Influence:
     """Elasticities at the device's values and Sobol' indices over the ranges of a study.
 
