@@ -123,7 +123,7 @@ def rows(facts: Facts) -> list[Row]:
             "6",
             r"x = e^{\alpha t}X_{m,0}\cos(\omega t - \varphi_0) + x_d",
             "",
-            "x(t), part of X_m,0, with φ_0 mended",
+            "x(t), part of X_m,0, with φ_0 corrected",
             *same((formulas.position(t, f) - x) / sizef),
         ),
         Row(
