@@ -44,7 +44,7 @@ def sweep(
         bool, typer.Option("--restart", help="Replace an earlier study, or a run cut short.")
     ] = False,
     stop_after: Annotated[
-        int | None, count_option("--stop-after", "Stop there; --resume goes on.", "POINTS")
+        int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
     threads: ThreadsOption = None,
     cluster: Annotated[
@@ -52,7 +52,7 @@ def sweep(
     ] = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Work out all points of a study into one NetCDF file.
+    """Compute all points of a study and write them into one NetCDF file.
 
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
@@ -89,7 +89,7 @@ def sweep(
                 )
         except KeyboardInterrupt:
             kept = target.with_name(f"{target.name}.journal").exists()
-            words = "finished chunks are kept, --resume goes on with them"
+            words = "finished chunks are kept, --resume continues with them"
             typer.echo(f"stopped; {words if kept else 'no chunk was finished yet'}", err=True)
             raise typer.Exit(INTERRUPTED) from None
     for line in sweep_report(plan, done):
@@ -99,7 +99,7 @@ def sweep(
 
 @contextmanager
 def _bar() -> Iterator[Progress]:
-    """A progress bar with points per second and time left, where somebody looks on."""
+    """A progress bar with points per second and time left, shown in a terminal."""
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return
@@ -175,7 +175,7 @@ def sensitivity(
     ] = False,
     number: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A number that is asked for; all unless given."),
+        typer.Option(metavar="NAME", help="A number to analyse; all unless given."),
     ] = None,
     rows: Annotated[
         int | None,
@@ -237,7 +237,7 @@ def robustness(
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Say how a design fares within its tolerances: spread, yield, worst case.
+    """Analyse a design within its tolerances: spread, yield, worst case.
 
     Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch
     to the largest that it can have, unless they have a tolerance of their own. Draws that cannot

@@ -1,6 +1,6 @@
 """A scan: the hand moves the device over a scene, and each pin's motion is followed exactly.
 
-Each pin is looked after from the scan's begin to its end in one motion: dragged a little while its
+Each pin is simulated from the scan's begin to its end in one motion: dragged a little while its
 magnet is off, carried while it is on, slipping where the spring overcomes the magnet, released,
 swinging, caught again in mid-swing.
 """
@@ -410,7 +410,7 @@ def _check_on_page(
 
 
 def _doubts(scan: Scan) -> list[str]:
-    """What is doubtful about a scan, but for pins that overlap."""
+    """What is doubtful about a scan, apart from pins that overlap."""
     found = []
     device, scene, path, max_angle = scan.device, scan.scene, scan.path, scan.max_angle
     control, speed = device.control, path.peak_speed

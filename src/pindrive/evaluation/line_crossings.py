@@ -129,7 +129,7 @@ def turnings(scan: Scan) -> NDArray[np.float64]:
     """When the hand comes to a stop or turns back along the drive axis, s, increasing."""
     axis, path = scan.device.array.axis, scan.path
     along = path.vx * cos(axis) + path.vy * sin(axis)
-    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis but for rounding
+    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis except for rounding
     still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]
     through = np.flatnonzero(along[1:] * along[:-1] < 0.0)
     part = along[through] / (along[through] - along[through + 1])

@@ -75,7 +75,7 @@ class _Pull:
     dip: float
     """When it was lowest before that."""
     release: float
-    """When the plate let go of it."""
+    """When it broke away from the plate."""
     sign: float
     """Of the plate's velocity."""
 

@@ -324,7 +324,7 @@ def _pass(
 
 
 def _clear(device: Device) -> float:
-    """From a line's end until its magnet is as good as off, s."""
+    """From a line's end until the pull of its magnet has decayed, s."""
     return device.control.latency + 8.0 * device.magnet.fall_constant
 
 

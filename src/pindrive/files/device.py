@@ -69,8 +69,8 @@ class ConfigError(ValueError):
 class DeviceFile:
     """What a device file says, in SI: the drive and the start of its motion (see `simulate`).
 
-    Where it has a table of the whole device, or is asked for it, `whole` is that device, and how a
-    hand reads with it (see `pindrive.device.scan`).
+    Where it has a table of the whole device, or that is requested, `whole` is that device, and how
+    a hand reads with it (see `pindrive.device.scan`).
     """
 
     path: Path

@@ -58,7 +58,7 @@ class Motion:
         settling_band: half the band about the end that counts as settled, a part of
             |x(0) - x_end|.
         core_numbers: the same as the core takes them.
-        duration: s; the one asked for, or long enough to see the ending.
+        duration: s; the one given, or long enough to see the ending.
     """
 
     def __init__(

@@ -374,8 +374,8 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "source": "assumed: sixteen spots on letters 10 mm high; the page is felt twice as large",
     },
     "motion.plate_load": {
-        "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, lets go in "
-        "5 ms",
+        "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, releases "
+        "it in 5 ms",
         "rows": ((0.0, 103.0), (0.005, 1.0)),
     },
     "motion.displacement": {

@@ -94,7 +94,7 @@ JUDGED: Final[tuple[Quantity, ...]] = tuple(
         ("lines", "n", "printed lines that passed whole under a pin, counted under each pin"),
         ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
         ("unseen", "n_2", "missed: the control block did not see them"),
-        ("merged", "n_3", "missed: the pin or the magnet had not let go of the line before"),
+        ("merged", "n_3", "missed: the magnet or the pin was not yet back from the line before"),
         ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
         ("echoes", "n_5", "false: swings forward that no magnet made, felt like a line"),
         ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),

@@ -1,7 +1,7 @@
 """Which chunks of an unfinished study are done: a line for each, with a checksum of its bytes.
 
 A line is written when its chunk is. One that is cut off, or whose bytes are not in the file after a
-power failure, counts for nothing: its chunk is worked out anew.
+power failure, is ignored: its chunk is computed again.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Tally(NamedTuple):
-    """What a chunk came to, in points."""
+    """The numbers of points of a chunk, by what became of them."""
 
     points: int
     refused: int

@@ -200,7 +200,7 @@ def _sobol(keys: tuple[str, ...], seed: int, block: int) -> NDArray[np.float64]:
     if block:
         sequence.fast_forward(block * BLOCK)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a block goes on where the one before ended
+        warnings.simplefilter("ignore")  # a block continues where the one before ended
         drawn = sequence.random(BLOCK)
     return np.ascontiguousarray(drawn.T) + 2.0**-31
 

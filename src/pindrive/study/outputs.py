@@ -223,11 +223,11 @@ class Demand:
         return np.where(np.isnan(values), inf, beyond)
 
     def text(self) -> str:
-        """As a person reads it: "settling_time ≤ 60.00 ms"."""
+        """For display: "settling_time ≤ 60.00 ms"."""
         return f"{label(self.name)} {'≤' if self.at_most else '≥'} {self.shown()}"
 
     def shown(self) -> str:
-        """The limit in the unit a person reads it in."""
+        """The limit in its display unit."""
         quantity = NUMBERS[self.name]
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
 

@@ -1,4 +1,4 @@
-"""How a design fares in all its tolerances: spread, yield against a specification, worst case."""
+"""Tolerance analysis of a design: spread, yield against a specification, worst case."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ class Influence:
 
 
 def askable(plan: Plan) -> tuple[str, ...]:
-    """The variables whose sensitivity may be asked for."""
+    """The variables whose sensitivity can be computed."""
     return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
 
 
@@ -112,7 +112,7 @@ def influence(
     Args:
         plan: the study.
         tolerances: over [tolerances] instead of [axes].
-        numbers: the variables that are asked for; all that exist unless given, of the energy ledger
+        numbers: the variables to analyse; all that exist unless given, of the energy ledger
             those that the study names in its outputs.
         rows: of the design, a power of 2, at least 128; 8192 unless given, of scans 256.
         seed: of the sequence and the bootstrap.

@@ -159,7 +159,9 @@ class View:
             raise ValueError(f"{self.path}: cannot be read: {reason}") from None
         if self.path.endswith(".partial"):
             self.data.close()
-            raise ValueError(f"{self.path}: is not finished; `pindrive sweep --resume` goes on")
+            raise ValueError(
+                f"{self.path}: is not finished; `pindrive sweep --resume` continues it"
+            )
         if "identity" not in self.data.attrs:
             self.data.close()
             raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
@@ -192,7 +194,7 @@ class View:
     def __exit__(self, *_: object) -> None:
         self.data.close()
 
-    # ---- what is asked for -----------------------------------------------------------------------
+    # ---- what is requested -----------------------------------------------------------------------
 
     def key(self, given: str, option: str) -> str:
         """The varied key that is meant.
@@ -254,7 +256,7 @@ class View:
         return found
 
     def axes(self, x: str | None, y: str | None, held: Mapping[str, float]) -> tuple[str, str]:
-        """The keys to draw over: those asked for, or the first two that are free.
+        """The keys to draw over: those given, or the first two that are free.
 
         Raises:
             ValueError: there are none, or the two change together.

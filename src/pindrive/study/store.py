@@ -140,7 +140,7 @@ class Store:
 
 
 def bytes_of(plan: Plan) -> int:
-    """How large the file will be, but for its structure."""
+    """The size of the file without its structure."""
     each = sum(outputs.dtype(name).itemsize for name in plan.outputs)
     return plan.size * each + sum(8 * d.size * len(d.axes) for d in plan.dimensions)
 
