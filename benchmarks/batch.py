@@ -20,14 +20,16 @@ from typing import Any
 import numba
 import numpy as np
 
-from pindrive import Contact, Drive, Motion, simulate, simulate_batch
+from pindrive import Contact, Drive, Motion, Release, simulate, simulate_batch
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.racing.moreau_jean import last_states, numbers, trajectory  # noqa: E402
 from benchmarks.racing.releases import (  # noqa: E402
+    DRIVE,
     DURATION,
+    RELEASE,
     Floats,
     columns,
     drawn,
@@ -41,8 +43,7 @@ def alone(drive: Floats) -> Motion:
     m, k, b, plate, finger, level, x = (float(value) for value in drive)
     return simulate(
         Drive(mass=m, stiffness=k, damping=b, plate=Contact(plate), finger=Contact(finger)),
-        mouse_velocity=level,
-        displacement=x,
+        Release(level, x),
         duration=DURATION,
     )
 
@@ -111,7 +112,7 @@ def main() -> None:
         "stepper, last state alone": lambda: of_stepper(last_states, states),
         "stepper, with its numbers": lambda: of_stepper(numbers, table),
         "simulate_batch, all numbers": lambda: (
-            seconds(lambda: simulate_batch(**arguments)) / given.count
+            seconds(lambda: simulate_batch(DRIVE, RELEASE, **arguments)) / given.count
         ),
     }
     if given.core.exists():

@@ -23,7 +23,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from pindrive import Contact, Drive, Motion, Profile, simulate, simulate_batch
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate, simulate_batch
 from pindrive.plot.style import PALETTE
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -35,25 +35,15 @@ WAYS = ("simulate", "with numbers", "core alone")
 
 
 @dataclass(frozen=True)
-class Release:
+class Case:
     """A motion to be timed; SI."""
 
     drive: Drive
-    mouse_velocity: float
-    displacement: float
-    velocity: float | None = None
-    plate_load: float | Profile = 1.0
+    release: Release
     duration: float | None = None
 
     def run(self) -> Motion:
-        return simulate(
-            self.drive,
-            mouse_velocity=self.mouse_velocity,
-            displacement=self.displacement,
-            velocity=self.velocity,
-            plate_load=self.plate_load,
-            duration=self.duration,
-        )
+        return simulate(self.drive, self.release, duration=self.duration)
 
     def with_numbers(self) -> object:
         motion = self.run()
@@ -61,22 +51,13 @@ class Release:
 
     def batch(self, copies: int) -> object:
         """All numbers of so many copies, on one thread; the load of a batch is constant."""
-        drive = self.drive
+        mass = np.full(copies, self.drive.mass)
         return simulate_batch(
-            mass=np.full(copies, drive.mass),
-            stiffness=drive.stiffness,
-            damping=drive.damping,
-            plate_kinetic=drive.plate.kinetic,
-            finger_kinetic=drive.finger.kinetic,
-            finger_stiffness=drive.finger.stiffness,
-            mouse_velocity=self.mouse_velocity,
-            displacement=self.displacement,
-            duration=self.duration,
-            threads=1,
+            self.drive, self.release, mass=mass, duration=self.duration, threads=1
         )
 
 
-def mouse(duration: float | None = None, skin: float = np.inf) -> Release:
+def mouse(duration: float | None = None, skin: float = np.inf) -> Case:
     """The example: released by the plate, it swings some five times and rests after 0.134 s."""
     drive = Drive(
         mass=0.010,
@@ -85,17 +66,17 @@ def mouse(duration: float | None = None, skin: float = np.inf) -> Release:
         plate=Contact(0.020),
         finger=Contact(0.005, stiffness=skin),
     )
-    return Release(drive, 0.10, 1.5e-3, duration=duration)
+    return Case(drive, Release(0.10, 1.5e-3), duration)
 
 
-def undamped(reversals: int) -> Release:
+def undamped(reversals: int) -> Case:
     """Friction as small as needs so many reversals to end the swing."""
     finger = Contact(100.0 * 1.5e-3 / (2 * reversals + 0.5))
     drive = Drive(mass=0.010, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=finger)
-    return Release(drive, 0.0, 1.5e-3)
+    return Case(drive, Release(0.0, 1.5e-3))
 
 
-def ringing(skin: float) -> Release:
+def ringing(skin: float) -> Case:
     """Undamped skin that rings as it holds the pin, while a magnet pulls the plate on ever more.
 
     Each time the ringing meets the friction, the skin slips a little: events as many as periods.
@@ -103,7 +84,8 @@ def ringing(skin: float) -> Release:
     finger = Contact(0.005, stiffness=skin)
     drive = Drive(mass=0.010, stiffness=100.0, damping=0.0, plate=Contact(0.010), finger=finger)
     pull = Profile([0.0, 0.5], [0.0, 0.2])
-    return Release(drive, 0.10, -0.025e-3, velocity=0.0, plate_load=pull, duration=0.6)
+    release = Release(0.10, -0.025e-3, velocity=0.0, plate_load=pull)
+    return Case(drive, release, 0.6)
 
 
 # ---- measuring -----------------------------------------------------------------------------------
@@ -148,21 +130,21 @@ def repeat(call: Callable[[], object], count: int) -> None:
         call()
 
 
-def measure(releases: Sequence[Release], rounds: int, least: float) -> list[Cost]:
+def measure(cases: Sequence[Case], rounds: int, least: float) -> list[Cost]:
     """Each release in each way, by turns; `least` is how long one timing takes, s."""
     racers = []
-    for release in releases:
+    for case in cases:
         ways: list[Callable[[int], object]]
-        ways = [partial(repeat, release.run), partial(repeat, release.with_numbers)]
-        if not isinstance(release.plate_load, Profile):
-            ways.append(release.batch)
+        ways = [partial(repeat, case.run), partial(repeat, case.with_numbers)]
+        if not isinstance(case.release.plate_load, Profile):
+            ways.append(case.batch)
         racers.append([Racer.warm(way, least) for way in ways])
     for _ in range(rounds):
         for racer in chain.from_iterable(racers):
             racer.run()
     return [
-        Cost(len(release.run().events), tuple(median(racer.times) for racer in ways))
-        for release, ways in zip(releases, racers, strict=True)
+        Cost(len(case.run().events), tuple(median(racer.times) for racer in ways))
+        for case, ways in zip(cases, racers, strict=True)
     ]
 
 

@@ -12,7 +12,6 @@ import os
 import platform
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from statistics import median
@@ -20,8 +19,8 @@ from timeit import Timer
 
 import numpy as np
 
-from pindrive import Drive, Motion, simulate
-from pindrive.files.device import load
+from pindrive import Drive, Motion, Release, simulate
+from pindrive.files.device import load_device
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
@@ -31,18 +30,9 @@ from benchmarks.racing.with_scipy import slider
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "tactile-mouse.toml"
 
 
-@dataclass(frozen=True)
-class Release:
-    """A drive and how it is let go; SI."""
-
-    drive: Drive
-    mouse_velocity: float
-    displacement: float
-
-
-def with_scipy(release: Release, method: str, rtol: float) -> tuple[float, float]:
+def with_scipy(drive: Drive, release: Release, method: str, rtol: float) -> tuple[float, float]:
     """When and where the pin comes to rest on the finger, mode by mode."""
-    drive = release.drive
+    assert isinstance(release.mouse_velocity, float)
     pin = Pin(
         drive.mass,
         drive.stiffness,
@@ -82,16 +72,11 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="timings of which the median counts")
     rounds = parser.parse_args().rounds
 
-    device = load(EXAMPLE)
-    assert isinstance(device.mouse_velocity, float)
-    release = Release(device.drive, device.mouse_velocity, device.displacement)
+    device = load_device(EXAMPLE)
+    drive, release = device.drive, device.release
 
     def exact() -> Motion:
-        return simulate(
-            release.drive,
-            mouse_velocity=release.mouse_velocity,
-            displacement=release.displacement,
-        )
+        return simulate(drive, release)
 
     def with_numbers() -> object:
         motion = exact()
@@ -107,7 +92,7 @@ def main() -> None:
     for method, rtol in (("RK45", 1e-8), ("DOP853", 1e-8)):
 
         def general(method: str = method, rtol: float = rtol) -> tuple[float, float]:
-            return with_scipy(release, method, rtol)
+            return with_scipy(drive, release, method, rtol)
 
         theirs = per_call(general, rounds)
         error = abs(general()[1] - motion.ending.position)

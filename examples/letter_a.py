@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pindrive.device import scan
 from pindrive.evaluation import judge
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 from pindrive.plot.scan import plot_reliefs
 from pindrive.plot.style import save
 
@@ -20,7 +20,7 @@ COLUMN = ["array.columns=1", "array.rows=8", "array.spot_scale=0.25"]
 
 judgements = []
 for speed in SPEEDS:
-    file = load(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"], whole=True)
+    file = load_device(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"], whole=True)
     device, reading = file.whole.device(file.drive), file.whole.reading()
     scene = reading.text("A", device.array)
     judgements.append(judge(scan(device, scene, reading.strokes(scene, device.array))))

@@ -2,41 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 from hypothesis import strategies as st
 
-from pindrive import Contact, Drive, Motion, simulate
+from pindrive import Contact, Drive, Motion, Release, simulate
 
 
 @dataclass(frozen=True)
-class Release:
-    """A drive and how it is released: everything that `simulate` is given, SI."""
+class Case:
+    """A drive and its release."""
 
     drive: Drive
-    mouse_velocity: float
-    displacement: float
-    velocity: float | None = None
+    release: Release
+
+    @property
+    def mouse_velocity(self) -> float:
+        """That of the release, which is constant, m/s."""
+        assert isinstance(self.release.mouse_velocity, float)
+        return self.release.mouse_velocity
 
     def run(self, duration: float | None = None) -> Motion:
-        return simulate(
-            self.drive,
-            mouse_velocity=self.mouse_velocity,
-            displacement=self.displacement,
-            velocity=self.velocity,
-            duration=duration,
-        )
+        return simulate(self.drive, self.release, duration=duration)
 
-    def rescaled(self, time: float, length: float, mass: float) -> Release:
+    def rescaled(self, time: float, length: float, mass: float) -> Case:
         """The same drive in other units of time, length and mass."""
         force, speed = mass * length / time**2, length / time
-        drive = self.drive
+        drive, release = self.drive, self.release
 
         def contact(c: Contact) -> Contact:
             return Contact(c.kinetic * force, c.static_friction * force)
 
-        return Release(
+        return Case(
             Drive(
                 mass=drive.mass * mass,
                 stiffness=drive.stiffness * mass / time**2,
@@ -44,18 +42,17 @@ class Release:
                 plate=contact(drive.plate),
                 finger=contact(drive.finger),
             ),
-            self.mouse_velocity * speed,
-            self.displacement * length,
-            None if self.velocity is None else self.velocity * speed,
+            Release(
+                self.mouse_velocity * speed,
+                release.displacement * length,
+                None if release.velocity is None else release.velocity * speed,
+            ),
         )
 
-    def mirrored(self) -> Release:
-        return replace(
-            self,
-            mouse_velocity=-self.mouse_velocity,
-            displacement=-self.displacement,
-            velocity=None if self.velocity is None else -self.velocity,
-        )
+    def mirrored(self) -> Case:
+        release = self.release
+        velocity = None if release.velocity is None else -release.velocity
+        return Case(self.drive, Release(-self.mouse_velocity, -release.displacement, velocity))
 
 
 def decades(low: float, high: float) -> st.SearchStrategy[float]:
@@ -78,7 +75,7 @@ def contacts(draw: st.DrawFn) -> Contact:
 
 
 @st.composite
-def releases(draw: st.DrawFn) -> Release:
+def cases(draw: st.DrawFn) -> Case:
     drive = Drive.with_damping_ratio(
         mass=draw(decades(2e-3, 2e-2)),
         stiffness=draw(decades(20.0, 400.0)),
@@ -86,12 +83,12 @@ def releases(draw: st.DrawFn) -> Release:
         plate=draw(contacts()),
         finger=draw(contacts()),
     )
-    return Release(
-        drive,
+    release = Release(
         draw(st.one_of(st.just(0.0), decades(0.02, 0.3), decades(-0.3, -0.02))),
         draw(st.one_of(st.just(0.0), decades(1e-9, 3e-3), decades(-3e-3, -1e-9))),
         draw(st.one_of(st.none(), st.just(0.0), decades(1e-9, 0.3), decades(-0.3, -1e-9))),
     )
+    return Case(drive, release)
 
 
 def last_known(motion: Motion) -> float:

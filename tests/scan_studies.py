@@ -8,7 +8,7 @@ import xarray as xr
 
 from pindrive.study.design import Plan
 from pindrive.study.runner import on_threads, sweep
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 DEVICE = """
 [drive]

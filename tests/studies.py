@@ -9,7 +9,7 @@ from typer.testing import CliRunner, Result
 from pindrive.cli.app import app
 from pindrive.study.design import Plan
 from pindrive.study.runner import sweep
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 HERE = Path(__file__).parent
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf, workdps
 
-from pindrive import Contact, Drive, Profile, simulate
+from pindrive import Contact, Drive, Profile, Release, simulate
 
 MASS, STIFFNESS, SPEED = 0.010, 100.0, 0.10
 OMEGA0 = sqrt(STIFFNESS / MASS)
@@ -38,7 +38,7 @@ def test_closed_form_in_every_damping_regime(ratio: float) -> None:
     )
     times = [float(t) for t in np.logspace(-9, np.log10(2.0), 60)]
     for x0, v0 in ((1.5e-3, 0.1), (1.5e-3, -0.15), (0.0, 0.1), (1e-3, 0.0)):
-        motion = simulate(of, mouse_velocity=SPEED, displacement=x0, velocity=v0, duration=2.0)
+        motion = simulate(of, Release(SPEED, x0, velocity=v0), duration=2.0)
         length = max(x0, abs(v0) / OMEGA0)
         for t in times:
             with workdps(50):
@@ -57,7 +57,7 @@ def test_growth_in_a_falling_region_and_where_it_ends() -> None:
     of = drive(plate, damping=0.3)
     # From near the place where sliding at v = 0 is in balance.
     x0 = (rest - SPEED * -fall) / STIFFNESS + 1e-5
-    motion = simulate(of, mouse_velocity=SPEED, displacement=x0, velocity=0.0)
+    motion = simulate(of, Release(SPEED, x0, velocity=0.0))
     end = motion.segments[0].end
     assert end * OMEGA0 > 4 * pi
     with workdps(30):
@@ -87,7 +87,7 @@ def test_the_papers_extrema_with_the_missing_cosine(damping: float) -> None:
     phase = atan2(SPEED - alpha * (x0 - x_d), omega * (x0 - x_d))
     lag = atan2(-alpha, omega)
     t_a, t_b = (phase - lag) / omega, (pi / 2 + phase - 2 * lag) / omega
-    found = simulate(of, mouse_velocity=SPEED, displacement=x0).transient
+    found = simulate(of, Release(SPEED, x0)).transient
     assert found.peak_time == pytest.approx(t_a, rel=1e-14)
     assert found.peak_displacement == pytest.approx(x_d + exp(alpha * t_a) * wide * cos(lag))
     assert found.trough_time == pytest.approx(t_a + pi / omega, rel=1e-14)
@@ -104,7 +104,7 @@ def test_the_papers_extrema_with_the_missing_cosine(damping: float) -> None:
 def test_undamped_reversals_follow_the_recursion_and_end_grazing() -> None:
     """Positions at the plate's velocity: x -> 2 x_d - x, -> -2 x_d - x, until |x| <= x_d."""
     x, x_d = 1.73e-3, 2e-4
-    motion = simulate(drive(Contact(kinetic=STIFFNESS * x_d)), mouse_velocity=SPEED, displacement=x)
+    motion = simulate(drive(Contact(kinetic=STIFFNESS * x_d)), Release(SPEED, x))
     expected, side = [], 1
     while abs(x) > x_d:
         x = 2 * side * x_d - x
@@ -128,10 +128,7 @@ def test_undamped_reversals_follow_the_recursion_and_end_grazing() -> None:
 def test_finger_friction_takes_two_x_f_from_each_swing() -> None:
     x_f, x = 1.1e-4, 1.5e-3
     motion = simulate(
-        drive(finger=Contact(kinetic=STIFFNESS * x_f)),
-        mouse_velocity=SPEED,
-        displacement=x,
-        velocity=0.0,
+        drive(finger=Contact(kinetic=STIFFNESS * x_f)), Release(SPEED, x, velocity=0.0)
     )
     turns = []
     while abs(x) > x_f:
@@ -144,7 +141,7 @@ def test_finger_friction_takes_two_x_f_from_each_swing() -> None:
 def test_stick_slip_repeats_one_release() -> None:
     """Static above kinetic friction: every release has k x + b v_p = static, so it is one cycle."""
     plate = Contact(kinetic=0.02, static=0.05)
-    motion = simulate(drive(plate, damping=0.1), mouse_velocity=0.02, displacement=1.5e-3)
+    motion = simulate(drive(plate, damping=0.1), Release(0.02, 1.5e-3))
     assert motion.ending.cycle == "stick-slip"
     released = [e for e in motion.events if e.kind == "slip"]
     for event in released:
@@ -166,8 +163,7 @@ def test_two_surfaces_that_part_decide_on_accelerations(w: float) -> None:
     for force in np.linspace(-0.09, 0.09, 61):
         motion = simulate(
             drive(Contact(kinetic=plate), Contact(kinetic=finger)),
-            mouse_velocity=Profile([0.0, 1.0], [0.0, w]),
-            displacement=(MASS * w - float(force)) / STIFFNESS,
+            Release(Profile([0.0, 1.0], [0.0, w]), (MASS * w - float(force)) / STIFFNESS),
             duration=1e-4,
         )
         between = np.sign(w) * (plate - finger)
@@ -182,9 +178,7 @@ def test_energy_at_the_skin() -> None:
     """Each slip of the skin loses what its force falls by: (F_s^2 - F_k^2) / 2 k_s."""
     kinetic, static, stiffness = 0.02, 0.03, 400.0
     motion = simulate(
-        drive(finger=Contact(kinetic, static, stiffness=stiffness)),
-        mouse_velocity=0.0,
-        displacement=1.5e-3,
+        drive(finger=Contact(kinetic, static, stiffness=stiffness)), Release(0.0, 1.5e-3)
     )
     slips = sum(e.kind == "slip" for e in motion.events)
     assert slips >= 3
@@ -200,10 +194,7 @@ def test_a_near_graze_is_as_uncertain_as_its_square_root() -> None:
     for above in (1e-2, 1e-6, 1e-10):
         wide = SPEED * (1 + above) / OMEGA0
         motion = simulate(
-            drive(Contact(kinetic=STIFFNESS * x_d)),
-            mouse_velocity=SPEED,
-            displacement=x_d - wide,
-            velocity=0.0,
+            drive(Contact(kinetic=STIFFNESS * x_d)), Release(SPEED, x_d - wide, velocity=0.0)
         )
         with workdps(40):
             exact = mp.asin(mpf(SPEED) / (OMEGA0 * (mpf(wide))))
@@ -211,9 +202,7 @@ def test_a_near_graze_is_as_uncertain_as_its_square_root() -> None:
             assert abs(OMEGA0 * motion.events[0].time - exact) < 1e-15 + uncertain
     still = simulate(
         drive(Contact(kinetic=STIFFNESS * x_d)),
-        mouse_velocity=SPEED,
-        displacement=x_d - SPEED * (1 - 1e-12) / OMEGA0,
-        velocity=0.0,
+        Release(SPEED, x_d - SPEED * (1 - 1e-12) / OMEGA0, velocity=0.0),
     )
     assert still.events == ()
     assert still.ending.cycle == "free"

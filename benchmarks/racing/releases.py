@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive import Contact, Drive, Release
+
 ROOT = Path(__file__).resolve().parents[2]
 Floats = NDArray[np.float64]
 
@@ -23,6 +25,11 @@ ORDER = (
     "mouse_velocity",
     "displacement",
 )
+
+
+DRIVE = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(0.0))
+RELEASE = Release(0.1)
+"""What all of them vary."""
 
 
 def drawn(count: int, seed: int) -> dict[str, Floats]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.racing.race import TIMES, Lap, Racer, one_by_one
-from benchmarks.racing.releases import DURATION, ORDER, Floats, drawn, exact
-from pindrive import Contact, Drive, simulate, simulate_batch
+from benchmarks.racing.releases import DRIVE, DURATION, ORDER, RELEASE, Floats, drawn, exact
+from pindrive import Contact, Drive, Release, simulate, simulate_batch
 
 MANY = 20_000  # other drives of the same distribution, for the time of a batch
 
@@ -25,7 +25,7 @@ def single(drive: Floats) -> Floats:
     """Positions of one drive."""
     m, k, b, plate, finger, level, x = drive.tolist()
     pin = Drive(mass=m, stiffness=k, damping=b, plate=Contact(plate), finger=Contact(finger))
-    motion = simulate(pin, mouse_velocity=level, displacement=x, duration=DURATION)
+    motion = simulate(pin, Release(level, x), duration=DURATION)
     return np.asarray(motion.position(TIMES))
 
 
@@ -33,10 +33,10 @@ def batch(drives: Floats) -> Lap:
     """All numbers on one thread; its error is that of its largest and smallest position."""
     points: dict[str, Any] = drawn(MANY, seed=2)
     begin = process_time()
-    simulate_batch(**points, duration=DURATION, threads=1)
+    simulate_batch(DRIVE, RELEASE, **points, duration=DURATION, threads=1)
     seconds = (process_time() - begin) / MANY
     given: dict[str, Any] = dict(zip(ORDER, drives, strict=True))
-    numbers = simulate_batch(**given, duration=DURATION, threads=1)
+    numbers = simulate_batch(DRIVE, RELEASE, **given, duration=DURATION, threads=1)
     errors = np.zeros(drives.shape[1])
     for i, drive in enumerate(drives.T.tolist()):
         path = exact(*drive)

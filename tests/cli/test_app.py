@@ -13,17 +13,15 @@ import xarray as xr
 
 import pindrive
 from command import EXAMPLE, SKIN, refused, run
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
 
 def example() -> pindrive.Motion:
     """The motion of the example file, from Python."""
-    device = load(EXAMPLE)
-    return pindrive.simulate(
-        device.drive, mouse_velocity=device.mouse_velocity, displacement=device.displacement
-    )
+    device = load_device(EXAMPLE)
+    return pindrive.simulate(device.drive, device.release)
 
 
 # ---- good input ----------------------------------------------------------------------------------
@@ -236,7 +234,7 @@ def skin() -> pindrive.Motion:
         finger=pindrive.Contact(0.020, 0.030, stiffness=1000.0),
     )
     hand = pindrive.Profile([0.0, 0.1], [0.06, 0.0])
-    return pindrive.simulate(drive, mouse_velocity=hand, displacement=2e-3)
+    return pindrive.simulate(drive, pindrive.Release(hand, 2e-3))
 
 
 def test_check_shows_a_line_for_each_row() -> None:

@@ -50,7 +50,7 @@ def check(consumer: Path) -> None:
         plate=pindrive.Contact(kinetic=0.020),
         finger=pindrive.Contact(kinetic=0.005),
     )
-    motion = pindrive.simulate(drive, mouse_velocity=0.10, displacement=1.5e-3)
+    motion = pindrive.simulate(drive, pindrive.Release(0.10, 1.5e-3))
     expected = [f"{segment.begin:.9f} s" for segment in motion.segments]
     assert run(consumer).split("\n") == [*expected, motion.ending.kind, ""]
 

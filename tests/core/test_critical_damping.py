@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from command import EXAMPLE, run
-from pindrive import Contact, Drive, simulate, simulate_batch
+from pindrive import Contact, Drive, Release, simulate, simulate_batch
 
 
 @pytest.mark.parametrize("mass", ["11 g", "12 g", "13 g", "15 g"])
@@ -20,17 +20,15 @@ def test_no_point_of_a_grid_through_critical_damping_stands_out() -> None:
     """Every fiftieth ratio is 1 but for the rounding of the damping that is computed from it."""
     mass = np.linspace(5e-3, 20e-3, 61)[:, None]
     ratio = np.linspace(0.98, 1.02, 101)
-    numbers = simulate_batch(
-        mass=mass,
+    drive = Drive(
+        mass=0.01,
         stiffness=100.0,
-        damping=ratio * 2 * np.sqrt(mass * 100.0),
-        plate_kinetic=0.022,
-        plate_static=0.0265,
-        finger_kinetic=0.005,
-        finger_static=0.0075,
-        mouse_velocity=0.06,
-        displacement=2e-3,
+        damping=2.0,
+        plate=Contact(0.022, 0.0265),
+        finger=Contact(0.005, 0.0075),
     )
+    damping = ratio * 2 * np.sqrt(mass * 100.0)
+    numbers = simulate_batch(drive, Release(0.06, 2e-3), mass=mass, damping=damping)
     time = np.sqrt(mass / 100.0)
     assert float((numbers["duration"] / time).max()) < 1000
     assert float(numbers["transient_finger_distance_slid"].max()) < 0.02
@@ -43,7 +41,7 @@ def test_cancelled_damping_has_one_ending(mass: float, stiffness: float) -> None
     """20 mN fall to 17 mN over 30 mm/s, which is 0.1 N s/m: no damping is left."""
     plate = Contact(curve=[(0.0, 20e-3), (0.03, 17e-3)])
     drive = Drive(mass=mass, stiffness=stiffness, damping=0.1, plate=plate, finger=Contact(0.0))
-    motion = simulate(drive, mouse_velocity=0.02, displacement=2e-3)
+    motion = simulate(drive, Release(0.02, 2e-3))
     assert (motion.ending.kind, motion.ending.cycle) == ("steady", "grazing")
     assert motion.ending.amplitude == pytest.approx(0.02 / sqrt(stiffness / mass), rel=1e-12)
     assert motion.ending.period == pytest.approx(2 * np.pi * sqrt(mass / stiffness), rel=1e-12)
@@ -61,7 +59,7 @@ def test_every_derivative_goes_over_smoothly() -> None:
             plate=Contact(kinetic=0.022, static=0.0265),
             finger=Contact(kinetic=0.005, static=0.0075),
         )
-        motion = simulate(drive, mouse_velocity=0.06, displacement=2e-3, duration=0.5)
+        motion = simulate(drive, Release(0.06, 2e-3), duration=0.5)
         numbers = motion.sensitivity(["damping"]).numbers
         return {name: values["damping"] for name, values in numbers.items()}
 

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 
 from command import run
-from drives import Release, releases
-from pindrive import Contact, Drive, Motion, Profile, simulate, simulate_batch
+from drives import Case, cases
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate, simulate_batch
 
 MASS, STIFFNESS = 0.01, 100.0
 FREE = Contact(0.0)
@@ -27,7 +27,7 @@ def motion(
     duration: float | None = None,
 ) -> Motion:
     drive = Drive(mass=MASS, stiffness=STIFFNESS, damping=damping, plate=plate, finger=finger)
-    return simulate(drive, mouse_velocity=mouse_velocity, displacement=1.5e-3, duration=duration)
+    return simulate(drive, Release(mouse_velocity, 1.5e-3), duration=duration)
 
 
 # What a motion does, and its rest_time, last_event_time and steady_since: "event" for the time of
@@ -84,18 +84,18 @@ def test_rest_begins_before_the_rows_of_inputs_that_no_longer_matter() -> None:
     drive = Drive(
         mass=MASS, stiffness=STIFFNESS, damping=0.4, plate=Contact(0.001), finger=Contact(0.02)
     )
-    alone = simulate(drive, mouse_velocity=0.1, displacement=1.5e-3)
+    alone = simulate(drive, Release(0.1, 1.5e-3))
     load = Profile([0.2, 0.3, 0.4], [1.0, 1.1, 1.0])
-    found = simulate(drive, mouse_velocity=0.1, displacement=1.5e-3, plate_load=load)
+    found = simulate(drive, Release(0.1, 1.5e-3, plate_load=load))
     assert alone.ending.kind == found.ending.kind == "resting"
     assert found.segments[-1].begin == 0.4
     assert found.transient.rest_time == alone.transient.rest_time < 0.2
     assert np.ptp(found.position(np.linspace(found.transient.rest_time, 1.0, 99))) == 0.0
 
 
-@given(releases())
-def test_each_time_means_what_it_says(release: Release) -> None:
-    found = release.run()
+@given(cases())
+def test_each_time_means_what_it_says(case: Case) -> None:
+    found = case.run()
     rest, last = found.transient.rest_time, found.transient.last_event_time
     if isinf(last):
         assert found.ending.cycle in ("stick-slip", "limit cycle")
@@ -109,22 +109,11 @@ def test_each_time_means_what_it_says(release: Release) -> None:
         assert isinf(rest)
 
 
-@given(releases())
-def test_a_batch_tells_the_same_times(release: Release) -> None:
-    drive, found = release.drive, release.run()
-    table = simulate_batch(
-        mass=drive.mass,
-        stiffness=drive.stiffness,
-        damping=drive.damping,
-        plate_kinetic=drive.plate.kinetic,
-        plate_static=drive.plate.static_friction,
-        finger_kinetic=drive.finger.kinetic,
-        finger_static=drive.finger.static_friction,
-        mouse_velocity=release.mouse_velocity,
-        displacement=release.displacement,
-        velocity=found.initial_velocity,
-        threads=1,
-    )
+@given(cases())
+def test_a_batch_tells_the_same_times(case: Case) -> None:
+    drive, found = case.drive, case.run()
+    velocity = found.release.initial_velocity
+    table = simulate_batch(drive, case.release, velocity=velocity, threads=1)
     numbers = found.numbers()
     for name in ("transient.rest_time", "transient.last_event_time", "ending.steady_since"):
         value = float(table[name.replace(".", "_")])

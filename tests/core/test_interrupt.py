@@ -17,10 +17,10 @@ PROGRAM = """
 from collections import deque
 from itertools import repeat, starmap
 import numpy as np
-from pindrive import Contact, Drive, _core, simulate
+from pindrive import Contact, Drive, Release, _core, simulate
 
 drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.0), finger=Contact(1e-9))
-motion = simulate(drive, mouse_velocity=0.06, displacement=0.002)
+motion = simulate(drive, Release(0.06, 0.002))
 core, numbers, duration = motion._core, motion.core_numbers, motion.duration
 t = np.linspace(0.0, 1.0, 1_000_000)
 call, arguments = {call}

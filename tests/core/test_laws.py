@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drives import Release, releases
-from pindrive import Contact, Drive, Motion
+from drives import Case, cases
+from pindrive import Contact, Drive, Motion, Release
 
 Run = tuple[list[tuple[float, str, str]], np.ndarray, np.ndarray]
 
@@ -21,9 +21,9 @@ def states(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, motion.position(t), motion.velocity(t)
 
 
-@given(releases())
-def test_energy_ledger_closes(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_energy_ledger_closes(case: Case) -> None:
+    motion = case.run()
     ledger = motion.energy
     terms = [
         ledger.kinetic_start,
@@ -41,23 +41,23 @@ def test_energy_ledger_closes(release: Release) -> None:
         assert dissipated >= -1e-15 * energy_in
 
 
-@given(releases())
-def test_certificate_is_clean(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_certificate_is_clean(case: Case) -> None:
+    motion = case.run()
     certificate = motion.certificate()
     # A velocity is rounded to eps of the largest, v. Over the duration T that is a way of eps v T,
     # held against v/omega_0 or more; four times that, as a velocity is a sum of terms.
-    rounding = 4.0 * float_info.epsilon * release.drive.natural_frequency * motion.duration
+    rounding = 4.0 * float_info.epsilon * case.drive.natural_frequency * motion.duration
     assert certificate.worst <= 1e-12 + rounding, certificate
 
 
-@given(releases())
-def test_friction_stays_within_its_bounds(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_friction_stays_within_its_bounds(case: Case) -> None:
+    motion = case.run()
     t = motion.sample_times(400)
     for name, contact, surface in (
-        ("plate", release.drive.plate, release.mouse_velocity),
-        ("finger", release.drive.finger, 0.0),
+        ("plate", case.drive.plate, case.mouse_velocity),
+        ("finger", case.drive.finger, 0.0),
     ):
         force = motion.force("plate" if name == "plate" else "finger", t)
         assert np.abs(force).max() <= contact.static_friction * (1 + 1e-12)
@@ -68,11 +68,11 @@ def test_friction_stays_within_its_bounds(release: Release) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
-@given(releases(), st.integers(-3, 3), st.integers(-3, 3), st.integers(-3, 3))
-def test_other_units_give_the_same_motion(release: Release, i: int, j: int, k: int) -> None:
+@given(cases(), st.integers(-3, 3), st.integers(-3, 3), st.integers(-3, 3))
+def test_other_units_give_the_same_motion(case: Case, i: int, j: int, k: int) -> None:
     """Powers of two rescale every number exactly, so the answers agree to the last bit."""
     time, length, mass = 4.0**i, 2.0**j, 2.0**k
-    one, other = release.run(), release.rescaled(time, length, mass).run()
+    one, other = case.run(), case.rescaled(time, length, mass).run()
     assert [(e.time * time, e.contact, e.kind) for e in one.events] == [
         (e.time, e.contact, e.kind) for e in other.events
     ]
@@ -84,9 +84,9 @@ def test_other_units_give_the_same_motion(release: Release, i: int, j: int, k: i
     )
 
 
-@given(releases())
-def test_mirrored_release_gives_the_mirrored_motion(release: Release) -> None:
-    one, other = release.run(), release.mirrored().run()
+@given(cases())
+def test_mirrored_release_gives_the_mirrored_motion(case: Case) -> None:
+    one, other = case.run(), case.mirrored().run()
     assert [(e.time, e.contact, e.kind) for e in one.events] == [
         (e.time, e.contact, e.kind) for e in other.events
     ]
@@ -98,13 +98,12 @@ def test_mirrored_release_gives_the_mirrored_motion(release: Release) -> None:
     )
 
 
-@given(releases(), st.floats(0.02, 0.98))
-def test_a_run_cut_in_two_equals_the_run_in_one(release: Release, part: float) -> None:
-    whole = release.run()
+@given(cases(), st.floats(0.02, 0.98))
+def test_a_run_cut_in_two_equals_the_run_in_one(case: Case, part: float) -> None:
+    whole = case.run()
     cut = part * whole.duration
-    second = Release(
-        release.drive, release.mouse_velocity, whole.position(cut), whole.velocity(cut)
-    ).run(whole.duration - cut)
+    release = Release(case.mouse_velocity, whole.position(cut), whole.velocity(cut))
+    second = Case(case.drive, release).run(whole.duration - cut)
     t = np.linspace(0.0, 1.0, 101) * (whole.duration - cut)
     scale = np.abs(whole.position(whole.sample_times(200))).max() + 1e-9
     assert np.abs(second.position(t) - whole.position(cut + t)).max() <= 1e-10 * scale
@@ -117,18 +116,18 @@ def test_a_run_cut_in_two_equals_the_run_in_one(release: Release, part: float) -
         assert [(e.contact, e.kind) for e in second.events] == later
 
 
-@given(releases(), st.floats(0.01, 0.99))
-def test_a_shorter_duration_changes_nothing_before_it(release: Release, part: float) -> None:
-    whole = release.run()
+@given(cases(), st.floats(0.01, 0.99))
+def test_a_shorter_duration_changes_nothing_before_it(case: Case, part: float) -> None:
+    whole = case.run()
     duration = part * whole.duration
-    short = release.run(duration)
+    short = case.run(duration)
     t = np.linspace(0.0, duration, 51)
     assert np.array_equal(short.position(t, "left"), whole.position(t, "left"))
 
 
-@given(releases())
-def test_left_and_right_limits_agree_in_position_and_velocity(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_left_and_right_limits_agree_in_position_and_velocity(case: Case) -> None:
+    motion = case.run()
     times = np.array([e.time for e in motion.events])
     scale = np.abs(motion.position(motion.sample_times(200))).max()
     jump = motion.position(times, "left") - motion.position(times, "right")
@@ -138,12 +137,12 @@ def test_left_and_right_limits_agree_in_position_and_velocity(release: Release) 
         assert motion.velocity(event.time) == event.velocity
 
 
-@given(releases())
-def test_every_motion_without_a_duration_knows_its_ending(release: Release) -> None:
-    motion = release.run()
+@given(cases())
+def test_every_motion_without_a_duration_knows_its_ending(case: Case) -> None:
+    motion = case.run()
     assert motion.status == "ok"
     assert motion.ending.kind != "moving"
-    assert motion.transient.settled or motion.displacement == motion.ending.position
+    assert motion.transient.settled or motion.release.displacement == motion.ending.position
     assert motion.duration < inf
     ends = motion.ending.steady_since, motion.transient.rest_time, motion.transient.last_event_time
     assert all(time <= motion.duration for time in ends if isfinite(time))
@@ -155,7 +154,7 @@ def test_a_stick_slip_cycle_repeats_for_ever() -> None:
     drive = Drive(
         mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02, 0.03), finger=Contact(0.0)
     )
-    motion = Release(drive, 0.1, 1.5e-3).run()
+    motion = Case(drive, Release(0.1, 1.5e-3)).run()
     assert motion.ending.cycle == "stick-slip"
     t = motion.ending.steady_since + np.linspace(0.0, 1.0, 57)
     for periods in (1, 7, 1000):
@@ -163,16 +162,16 @@ def test_a_stick_slip_cycle_repeats_for_ever() -> None:
         assert np.abs(later - motion.position(t)).max() < 1e-14 * periods
     assert abs(motion.energy.residual) < 1e-12 * motion.energy.plate_work
     # A cycle that is simulated anew, event by event, is the cycle that was recognised.
-    long = Release(drive, 0.1, 1.5e-3).run(20.0)
+    long = Case(drive, Release(0.1, 1.5e-3)).run(20.0)
     half = long.position(10.0), long.velocity(10.0)
-    again = Release(drive, 0.1, *half).run()
+    again = Case(drive, Release(0.1, *half)).run()
     assert again.ending.period == pytest.approx(motion.ending.period, rel=1e-13)
     assert again.ending.amplitude == pytest.approx(motion.ending.amplitude, rel=1e-13)
 
 
 def test_the_undamped_steady_state_grazes_and_does_not_loop() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
-    motion = Release(drive, 0.1, 1.5e-3).run(1000.0)
+    motion = Case(drive, Release(0.1, 1.5e-3)).run(1000.0)
     assert motion.ending.cycle == "grazing"
     assert len(motion.events) == 5
     assert motion.ending.amplitude == pytest.approx(0.1 / drive.natural_frequency, rel=1e-14)

@@ -15,7 +15,7 @@ import pytest
 from numpy.typing import NDArray
 
 from oracle import explicit_modes, make_cases, mp_oracle
-from pindrive import Contact, Drive, Motion, simulate
+from pindrive import Contact, Drive, Motion, Release, simulate
 
 TIME_TOLERANCE = 1e-10  # s, of event times
 STATE_TOLERANCE = 1e-10  # of the scales of x, v and a, see `scales`
@@ -56,9 +56,7 @@ def release(case: Case) -> Motion:
     )
     return simulate(
         drive,
-        mouse_velocity=pin["mouse_velocity"],
-        displacement=pin["displacement"],
-        velocity=pin["velocity"],
+        Release(pin["mouse_velocity"], pin["displacement"], velocity=pin["velocity"]),
         duration=case["duration"],
     )
 
@@ -202,7 +200,7 @@ def test_trap_crosses_instead_of_sticking() -> None:
     """
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.01), finger=Contact(0.0))
     x_d, mouse_velocity = 0.01 / 100.0, 0.1
-    motion = simulate(drive, mouse_velocity=mouse_velocity, displacement=10.25 * x_d, duration=1.0)
+    motion = simulate(drive, Release(mouse_velocity, 10.25 * x_d), duration=1.0)
     assert [e.kind for e in motion.events] == ["cross"] * 4 + ["stick", "slip"]
     assert {e.contact for e in motion.events} == {"plate"}
     positions = np.array([e.position for e in motion.events]) / x_d

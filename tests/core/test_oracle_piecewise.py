@@ -17,7 +17,7 @@ import pytest
 from numpy.typing import NDArray
 
 from oracle import explicit_piecewise, make_piecewise, mp_piecewise, sundials_modes
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 TIME_TOLERANCE = 1e-10  # s, of event times
 STATE_TOLERANCE = 1e-10  # of the scales of x, v, a and force, see `scales`
@@ -82,11 +82,13 @@ def release(case: Case) -> Motion:
             plate=contact(pin["plate"]),
             finger=contact(pin["finger"]),
         ),
-        mouse_velocity=profile(pin["mouse_velocity"]),
-        displacement=pin["displacement"],
-        velocity=pin["velocity"],
-        plate_load=profile(pin["load"]),
-        skin_stretch=pin["skin_stretch"],
+        Release(
+            profile(pin["mouse_velocity"]),
+            pin["displacement"],
+            velocity=pin["velocity"],
+            plate_load=profile(pin["load"]),
+            skin_stretch=pin["skin_stretch"],
+        ),
         duration=case["duration"],
     )
 
@@ -187,7 +189,7 @@ def test_a_curve_on_compliant_skin_is_refused_with_the_reason() -> None:
     curved = Contact(0.01, curve=[(0.0, 0.01), (0.1, 0.005)], stiffness=1000.0)
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.1, plate=Contact(0.02), finger=curved)
     with pytest.raises(ValueError, match="finger curve must be one row for a compliant finger"):
-        simulate(drive, mouse_velocity=0.1)
+        simulate(drive, Release(0.1))
 
 
 def check_live(case: Case, oracle: Any, tolerances: Any) -> None:

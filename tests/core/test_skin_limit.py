@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drives import decades
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 MASS, STIFFNESS = 0.010, 100.0
 STIFFER = STIFFNESS * 10.0 ** np.arange(3, 10)
@@ -43,10 +43,12 @@ class Case:
         )
         return simulate(
             drive,
-            mouse_velocity=self.mouse_velocity,
-            displacement=self.displacement,
-            velocity=self.velocity,
-            plate_load=self.plate_load,
+            Release(
+                self.mouse_velocity,
+                self.displacement,
+                velocity=self.velocity,
+                plate_load=self.plate_load,
+            ),
             duration=self.duration,
         )
 

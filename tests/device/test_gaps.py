@@ -16,13 +16,13 @@ import xarray as xr
 from scipy.optimize import minimize_scalar
 
 from command import GOOD, run
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.cli.tables import console, meeting_words, scan_report
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.device.gaps import smallest_gaps
 from pindrive.device.pin_array import Neighbours
 from pindrive.evaluation import judge
-from pindrive.files.device import load
+from pindrive.files.device import load_device
 from pindrive.plot.scan import plot_reliefs, plot_scan
 from random_scans import RandomScan
 
@@ -72,9 +72,7 @@ def test_two_free_pins_by_hand() -> None:
     delta = 0.2 / 0.020
     omega = sqrt(1e4 - delta**2)
     for x0, x1 in ((0.001, 0.003), (0.003, 0.001), (-0.002, 0.001)):
-        motions = [
-            simulate(free, mouse_velocity=0.0, displacement=x, duration=0.3) for x in (x0, x1)
-        ]
+        motions = [simulate(free, Release(0.0, x), duration=0.3) for x in (x0, x1)]
         start = x0 - x1
         expected, when = min((start, 0.0), (-start * exp(-delta * pi / omega), pi / omega))
         size, time = closest(*motions)
@@ -85,10 +83,7 @@ def test_two_free_pins_by_hand() -> None:
 def test_two_frequencies_by_hand() -> None:
     """Undamped, one pin twice as heavy four times: cos 100 t against cos 50 t."""
     light, heavy = (replace(drive(0.0, NOTHING, NOTHING), mass=m) for m in (0.010, 0.040))
-    motions = [
-        simulate(body, mouse_velocity=0.0, displacement=0.001, duration=0.5)
-        for body in (light, heavy)
-    ]
+    motions = [simulate(body, Release(0.0, 0.001), duration=0.5) for body in (light, heavy)]
     # cos 2u - cos u is least where 4 cos u = 1: 2/16 - 1 - 1/4
     assert closest(*motions)[0] == pytest.approx(-1.125e-3, abs=1e-12)
 
@@ -119,8 +114,7 @@ def test_friction_curves_and_cycles_against_samples() -> None:
         (drive(0.1, Contact(0.002), slipping), 0.02),
     ):
         motions = [
-            simulate(body, mouse_velocity=speed, displacement=x, velocity=0.0, duration=2.0)
-            for x in (0.0, 0.004)
+            simulate(body, Release(speed, x, velocity=0.0), duration=2.0) for x in (0.0, 0.004)
         ]
         one, other = motions
         for pair in ((one, other), (other, one)):
@@ -335,7 +329,7 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
     if what == "template":
         assert run("init", "device.toml", "--device").exit_code == 0
     example = Path(__file__).parents[2] / "examples" / "tactile-reader.toml"
-    file = load("device.toml" if what == "template" else example)
+    file = load_device("device.toml" if what == "template" else example)
     assert file.whole
     device, reading = file.whole.device(file.drive), file.whole.reading()
     assert "cannot meet" in " ".join(meeting_words(device, reading.return_speed))

@@ -102,13 +102,11 @@ def test_linear_between_the_middles_of_pixels() -> None:
     assert_allclose(slope.at(px, py), plain, atol=1e-12)
 
 
-def test_places_off_the_page_are_refused() -> None:
-    scene = Scene(np.ones((2, 3)), 1e-3)
-    with pytest.raises(ValueError) as refused:
-        scene.at([0.001, 0.0031], 0.001)
-    assert str(refused.value) == (
-        "a place must be within 0 to 3 mm across, 0 to 2 mm down, got 3.1 mm, 1 mm"
-    )
+def test_paper_beyond_the_page_is_blank() -> None:
+    scene = Scene(np.full((2, 3), 0.25), 1e-3)
+    x = [-1.0, -1e-6, 0.0, 0.0015, 0.003, 0.0030001, 7.0]
+    assert_allclose(scene.at(x, 0.001), [1.0, 1.0, 0.25, 0.25, 0.25, 1.0, 1.0])
+    assert_allclose(scene.at(0.001, [-1e-6, 0.001, 0.0021]), [1.0, 0.25, 1.0])
 
 
 @pytest.mark.parametrize("shape", [(0, 3), (3, 0), (3,), (2, 2, 3)])

@@ -258,16 +258,27 @@ def test_latency_moves_the_commands_alone() -> None:
 # ---- what is refused or warned of ----------------------------------------------------------------
 
 
-def test_a_path_off_the_scene_is_refused() -> None:
+def test_a_hand_that_leaves_the_page_reads_blank_paper() -> None:
+    """As on a page that goes on white: the same looks, switchings and motion."""
+    page = np.ones((100, 200))
+    page[10:90, 80:100] = 0.0
+    around = np.pad(page, 300, constant_values=1.0)
+    small, wide = Scene(page, 1e-4), Scene(around, 1e-4, (-0.03, -0.03))
     device = Device(drive=drive(), array=PinArray.grid(2, 1, 0.004))
-    path = strokes([(0.01, 0.005), (0.059, 0.005)], 0.1)
-    with pytest.raises(ValueError) as refused:
-        scan(device, blank(), path)
-    message = str(refused.value)
-    assert message.startswith(
-        "the path of pin 1 must be within a scene, 0 to 60 mm across and 0 to 10 mm down, got (60."
+    path = strokes([(-0.01, 0.005), (0.04, 0.005), (0.009, 0.03)], 0.1)
+    one, other = scan(device, small, path), scan(device, wide, path)
+    for pin, like in zip(one.pins, other.pins, strict=True):
+        assert 0.0 in pin.luminance
+        assert_allclose(pin.luminance, like.luminance, atol=1e-12)
+        assert pin.events == like.events
+    assert one.evaluate().counts == other.evaluate().counts
+    looks = one.pins[0].looks
+    off = ~small.contains(*one.spot(0, looks).T)
+    assert one.warnings[0] == (
+        "the spot of pin 0 is beyond the page, 0 to 20 mm across and 0 to 10 mm down, for "
+        f"{off.mean():.0%} of the time: it sees blank paper there"
     )
-    assert message.endswith(" s")
+    assert not any("beyond the page" in words for words in other.warnings)
 
 
 def test_a_slow_sample_rate_is_warned_of_with_its_number() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from pindrive import Contact, Drive, Profile, simulate
+from pindrive import Contact, Drive, Profile, Release, simulate
 from pindrive.device import (
     ControlBlock,
     Device,
@@ -199,9 +199,11 @@ def test_smear_is_settling_time_times_hand_speed() -> None:
     first = float(pin.load(line.release))
     release = simulate(
         drive(),
-        mouse_velocity=speed,
-        displacement=float(pin.position(line.release)),
-        plate_load=Profile([0.0, *(t for t, _ in rows)], [first, *(y for _, y in rows)]),
+        Release(
+            speed,
+            float(pin.position(line.release)),
+            plate_load=Profile([0.0, *(t for t, _ in rows)], [first, *(y for _, y in rows)]),
+        ),
     )
     settling = release.transient.settling_time
     assert line.settled - line.release == pytest.approx(settling, rel=1e-9)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pindrive.files.device import KEYS, ConfigError, load
+from pindrive.files.device import KEYS, ConfigError, load_device
 from pindrive.files.template import NUMBERS, template
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.units import UnitError, to_si
@@ -35,7 +35,7 @@ def write(tmp_path: Path) -> Write:
 def problems(path: Path, *overrides: str) -> list[str]:
     """The problems of a file, its place taken off."""
     with pytest.raises(ConfigError) as refused:
-        load(path, overrides)
+        load_device(path, overrides)
     assert str(refused.value) == "\n".join(refused.value.problems)
     assert not any("\n" in line for line in refused.value.problems)
     return [line.replace(f"{path}: ", "FILE: ") for line in refused.value.problems]
@@ -45,30 +45,30 @@ def problems(path: Path, *overrides: str) -> list[str]:
 
 
 def test_a_file_is_read_in_si_to_the_last_bit(write: Write) -> None:
-    device = load(write())
+    device = load_device(write())
     drive = device.drive
     assert (drive.mass, drive.stiffness, drive.damping) == (0.010, 100.0, 0.40)
     assert (drive.plate.kinetic, drive.plate.static, drive.finger.kinetic) == (0.020, None, 0.005)
-    assert (device.mouse_velocity, device.displacement) == (0.1, 0.0)
-    assert (device.velocity, device.duration, device.name) == (None, None, "")
+    assert (device.release.mouse_velocity, device.release.displacement) == (0.1, 0.0)
+    assert (device.release.velocity, device.duration, device.name) == (None, None, "")
 
 
 def test_example_loads() -> None:
-    device = load(EXAMPLE)
+    device = load_device(EXAMPLE)
     assert device.name
     assert device.drive.damping_ratio == pytest.approx(0.16, rel=1e-15)
     assert device.drive.plate.kinetic == pytest.approx(0.225 * 0.010 * 9.81, rel=0.01)
 
 
 def test_example_is_what_init_writes() -> None:
-    values = load(EXAMPLE).values()
+    values = load_device(EXAMPLE).values()
     for quantity in INPUTS:
         if quantity.default is not None:
             assert values[quantity.key] == quantity.default
 
 
 def test_template_loads_with_the_defaults_of_the_table(write: Write) -> None:
-    device = load(write(new=template()))
+    device = load_device(write(new=template()))
     given = {q.key: q.default for q in INPUTS if q.default is not None}
     assert device.values() | given == device.values()
 
@@ -102,7 +102,7 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
     if name == "skin_stretch":  # of skin, and of skin alone
         lines = [text.replace("# stiffness", "stiffness") for text in template().splitlines()]
     lines.insert(lines.index(f"[{table}]") + 1, line)
-    device = load(write(new="\n".join(lines)))
+    device = load_device(write(new="\n".join(lines)))
     if table != "device":
         quantity = NUMBERS[f"{table}.{name}"]
         given = quantity.rows if " = [" in line else quantity.example
@@ -112,25 +112,25 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
 def test_windows_text_is_read(write: Write) -> None:
     path = write()
     path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
-    assert load(path).drive.mass == 0.010
+    assert load_device(path).drive.mass == 0.010
 
 
 @pytest.mark.parametrize("ratio", ["0.2", '"0.2"', '"20 %"', '"20%"', '"20 percent"'])
 def test_damping_ratio_as_number_or_percentage(write: Write, ratio: str) -> None:
     path = write('damping = "0.40 N*s/m"', f"damping_ratio = {ratio}")
-    assert load(path).drive.damping == pytest.approx(0.4, rel=1e-15)
+    assert load_device(path).drive.damping == pytest.approx(0.4, rel=1e-15)
 
 
 def test_overrides_by_short_and_full_key(write: Write) -> None:
-    device = load(write(), ["mass=12 g", "plate.kinetic = 30 mN", "name=other", "mass=13 g"])
+    device = load_device(write(), ["mass=12 g", "plate.kinetic = 30 mN", "name=other", "mass=13 g"])
     assert (device.drive.mass, device.drive.plate.kinetic) == (0.013, 0.030)
     assert device.name == "other"
 
 
 def test_either_damping_replaces_the_other(write: Write) -> None:
-    assert load(write(), ["damping_ratio=0.5"]).drive.damping_ratio == 0.5
+    assert load_device(write(), ["damping_ratio=0.5"]).drive.damping_ratio == 0.5
     path = write('damping = "0.40 N*s/m"', "damping_ratio = 0.2")
-    assert load(path, ["damping=0.1 N*s/m"]).drive.damping == 0.1
+    assert load_device(path, ["damping=0.1 N*s/m"]).drive.damping == 0.1
 
 
 # ---- units ---------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pindrive import Profile
-from pindrive.files.device import ConfigError, DeviceFile, load
+from pindrive.files.device import ConfigError, DeviceFile, load_device
 
 GOOD = Path(__file__).parents[1].joinpath("minimal.toml").read_text(encoding="utf-8")
 PLATE, FINGER, SPEED = '"20 mN"', '"5 mN"', '"100 mm/s"'
@@ -34,7 +34,7 @@ def write(tmp_path: Path) -> Write:
 
 def problems(path: Path, *overrides: str) -> list[str]:
     with pytest.raises(ConfigError) as refused:
-        load(path, overrides)
+        load_device(path, overrides)
     assert not any("\n" in line for line in refused.value.problems)
     return [line.replace(f"{path}: ", "FILE: ") for line in refused.value.problems]
 
@@ -44,49 +44,51 @@ def problems(path: Path, *overrides: str) -> list[str]:
 
 def test_a_curve_says_the_kinetic_friction(write: Write) -> None:
     curve = '[["0 mm/s", "22 mN"], ["5 cm/s", "15 mN"], ["1 m/s", "0 N"]]'
-    plate = load(write('kinetic = "20 mN"', f"curve = {curve}")).drive.plate
+    plate = load_device(write('kinetic = "20 mN"', f"curve = {curve}")).drive.plate
     assert plate.curve == ((0.0, 0.022), (0.05, 0.015), (1.0, 0.0))
     assert plate.kinetic == plate.static_friction == 0.022
 
 
 def test_kinetic_friction_and_curve_may_agree(write: Write) -> None:
     curve = '\ncurve = [["0 m/s", "0.02 N"], ["1 m/s", "10 mN"]]\nstatic = "30 mN"'
-    plate = load(write(PLATE, PLATE + curve)).drive.plate
+    plate = load_device(write(PLATE, PLATE + curve)).drive.plate
     assert (plate.kinetic, plate.static) == (0.020, 0.030)
 
 
 def test_skin(write: Write) -> None:
-    device = load(
+    device = load_device(
         write(FINGER, f'{FINGER}\nstiffness = "1 N/mm"', SPEED, f'{SPEED}\nskin_stretch = "-2 µm"')
     )
     assert device.drive.finger.stiffness == 1000.0
-    assert device.skin_stretch == -2e-6
+    assert device.release.skin_stretch == -2e-6
     assert device.drive.plate.rigid
 
 
 @pytest.mark.parametrize("load_of_one", ["1", "1.0", '"100 %"', '"1"'])
 def test_a_constant_load(write: Write, load_of_one: str) -> None:
-    assert load(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).plate_load == 1.0
+    assert (
+        load_device(write(SPEED, f"{SPEED}\nplate_load = {load_of_one}")).release.plate_load == 1.0
+    )
 
 
 def test_inputs_that_change(write: Write) -> None:
-    device = load(
+    device = load_device(
         write(
             SPEED,
             '[["0 ms", "60 mm/s"], ["40 ms", "0 mm/s"]]\n'
             'plate_load = [["0 ms", 1], ["5 ms", "20 %"]]',
         )
     )
-    assert device.mouse_velocity == Profile((0.0, 0.04), (0.06, 0.0))
-    assert device.plate_load == Profile((0.0, 0.005), (1.0, 0.2))
+    assert device.release.mouse_velocity == Profile((0.0, 0.04), (0.06, 0.0))
+    assert device.release.plate_load == Profile((0.0, 0.005), (1.0, 0.2))
     values = device.values()
     assert values["motion.mouse_velocity"] == ((0.0, 0.06), (0.04, 0.0))
     assert values["motion.plate_load"] == ((0.0, 1.0), (0.005, 0.2))
 
 
 def test_left_out_is_left_out(write: Write) -> None:
-    device = load(write())
-    assert device.plate_load == 1.0
+    device = load_device(write())
+    assert device.release.plate_load == 1.0
     values = device.values()
     for key in ("plate.curve", "finger.curve", "finger.stiffness", "motion.skin_stretch"):
         assert values[key] is None
@@ -103,12 +105,14 @@ OVERRIDES = [
 
 @pytest.mark.parametrize(("override", "key", "value"), OVERRIDES)
 def test_overrides(write: Write, override: str, key: str, value: object) -> None:
-    assert load(write(), [override]).values()[key] == value
+    assert load_device(write(), [override]).values()[key] == value
 
 
 def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Path) -> None:
     """To the last bit, through text with units."""
-    device = load(write(), [*(override for override, _, _ in OVERRIDES[::2]), "duration=0.3 s"])
+    device = load_device(
+        write(), [*(override for override, _, _ in OVERRIDES[::2]), "duration=0.3 s"]
+    )
     lines = ""
     for key, value in device.values().items():
         if value is not None and key != "drive.damping_ratio":
@@ -116,8 +120,8 @@ def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Pa
             lines += f"{table}.{name} = {_toml(key, value)}\n"
     path = tmp_path / "again.toml"
     path.write_text(lines, encoding="utf-8")
-    assert load(path).values() == device.values()
-    assert load(path).drive == device.drive
+    assert load_device(path).values() == device.values()
+    assert load_device(path).drive == device.drive
 
 
 UNITS = {"mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N", "kinetic": "N",
@@ -296,7 +300,7 @@ def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> No
 
 
 def test_equal_rows_are_a_constant_load(write: Write) -> None:
-    device: DeviceFile = load(
+    device: DeviceFile = load_device(
         write(PLATE, PLATE + FALLING), ['plate_load=[["0 ms", 1], ["5 ms", 1]]']
     )
-    assert device.plate_load == Profile((0.0, 0.005), (1.0, 1.0))
+    assert device.release.plate_load == Profile((0.0, 0.005), (1.0, 1.0))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive, Motion, simulate
+from pindrive import Contact, Drive, Motion, Release, simulate
 
 DRIVE = Drive(
     mass=0.010, stiffness=100.0, damping=0.32, plate=Contact(0.022, 0.0265), finger=Contact(0.005)
@@ -17,7 +17,7 @@ DRIVE = Drive(
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return simulate(DRIVE, mouse_velocity=0.06, displacement=2e-3)
+    return simulate(DRIVE, Release(0.06, 2e-3))
 
 
 def test_a_time_gives_a_float_and_times_an_array_of_their_shape(motion: Motion) -> None:
@@ -48,11 +48,15 @@ def test_the_limits_at_an_event_are_those_from_its_sides(motion: Motion) -> None
         assert DRIVE.mass * (right - left) == pytest.approx(jump, abs=1e-15)
 
 
+def released(duration: float | None = None, **changes: Any) -> Motion:
+    return simulate(DRIVE, Release(**({"mouse_velocity": 0.06} | changes)), duration=duration)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"mouse_velocity": math.nan}, "mouse_velocity must be finite, got nan m/s"),
-        ({"mouse_velocity": "1 m/s"}, "mouse_velocity must be a number in m/s, got '1 m/s'"),
+        ({"mouse_velocity": b"1"}, "mouse_velocity must be a number in m/s, got b'1'"),
         ({"displacement": math.inf}, "displacement must be finite, got inf m"),
         ({"velocity": -math.inf}, "velocity must be finite, got -inf m/s"),
         ({"plate_load": -1.0}, "plate_load must be finite and at least 0, got -1.0"),
@@ -62,7 +66,7 @@ def test_the_limits_at_an_event_are_those_from_its_sides(motion: Motion) -> None
 )
 def test_a_bad_release_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError) as refused:
-        simulate(DRIVE, **({"mouse_velocity": 0.06} | changes))
+        released(**changes)
     assert str(refused.value) == message
 
 
@@ -73,7 +77,7 @@ def test_a_bad_time_is_refused(motion: Motion, time: Any) -> None:
 
 
 def test_a_time_beyond_what_is_known_is_refused() -> None:
-    cut = simulate(DRIVE, mouse_velocity=0.06, displacement=2e-3, duration=0.05)
+    cut = simulate(DRIVE, Release(0.06, 2e-3), duration=0.05)
     assert cut.ending.kind == "moving"
     with pytest.raises(ValueError, match=r"t must be from 0 s to 0\.05 s, got 0\.06 s"):
         cut.position([0.01, 0.06])
@@ -88,7 +92,6 @@ def test_a_bad_name_is_refused(motion: Motion) -> None:
 
 
 def test_plate_load_multiplies_the_friction_of_the_plate() -> None:
-    release = {"mouse_velocity": 0.06, "displacement": 2e-3}
     doubled = Drive(
         mass=0.010,
         stiffness=100.0,
@@ -96,6 +99,6 @@ def test_plate_load_multiplies_the_friction_of_the_plate() -> None:
         plate=Contact(0.044, 0.053),
         finger=Contact(0.005),
     )
-    pressed = simulate(DRIVE, plate_load=2.0, **release)
-    assert pressed.events == simulate(doubled, **release).events
-    assert pressed.events != simulate(DRIVE, **release).events
+    pressed = simulate(DRIVE, Release(0.06, 2e-3, plate_load=2.0))
+    assert pressed.events == simulate(doubled, Release(0.06, 2e-3)).events
+    assert pressed.events != simulate(DRIVE, Release(0.06, 2e-3)).events

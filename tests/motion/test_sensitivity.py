@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given, settings
 
 from core import test_oracle
-from drives import Release, releases
+from drives import Case, cases
 from oracle import make_cases, mp_oracle
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.quantities.table import QUANTITIES
 
 PIN = {"mass": 0.01, "stiffness": 100.0, "damping": 0.4}
@@ -50,7 +50,7 @@ def peak_time(m: Any, k: Any, b: Any, force: Any, v0: Any, x0: Any) -> Any:
 
 def test_a_free_flight_against_its_closed_form() -> None:
     names = ["mass", "stiffness", "damping", "plate_kinetic", "mouse_velocity", "displacement"]
-    motion = simulate(pin(finger=Contact(0.0)), mouse_velocity=0.1, displacement=1.5e-3)
+    motion = simulate(pin(finger=Contact(0.0)), Release(0.1, 1.5e-3))
     sensitivity = motion.sensitivity(names)
     assert not sensitivity.gaps
     with mp.workdps(40):
@@ -68,7 +68,7 @@ def test_a_free_flight_against_its_closed_form() -> None:
 
 def test_a_pin_that_is_carried_moves_with_the_plate() -> None:
     drive = pin(plate=Contact(0.1, 0.3))
-    motion = simulate(drive, mouse_velocity=0.1, displacement=0.0)
+    motion = simulate(drive, Release(0.1, 0.0))
     slope = motion.sensitivity(["mouse_velocity", "plate_static", "plate_kinetic"])
     assert slope.position([0.0, 0.01]) == pytest.approx(np.array([[0, 0.01], [0, 0], [0, 0]]))
     # It breaks loose where k v t + b v + F_finger = F_static.
@@ -122,22 +122,22 @@ def test_against_the_forty_digit_oracle(number: int) -> None:
 # ---- against differences of two motions ----------------------------------------------------------
 
 
-def changed(release: Release, name: str, by: float) -> Motion:
+def changed(case: Case, name: str, by: float) -> Motion:
     """The motion with one parameter changed."""
-    drive = release.drive
+    drive = case.drive
     if name in PIN:
         other: dict[str, Any] = {name: getattr(drive, name) + by}
-        return replace(release, drive=replace(drive, **other)).run(0.5)
+        return Case(replace(drive, **other), case.release).run(0.5)
     if name in ("mouse_velocity", "displacement"):
-        moved: dict[str, Any] = {name: getattr(release, name) + by}
-        return replace(release, **moved).run(0.5)
+        moved: dict[str, Any] = {name: getattr(case.release, name) + by}
+        return Case(drive, replace(case.release, **moved)).run(0.5)
     side, which = name.split("_")
     contact = getattr(drive, side)
     tied = contact.static_friction == contact.kinetic
     new = Contact(contact.kinetic + by, contact.static_friction + (by if tied else 0.0))
     assert which == "kinetic"
     rubbed: dict[str, Any] = {side: new}
-    return replace(release, drive=replace(drive, **rubbed)).run(0.5)
+    return Case(replace(drive, **rubbed), case.release).run(0.5)
 
 
 def quantities(motion: Motion, times: np.ndarray) -> np.ndarray:
@@ -145,10 +145,12 @@ def quantities(motion: Motion, times: np.ndarray) -> np.ndarray:
     numbers = motion.numbers()
     del numbers["energy.residual"], numbers["transient.settled"]
     # A band this narrow has few digits, and its derivative none.
-    if not abs(motion.displacement - motion.ending.position) > 1e-5 * abs(motion.displacement):
+    if not abs(motion.release.displacement - motion.ending.position) > 1e-5 * abs(
+        motion.release.displacement
+    ):
         numbers["transient.settling_time"] = nan
     # Of a turn where next to nothing is left of the wave, the time has few digits too.
-    if abs(motion.transient.trough_displacement) < 1e-9 * abs(motion.displacement):
+    if abs(motion.transient.trough_displacement) < 1e-9 * abs(motion.release.displacement):
         numbers["transient.trough_time"] = nan
     all_of_them = np.array([*motion.position(times), *numbers.values()])
     return np.where(np.isfinite(all_of_them), all_of_them, np.nan)
@@ -160,23 +162,23 @@ def course_of(motion: Motion) -> list[object]:
     ]
 
 
-@given(releases())
+@given(cases())
 @settings(max_examples=40)
-def test_random_motions_against_differences(release: Release) -> None:
+def test_random_motions_against_differences(case: Case) -> None:
     values = {
-        "mass": release.drive.mass,
-        "stiffness": release.drive.stiffness,
-        "damping": release.drive.damping,
-        "plate_kinetic": release.drive.plate.kinetic,
-        "finger_kinetic": release.drive.finger.kinetic,
-        "mouse_velocity": release.mouse_velocity,
-        "displacement": release.displacement,
+        "mass": case.drive.mass,
+        "stiffness": case.drive.stiffness,
+        "damping": case.drive.damping,
+        "plate_kinetic": case.drive.plate.kinetic,
+        "finger_kinetic": case.drive.finger.kinetic,
+        "mouse_velocity": case.mouse_velocity,
+        "displacement": case.release.displacement,
     }
-    for side, contact in (("plate", release.drive.plate), ("finger", release.drive.finger)):
+    for side, contact in (("plate", case.drive.plate), ("finger", case.drive.finger)):
         if contact.kinetic < contact.static_friction < contact.kinetic * (1 + 1e-5):
             del values[f"{side}_kinetic"]  # the differences would lift it above static friction
     names = [name for name, value in values.items() if abs(value) > 1e-6]
-    motion = release.run(0.5)
+    motion = case.run(0.5)
     sensitivity = motion.sensitivity(names)
     times = np.linspace(0.0, min(0.5, motion.duration), 9)
     positions = sensitivity.position(times)
@@ -190,7 +192,7 @@ def test_random_motions_against_differences(release: Release) -> None:
     for i, name in enumerate(names):
         found = np.array([*positions[i], *(n[name] for n in sensitivity.numbers.values())])
         step = 1e-6 * abs(values[name])
-        around = [changed(release, name, by) for by in (step, -step, step / 4, -step / 4)]
+        around = [changed(case, name, by) for by in (step, -step, step / 4, -step / 4)]
         if any(course_of(m) != course_of(motion) for m in around):
             continue
         up, down, near_up, near_down = (quantities(m, times) for m in around)
@@ -254,7 +256,7 @@ def test_rows_and_skin_against_differences(name: str, given: tuple[Drive, float]
             plate=Contact(curve=[(u, f) for u, f in rows], static=0.0265),
             finger=Contact(0.02, static, stiffness=stiffness),
         )
-        return simulate(drive, mouse_velocity=Profile(times, values), displacement=2e-3)
+        return simulate(drive, Release(Profile(times, values), 2e-3))
 
     step = 1e-6 * given[1]
     motion, up, down = run(0.0), run(step), run(-step)
@@ -285,7 +287,7 @@ def test_rows_and_skin_against_differences(name: str, given: tuple[Drive, float]
 
 
 def test_a_start_at_the_plates_velocity_has_no_derivative_by_velocity_alone() -> None:
-    motion = simulate(pin(), mouse_velocity=0.1, displacement=1.5e-3)
+    motion = simulate(pin(), Release(0.1, 1.5e-3))
     sensitivity = motion.sensitivity(["velocity", "mouse_velocity"])
     assert list(sensitivity.gaps) == ["velocity"]
     assert "other events" in sensitivity.gaps["velocity"]
@@ -297,7 +299,7 @@ def test_a_change_in_the_number_of_events_is_told() -> None:
     """Bisected to where one more swing begins; before that swing the derivatives exist."""
 
     def run(displacement: float) -> Motion:
-        return simulate(pin(), mouse_velocity=0.1, displacement=displacement)
+        return simulate(pin(), Release(0.1, displacement))
 
     low, high = 1.5e-3, 3e-3
     few = len(run(low).events)
@@ -320,7 +322,7 @@ def test_a_grazing_event_is_told() -> None:
 
     def run(mouse_velocity: float) -> Motion:
         drive = pin(plate=Contact(0.02, 0.05), damping=0.2)
-        return simulate(drive, mouse_velocity=mouse_velocity, displacement=-2e-3, velocity=0.0)
+        return simulate(drive, Release(mouse_velocity, -2e-3, velocity=0.0))
 
     low, high = 0.01, 1.0
     while (middle := (low + high) / 2) not in (low, high):
@@ -337,7 +339,7 @@ def test_a_settling_time_that_jumps_has_no_derivative() -> None:
     """At the jump an extremum touches the band; everything else has its derivative."""
 
     def settling(displacement: float) -> float:
-        motion = simulate(pin(), mouse_velocity=0.1, displacement=displacement)
+        motion = simulate(pin(), Release(0.1, displacement))
         return motion.transient.settling_time
 
     low, high = 1.30e-3, 1.5e-3
@@ -346,7 +348,7 @@ def test_a_settling_time_that_jumps_has_no_derivative() -> None:
     while (middle := (low + high) / 2) not in (low, high):
         near = abs(settling(middle) - settling(low)) < abs(settling(middle) - settling(high))
         low, high = (middle, high) if near else (low, middle)
-    motion = simulate(pin(), mouse_velocity=0.1, displacement=low)
+    motion = simulate(pin(), Release(0.1, low))
     sensitivity = motion.sensitivity(["displacement"])
     assert sensitivity.gaps == {}
     assert isnan(sensitivity.numbers["transient.settling_time"]["displacement"])
@@ -355,7 +357,7 @@ def test_a_settling_time_that_jumps_has_no_derivative() -> None:
 
 def test_without_damping_the_ending_changes_but_not_the_motion() -> None:
     drive = pin(plate=Contact(0.0), finger=Contact(0.0), damping=0.0)
-    motion = simulate(drive, mouse_velocity=0.1, displacement=1e-3, velocity=0.0, duration=1.0)
+    motion = simulate(drive, Release(0.1, 1e-3, velocity=0.0), duration=1.0)
     sensitivity = motion.sensitivity(["damping"])
     assert "ending" in sensitivity.gaps["damping"]
     # x = x0 cos ωt: by b it changes as x0 (sin ωt / ω - t cos ωt) / 2m.
@@ -381,13 +383,13 @@ def test_without_damping_the_ending_changes_but_not_the_motion() -> None:
     ],
 )
 def test_unknown_parameters_are_refused(parameters: Any, words: str) -> None:
-    motion = simulate(pin(), mouse_velocity=0.1, displacement=1.5e-3)
+    motion = simulate(pin(), Release(0.1, 1.5e-3))
     with pytest.raises(ValueError, match=words):
         motion.sensitivity(parameters)
 
 
 def test_times_are_refused_as_by_the_motion() -> None:
-    motion = simulate(pin(), mouse_velocity=0.1, displacement=1.5e-3)
+    motion = simulate(pin(), Release(0.1, 1.5e-3))
     sensitivity = motion.sensitivity(["mass", "stiffness"])
     with pytest.raises(ValueError, match="t must be"):
         sensitivity.position(-1.0)
@@ -398,9 +400,9 @@ def test_times_are_refused_as_by_the_motion() -> None:
 
 
 def test_a_motion_survives_pickling() -> None:
-    motion = simulate(CURVED, mouse_velocity=BRAKING, displacement=2e-3)
+    motion = simulate(CURVED, Release(BRAKING, 2e-3))
     again = pickle.loads(pickle.dumps(motion))
     assert again.events == motion.events
     assert again.numbers() == pytest.approx(motion.numbers(), rel=0, nan_ok=True)
-    assert again.starts_with_plate
+    assert again.release.velocity is None
     assert inf > again.duration == motion.duration

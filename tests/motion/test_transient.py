@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from drives import Release, releases
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from drives import Case, cases
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 SAMPLES = 20_001
 
@@ -21,15 +21,15 @@ def turning_points(t: np.ndarray, v: np.ndarray) -> list[int]:
     return [i for i in range(1, len(t)) if direction[i] != direction[i - 1] != 0]
 
 
-@given(releases())
+@given(cases())
 @settings(max_examples=60)
-def test_numbers_against_samples(release: Release) -> None:
-    motion = release.run()
+def test_numbers_against_samples(case: Case) -> None:
+    motion = case.run()
     # Near critical damping a turning point may lie so late that samples up to there see nothing
     # else: a hundred in each natural period see all.
-    longest = SAMPLES / 100 * 2 * pi / release.drive.natural_frequency
+    longest = SAMPLES / 100 * 2 * pi / case.drive.natural_frequency
     if motion.duration > longest:
-        motion = release.run(longest)
+        motion = case.run(longest)
     t = np.linspace(0.0, motion.duration, SAMPLES)
     x, v = motion.position(t), motion.velocity(t)
     step = t[1]
@@ -38,14 +38,18 @@ def test_numbers_against_samples(release: Release) -> None:
     near = 2 * step * np.abs(v).max() + 1e-13 * size
     transient = motion.transient
     turns = turning_points(t, v)
-    outward = np.sign(motion.displacement or motion.initial_velocity or release.mouse_velocity)
+    outward = np.sign(
+        motion.release.displacement or motion.release.initial_velocity or case.mouse_velocity
+    )
 
     def visible(time: float) -> bool:
         """Whether samples can tell the sign of the velocity before it vanishes from rounding."""
         return bool(abs(motion.velocity(max(time - step, 0.0))) > 1e-12 * np.abs(v).max())
 
     if transient.peak_time > 0 and visible(transient.peak_time):
-        assert transient.peak_displacement * outward >= motion.displacement * outward - 1e-15
+        assert (
+            transient.peak_displacement * outward >= motion.release.displacement * outward - 1e-15
+        )
         assert transient.peak_time == pytest.approx(t[turns[0]], abs=2 * step)
         assert transient.peak_displacement == pytest.approx(x[turns[0]], abs=near)
     if isfinite(transient.trough_time):
@@ -61,7 +65,7 @@ def test_numbers_against_samples(release: Release) -> None:
             assert -outward * transient.return_velocity == pytest.approx(fastest, abs=slack)
 
     if motion.ending.kind in ("resting", "decaying") and transient.settled:
-        band = 0.05 * abs(motion.displacement - motion.ending.position)
+        band = 0.05 * abs(motion.release.displacement - motion.ending.position)
         outside = np.flatnonzero(np.abs(x - motion.ending.position) > band + 1e-12 * size)
         settled = transient.settling_time
         assert not len(outside) or t[outside[-1]] <= settled + 1e-12
@@ -70,7 +74,7 @@ def test_numbers_against_samples(release: Release) -> None:
             assert distance == pytest.approx(band, rel=1e-9, abs=1e-12 * size)
 
     names: tuple[Literal["plate", "finger"], ...] = ("plate", "finger")
-    for name, surface in zip(names, (release.mouse_velocity, 0.0), strict=True):
+    for name, surface in zip(names, (case.mouse_velocity, 0.0), strict=True):
         use, sliding = getattr(transient, name), getattr(motion.drive, name)
         if sliding.frictionless:
             assert use.distance_slid == use.dissipated == use.reversals == 0
@@ -92,13 +96,12 @@ def test_numbers_against_samples(release: Release) -> None:
 
 
 def example(**changes: float) -> Motion:
-    values = {"mouse_velocity": 0.1, "displacement": 1.5e-3, "duration": None, **changes}
+    values = {"mouse_velocity": 0.1, "displacement": 1.5e-3, **changes}
+    duration = values.pop("duration", None)
     drive = Drive(
         mass=0.01, stiffness=100.0, damping=0.2, plate=Contact(0.02), finger=Contact(0.005)
     )
-    return Release(
-        drive, float(values["mouse_velocity"] or 0), float(values["displacement"] or 0)
-    ).run(values["duration"])
+    return simulate(drive, Release(**values), duration=duration)
 
 
 def test_not_settled_in_the_duration_is_nan_and_flagged() -> None:
@@ -125,7 +128,7 @@ def test_wider_band_settles_no_later() -> None:
 
 def test_steady_motion_settles_where_it_begins() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02), finger=Contact(0.0))
-    motion = Release(drive, 0.1, 1.5e-3).run()
+    motion = Case(drive, Release(0.1, 1.5e-3)).run()
     assert motion.transient.settling_time == motion.ending.steady_since > 0
 
 
@@ -136,7 +139,7 @@ def test_steady_motion_settles_where_it_begins() -> None:
 def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
     """Amplitude and middle are those of one round; no shorter period brings the motion back."""
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=plate, finger=Contact(0.0))
-    motion = Release(drive, 0.1, 1.5e-3).run()
+    motion = Case(drive, Release(0.1, 1.5e-3)).run()
     ending = motion.ending
     assert ending.cycle == cycle
     t = ending.steady_since + np.linspace(0.0, ending.period, SAMPLES)
@@ -153,7 +156,7 @@ def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
     drive = Drive.with_damping_ratio(
         mass=0.01, stiffness=100.0, damping_ratio=2.0, plate=Contact(0.02), finger=Contact(0.0)
     )
-    transient = Release(drive, 0.1, 1.5e-3).run().transient
+    transient = Case(drive, Release(0.1, 1.5e-3)).run().transient
     assert transient.trough_time == np.inf
     assert transient.trough_displacement == pytest.approx(0.02 / 100.0, rel=1e-12)
 
@@ -172,7 +175,7 @@ def test_a_long_vibration_in_the_skin_against_samples(seed: int) -> None:
     jolt = 4.0 + random.uniform(0.0, 0.1)
     drift = random.uniform(-2e-4, 2e-4)
     v = Profile([0.0, 0.5, jolt, jolt + 0.01], [0.05, 0.05, 0.05 + drift, 0.0])
-    motion = simulate(drive, mouse_velocity=v, displacement=2e-3, velocity=0.05)
+    motion = simulate(drive, Release(v, 2e-3, velocity=0.05))
     assert motion.ending.kind == "decaying"
 
     t = np.linspace(0.0, motion.duration, 400_001)
@@ -188,7 +191,7 @@ def test_a_long_vibration_in_the_skin_against_samples(seed: int) -> None:
         drive.finger.stiffness * transient.peak_stretch, rel=1e-12
     )
     for band in (0.02, 0.05, 0.2, 0.6):
-        width = band * abs(motion.displacement - motion.ending.position)
+        width = band * abs(motion.release.displacement - motion.ending.position)
         outside = np.flatnonzero(np.abs(x - motion.ending.position) > width + 1e-9 * size)
         settled = motion.settling_time(band)
         assert t[outside[-1]] <= settled

@@ -58,14 +58,14 @@ def distance(pin: PinScan) -> Distance:
 
 def _inputs(pin: PinScan) -> dict[str, Any]:
     motion, load = pin.motion, pin.load
-    assert isinstance(motion.mouse_velocity, Profile)
+    assert isinstance(motion.release.mouse_velocity, Profile)
     return {
         "mass": motion.drive.mass,
         "stiffness": motion.drive.stiffness,
         "damping": motion.drive.damping,
         "plate": _contact(motion.drive.plate),
         "finger": _contact(motion.drive.finger),
-        "mouse_velocity": [list(row) for row in motion.mouse_velocity.rows],
+        "mouse_velocity": [list(row) for row in motion.release.mouse_velocity.rows],
         "load": [list(row) for row in load.rows] if isinstance(load, Profile) else [[0.0, load]],
         "displacement": 0.0,
         "velocity": 0.0,

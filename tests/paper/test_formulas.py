@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sympy import Expr
 
 from pindrive import paper
-from pindrive.paper import Release, as_printed, population
+from pindrive.paper import Releases, as_printed, population
 
 Array = NDArray[np.float64]
 
@@ -210,14 +210,14 @@ def test_the_functions_are_what_sympy_derived() -> None:
 
 
 @st.composite
-def releases(draw: st.DrawFn) -> Release:
+def releases(draw: st.DrawFn) -> Releases:
     """One release to which the analysis applies, x_0 > 0."""
     mass, stiffness = 10 ** draw(st.floats(-3.5, -1.5)), 10 ** draw(st.floats(1.0, 3.0))
     ratio = draw(st.one_of(st.just(0.0), st.floats(1e-4, 0.99)))
     damping = 2 * ratio * (mass * stiffness) ** 0.5
     friction, speed = draw(st.floats(1e-3, 0.1)), draw(st.floats(1e-3, 0.5))
     held = max(friction - damping * speed, 0.0) / stiffness
-    return Release(
+    return Releases(
         mass=mass,
         stiffness=stiffness,
         damping=damping,
@@ -227,7 +227,7 @@ def releases(draw: st.DrawFn) -> Release:
     )
 
 
-def rounding(formula: Callable[..., Array], size: float, r: Release, *times: Array) -> Array:
+def rounding(formula: Callable[..., Array], size: float, r: Releases, *times: Array) -> Array:
     """How far a formula and the simulation of it may lie apart by rounding.
 
     Each of N roundings on the way to a value f, by a part u = 2^-53 of what is rounded, does what a
@@ -249,7 +249,7 @@ def rounding(formula: Callable[..., Array], size: float, r: Release, *times: Arr
     return np.asarray(2 * 32 * unit * terms)
 
 
-CRITICAL = Release(
+CRITICAL = Releases(
     mass=0.00031623,
     stiffness=10.0,
     damping=0.10895363,
@@ -263,7 +263,7 @@ CRITICAL = Release(
 @given(releases())
 @example(CRITICAL)
 @settings(max_examples=150)
-def test_every_formula_is_the_exact_motion_until_friction_reverses(r: Release) -> None:
+def test_every_formula_is_the_exact_motion_until_friction_reverses(r: Releases) -> None:
     length = max(float(paper.amplitude(r)), float(r.displacement))
     w = float(paper.natural_frequency(r))
     late = float(paper.limit_reversal_time(r))
@@ -296,7 +296,7 @@ def test_every_formula_is_the_exact_motion_until_friction_reverses(r: Release) -
 
 @given(releases())
 @settings(max_examples=150)
-def test_21_the_first_reversal_is_where_the_core_finds_it(r: Release) -> None:
+def test_21_the_first_reversal_is_where_the_core_finds_it(r: Releases) -> None:
     t_1, late = float(paper.first_reversal_time(r)), float(paper.limit_reversal_time(r))
     margin = float(paper.forward_velocity(r) - r.mouse_velocity)
     scale = float(paper.natural_frequency(r) * paper.amplitude(r))
@@ -322,9 +322,9 @@ def test_26_the_limit_case_is_where_reversing_ends() -> None:
     scale = paper.natural_frequency(r) * paper.amplitude(r)
     assert np.abs((paper.forward_velocity(r) - r.mouse_velocity) / scale).max() < 1e-14
 
-    def damped(factor: float) -> Release:
+    def damped(factor: float) -> Releases:
         fields = {n: getattr(r, n) for n in ("mass", "stiffness", "friction", "mouse_velocity")}
-        return Release(**fields, damping=r.damping * factor, displacement=r.displacement)
+        return Releases(**fields, damping=r.damping * factor, displacement=r.displacement)
 
     assert np.isnan(paper.first_reversal_time(damped(1 + 1e-6))).all()
     for little in (1e-4, 1e-8):
@@ -356,7 +356,7 @@ def test_steady_state_of_the_undamped_drive() -> None:
 
 
 def test_the_undamped_release_from_the_other_side() -> None:
-    r = Release(
+    r = Releases(
         mass=0.01,
         stiffness=100.0,
         damping=0.0,
@@ -427,7 +427,7 @@ def test_the_printed_forms_fail_by_this_much() -> None:
 
 def test_atan2_alone_misses_a_turn() -> None:
     """ζ > 0.707 and x_0 just below x_d: the angle is beyond π, and (13) needs it there."""
-    r = Release(
+    r = Releases(
         mass=0.01,
         stiffness=100.0,
         damping=1.8,
@@ -446,7 +446,7 @@ def test_atan2_alone_misses_a_turn() -> None:
 
 
 def test_arrays_broadcast() -> None:
-    r = Release(
+    r = Releases(
         mass=0.01,
         stiffness=[[100.0], [200.0]],
         damping=[0.0, 0.1, 0.2],
@@ -456,7 +456,7 @@ def test_arrays_broadcast() -> None:
     )
     assert r.shape == (2, 3)
     for name in paper.__all__:
-        if name in ("Release", "position", "velocity", "acceleration", "periods_to_rest"):
+        if name in ("Releases", "position", "velocity", "acceleration", "periods_to_rest"):
             continue
         values = getattr(paper, name)(r)
         for array in values if name == "coefficients" else (values,):
@@ -468,7 +468,7 @@ def test_arrays_broadcast() -> None:
 
 def test_where_the_analysis_does_not_apply_there_is_no_number() -> None:
     base = {"mass": 0.01, "stiffness": 100.0, "mouse_velocity": 0.1}
-    r = Release(
+    r = Releases(
         **base,
         damping=[2.0, 3.0, 0.1, 0.1, 0.1],
         friction=[0.02, 0.02, 0.2, 0.02, 0.0],
@@ -477,12 +477,12 @@ def test_where_the_analysis_does_not_apply_there_is_no_number() -> None:
     assert paper.applies(r).tolist() == [False, False, False, False, True]
     for name in ("peak_time", "swing", "amplitude", "first_reversal_time", "steady_amplitude"):
         assert np.isnan(getattr(paper, name)(r)[:4]).all(), name
-    free = Release(**base, damping=0.0, friction=0.0, displacement=1e-3)
+    free = Releases(**base, damping=0.0, friction=0.0, displacement=1e-3)
     assert np.isnan(paper.first_reversal_time(free))  # no friction, nothing reverses
     assert paper.reversals_to_steady(free) == paper.time_to_steady(free) == inf
     assert np.isnan(paper.steady_amplitude(free))
     assert paper.periods_to_rest(free, 0.0) == inf
-    assert paper.periods_to_rest(Release(**base | {"mouse_velocity": 0}, damping=0, friction=1,
+    assert paper.periods_to_rest(Releases(**base | {"mouse_velocity": 0}, damping=0, friction=1,
                                          displacement=0), 1e-3) == 0.0  # fmt: skip
 
 
@@ -508,13 +508,13 @@ def test_bad_values_are_named(name: str, value: object, message: str) -> None:
         "displacement": 1e-3,
     }
     with pytest.raises(ValueError, match="must be") as refused:
-        Release(**good | {name: value})  # type: ignore[arg-type]
+        Releases(**good | {name: value})  # type: ignore[arg-type]
     assert str(refused.value) == message
 
 
 def test_shapes_that_do_not_broadcast_are_named() -> None:
     with pytest.raises(ValueError, match=r"mass \(2,\), stiffness \(3,\)"):
-        Release(
+        Releases(
             mass=[0.01, 0.02],
             stiffness=[100.0, 200.0, 300.0],
             damping=0.1,

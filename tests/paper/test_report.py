@@ -15,7 +15,7 @@ import xarray as xr
 from PIL import Image
 from typer.testing import CliRunner
 
-from pindrive import Contact, Drive, simulate
+from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
 from pindrive.paper import formulas, maps, population, report
 from pindrive.paper.claim import Claim
@@ -301,7 +301,7 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
                 finger=Contact(p["finger_kinetic"]),
             )
             v, x = p["mouse_velocity"], p["displacement"]
-            found = simulate(drive, mouse_velocity=v, displacement=x)
+            found = simulate(drive, Release(v, x))
             shown = time.settling_time.sel(at).isel(point=point)
             assert float(shown) == pytest.approx(found.transient.settling_time, rel=1e-9), where
             peak = way.peak_displacement.sel(at).isel(point=point)
@@ -328,7 +328,7 @@ def test_the_maps_are_the_simulations(made: Report) -> None:
                 finger=Contact(groups["finger"] * k * x0),
             )
             v = groups["speed"] * w0 * x0
-            found = simulate(drive, mouse_velocity=v, displacement=x0).transient.settling_time
+            found = simulate(drive, Release(v, x0)).transient.settling_time
             periods = float(data[f"{key}_periods"][j, i])
             assert w0 * found / (2 * np.pi) == pytest.approx(periods, rel=1e-8, abs=1e-12)
 

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from pindrive import Contact, Drive, Motion, Profile, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.plot.motion import plot_motion
 from pindrive.plot.style import PALETTE, save
 
@@ -52,41 +52,27 @@ SKIN = Drive(
 STOP = Profile([0.0, 0.1], [0.06, 0.0])
 NONE = (0.0, 0.0)
 MOTIONS: dict[str, Callable[[], Motion]] = {
-    "example": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3),
-    "still plate": lambda: simulate(drive(), mouse_velocity=0.0, displacement=2e-3),
-    "backwards": lambda: simulate(drive(0.2), mouse_velocity=-0.1, displacement=-1.5e-3),
-    "grazing": lambda: simulate(
-        drive(0.0, (0.02, 0.02), NONE), mouse_velocity=0.1, displacement=3e-3
-    ),
-    "stick-slip": lambda: simulate(
-        drive(0.1, (0.05, 0.12), (0.005, 0.005)), mouse_velocity=0.02, displacement=1e-3
-    ),
-    "creep": lambda: simulate(drive(6.0, NONE, NONE), mouse_velocity=0.05, displacement=2e-3),
-    "slow creep": lambda: simulate(drive(2e4, NONE, NONE), mouse_velocity=0.05, displacement=2e-3),
-    "free": lambda: simulate(drive(0.0, NONE, NONE), mouse_velocity=0.06, displacement=2e-3),
-    "at rest": lambda: simulate(drive(), mouse_velocity=0.0),
-    "pushed": lambda: simulate(
-        drive(), mouse_velocity=-0.1234, displacement=-1.234e-5, velocity=-0.04321
-    ),
-    "cut": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=0.05),
-    "long": lambda: simulate(drive(), mouse_velocity=0.06, displacement=2e-3, duration=20.0),
-    "skin": lambda: simulate(SKIN, mouse_velocity=STOP, displacement=2e-3),
+    "example": lambda: simulate(drive(), Release(0.06, 2e-3)),
+    "still plate": lambda: simulate(drive(), Release(0.0, 2e-3)),
+    "backwards": lambda: simulate(drive(0.2), Release(-0.1, -1.5e-3)),
+    "grazing": lambda: simulate(drive(0.0, (0.02, 0.02), NONE), Release(0.1, 3e-3)),
+    "stick-slip": lambda: simulate(drive(0.1, (0.05, 0.12), (0.005, 0.005)), Release(0.02, 1e-3)),
+    "creep": lambda: simulate(drive(6.0, NONE, NONE), Release(0.05, 2e-3)),
+    "slow creep": lambda: simulate(drive(2e4, NONE, NONE), Release(0.05, 2e-3)),
+    "free": lambda: simulate(drive(0.0, NONE, NONE), Release(0.06, 2e-3)),
+    "at rest": lambda: simulate(drive(), Release(0.0)),
+    "pushed": lambda: simulate(drive(), Release(-0.1234, -1.234e-5, velocity=-0.04321)),
+    "cut": lambda: simulate(drive(), Release(0.06, 2e-3), duration=0.05),
+    "long": lambda: simulate(drive(), Release(0.06, 2e-3), duration=20.0),
+    "skin": lambda: simulate(SKIN, Release(STOP, 2e-3)),
     "stiff skin": lambda: simulate(
-        replace(SKIN, finger=Contact(0.02, 0.03, stiffness=1e8)),
-        mouse_velocity=0.06,
-        displacement=2e-3,
+        replace(SKIN, finger=Contact(0.02, 0.03, stiffness=1e8)), Release(0.06, 2e-3)
     ),
     "magnet": lambda: simulate(
-        drive(),
-        mouse_velocity=STOP,
-        displacement=2e-3,
-        plate_load=Profile([0.0, 0.005], [1.0, 0.2]),
+        drive(), Release(STOP, 2e-3, plate_load=Profile([0.0, 0.005], [1.0, 0.2]))
     ),
     "many": lambda: simulate(
-        drive(0.0, (1e-6, 1e-6), (1e-6, 1e-6)),
-        mouse_velocity=0.0,
-        displacement=0.1,
-        duration=200.0,
+        drive(0.0, (1e-6, 1e-6), (1e-6, 1e-6)), Release(0.0, 0.1), duration=200.0
     ),
 }
 MARKED = [name for name in MOTIONS if name != "many"]
@@ -274,7 +260,7 @@ def test_title_says_what_changes(drawn: dict[str, tuple[Motion, Figure]]) -> Non
     assert r"$v_\mathrm{p}$ = 60 → 0 mm/s" in skin
     assert "$λ$ = 1 → 0.2" in magnet
     assert "λ" not in skin
-    many = simulate(drive(), mouse_velocity=Profile(range(9), [0.01 * i for i in range(9)]))
+    many = simulate(drive(), Release(Profile(range(9), [0.01 * i for i in range(9)])))
     assert "= 0 mm/s … 80 mm/s" in plot_motion(many).get_suptitle()
 
 
@@ -335,7 +321,7 @@ def test_words_stay_on_the_page(drawn: dict[str, tuple[Motion, Figure]], name: s
 
 def test_a_motion_cut_short_leaves_out_what_lies_far_beyond() -> None:
     """It is carried for days: where it will rest takes no room, where the drawing stops is said."""
-    motion = simulate(drive(plate=(1e3, 1e3)), mouse_velocity=1e-5)
+    motion = simulate(drive(plate=(1e3, 1e3)), Release(1e-5))
     figure = plot_motion(motion)
     figure.draw_without_rendering()  # a layout that fails warns, which is an error here
     portrait = {text.get_text() for text in panel(figure, "portrait").texts}

@@ -19,7 +19,7 @@ from pindrive.cli.app import app
 from pindrive.plot.slices import plot_study
 from pindrive.study.runner import sweep
 from pindrive.study.slices import View, quantiles
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 Values = NDArray[np.float64]
 BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from command import run
-from pindrive import Contact, Drive, Profile, simulate
+from pindrive import Contact, Drive, Profile, Release, simulate
 from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, strokes
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.perception import judge
@@ -163,7 +163,7 @@ def traced(work: Callable[[], Found]) -> tuple[Found, int]:
 def test_looks_for_turning_points_are_not_kept() -> None:
     drive = device(stiffness=1e9).drive
     ramp = Profile((0.0, 0.5, 1.0), (0.05, 0.06, 0.05))
-    motion = simulate(drive, mouse_velocity=ramp, duration=1.0)
+    motion = simulate(drive, Release(ramp), duration=1.0)
     looks = 30.0 * np.sqrt(1e9 / 0.01) / (2.0 * np.pi)
     knots, peak = traced(lambda: Course(motion).knots)
     assert looks > 1.5e6

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import product
 from math import inf, isfinite
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,12 +18,20 @@ from pindrive import (
     ImplausibleValueWarning,
     Motion,
     Profile,
+    Release,
     simulate,
     simulate_batch,
 )
 from pindrive.plot.style import Figure
 
 PIN = Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005))
+
+
+def parts(given: dict[str, Any]) -> tuple[Release, float | None]:
+    """A release at 60 mm/s but for what is given, and the duration."""
+    inputs = {"mouse_velocity": 0.06, **given}
+    duration = inputs.pop("duration", None)
+    return Release(**inputs), duration
 
 
 SIZES = (1e-12, 1.0, 1e12)
@@ -46,7 +55,7 @@ def test_the_corners_of_the_bounds_are_computed(mass: float, stiffness: float) -
         # Long enough for events, and too short for a million of them.
         period = 6.3 * (mass / stiffness) ** 0.5
         duration = min(max(30.0 * period, 1e-12), 1e12)
-        motion = simulate(drive, mouse_velocity=speed, displacement=-speed, duration=duration)
+        motion = simulate(drive, Release(speed, -speed), duration=duration)
         assert motion.status == "ok"
         assert motion.certificate().motion_law < 1e-12
         assert motion.certificate().friction_law < 1e-12
@@ -79,7 +88,10 @@ def test_a_mass_that_no_double_can_move_is_refused_and_not_followed_for_ever() -
         ),
         ({"mouse_velocity": [0.1] * 3}, "simulate_batch takes arrays, got 3 values"),
         ({"displacement": [1e-3]}, "displacement must be one number; simulate_batch takes arrays"),
-        ({"plate_load": "1"}, "plate_load must be a plain number, got '1'"),
+        (
+            {"plate_load": "1 m"},
+            'plate_load must be a plain number or a percentage, like "1", got "1 m"',
+        ),
         (
             {"mouse_velocity": Profile([0, 0.1, 0.1], [0.1, 0.1, 0.0])},
             "mouse_velocity must be without a step (a jump would take an infinite force), got one "
@@ -87,9 +99,10 @@ def test_a_mass_that_no_double_can_move_is_refused_and_not_followed_for_ever() -
         ),
     ],
 )
-def test_what_is_not_computed_is_refused_in_a_line(given: dict[str, object], message: str) -> None:
+def test_what_is_not_computed_is_refused_in_a_line(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError) as refused:
-        simulate(PIN, **{"mouse_velocity": 0.06, **given})  # type: ignore[arg-type]
+        release, duration = parts(given)
+        simulate(PIN, release, duration=duration)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
 
@@ -112,10 +125,11 @@ def test_what_is_not_computed_is_refused_in_a_line(given: dict[str, object], mes
     ],
 )
 def test_what_no_device_has_is_warned_of_where_it_was_written(
-    given: dict[str, object], words: str
+    given: dict[str, Any], words: str
 ) -> None:
+    release, duration = parts(given)
     with pytest.warns(ImplausibleValueWarning) as told:
-        simulate(PIN, **{"mouse_velocity": 0.06, **given})  # type: ignore[arg-type]
+        simulate(PIN, release, duration=duration)
     assert len(told) == 1
     assert str(told[0].message).startswith(words)
     assert told[0].filename == __file__
@@ -124,20 +138,12 @@ def test_what_no_device_has_is_warned_of_where_it_was_written(
 def test_a_drive_in_grams_is_warned_of() -> None:
     heavy = Drive(mass=10, stiffness=100.0, damping=0.4, plate=Contact(0), finger=Contact(0))
     with pytest.warns(ImplausibleValueWarning, match=r"mass is 10 kg.* did you mean 10 g, 0.01 kg"):
-        simulate(heavy, mouse_velocity=0.06)
+        simulate(heavy, Release(0.06))
 
 
 def test_a_batch_warns_once_of_an_argument_and_not_of_bad_points() -> None:
-    given = {
-        "mass": [0.01, 0.0, 0.01],
-        "stiffness": 100.0,
-        "damping": 0.4,
-        "plate_kinetic": 0.02,
-        "finger_kinetic": 0.005,
-        "displacement": 0.001,
-    }
     with pytest.warns(ImplausibleValueWarning) as told:
-        simulate_batch(**given, mouse_velocity=[60.0, 70.0, inf])  # type: ignore[arg-type]
+        simulate_batch(PIN, Release(0.1), mass=[0.01, 0.0, 0.01], mouse_velocity=[60.0, 70.0, inf])
     (warning,) = told
     assert str(warning.message).startswith("mouse_velocity is 70 m/s; ")
     assert warning.filename == __file__
@@ -161,7 +167,7 @@ def test_only_public_names_are_listed() -> None:
 
 def test_a_figure_shows_itself_in_a_notebook() -> None:
     """By the protocol of IPython, whatever backend matplotlib has."""
-    figure = simulate(PIN, mouse_velocity=0.06, displacement=0.002).plot()
+    figure = simulate(PIN, Release(0.06, 0.002)).plot()
     assert isinstance(figure, Figure)
     picture, size = figure._repr_png_()
     assert picture.startswith(b"\x89PNG\r\n\x1a\n")
@@ -189,7 +195,7 @@ def test_a_load_may_step_in_a_device_file_and_on_the_command_line() -> None:
 def test_the_derivative_along_the_time_of_a_step_is_that_of_differences() -> None:
     def stepped(time: float) -> Motion:
         load = Profile([0.0, time, time], [0.6, 0.6, 1.5])
-        return simulate(PIN, mouse_velocity=0.06, displacement=0.002, plate_load=load)
+        return simulate(PIN, Release(0.06, 0.002, plate_load=load))
 
     motion, h, t = stepped(0.02), 1e-7, np.linspace(0.025, 0.1, 7)
     found = motion.sensitivity(["plate_load[1].time"]).position(t)[0]

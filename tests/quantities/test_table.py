@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import pytest
 
-from pindrive import Contact, Drive, simulate
+from pindrive import Contact, Drive, Release, simulate
 from pindrive._core import settling_band
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.quantity import Bounds, Quantity, significant
@@ -37,7 +37,7 @@ def test_a_device_file_can_show_every_input(quantity: Quantity) -> None:
 
 def test_every_number_of_a_motion_is_in_the_table() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.32, plate=Contact(0.02), finger=Contact(0))
-    motion = simulate(drive, mouse_velocity=0.06, displacement=0.002)
+    motion = simulate(drive, Release(0.06, 0.002))
     certificate = {f"certificate.{field.name}" for field in fields(motion.certificate())}
     assert set(motion.numbers()) | certificate == {q.name for q in OUTPUTS}
     assert certificate == {q.name for q in CERTIFICATE}
@@ -81,7 +81,7 @@ def test_check_gives_a_float() -> None:
         ("damping_ratio", -1.0, "damping_ratio must be finite and at least 0, got -1.0"),
         ("plate.kinetic", math.inf, "plate.kinetic must be finite and at least 0 N, got inf N"),
         ("mouse_velocity", -math.inf, "mouse_velocity must be finite, got -inf m/s"),
-        ("duration", "1 s", "duration must be a number in s, got '1 s'"),
+        ("duration", "1 m", 'duration must be in s or a unit alike, like "300 ms", got "1 m"'),
         ("duration", True, "duration must be a number in s, got True"),
         ("duration", None, "duration must be a number in s, got None"),
         ("duration", 1j, "duration must be a number in s, got 1j"),

@@ -17,7 +17,7 @@ from pindrive.study.design import Plan
 from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
 from pindrive.study.evaluate import evaluate
 from pindrive.study.outputs import MEASURED, OUTPUTS
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 HERE = Path(__file__).parents[1]
 BASE = f'base = "{(HERE / "minimal.toml").as_posix()}"\n'
@@ -193,7 +193,7 @@ def test_one_by_one_is_the_batch_bit_for_bit(tmp_path: Path) -> None:
 
 def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:
     from pindrive import simulate
-    from pindrive.files.device import load
+    from pindrive.files.device import load_device
 
     example = HERE.parent / "examples" / "stribeck-skin.toml"
     plan = study(
@@ -203,15 +203,8 @@ def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:
     )
     found = evaluate(plan, plan.columns(0, 2), 2, plan.outputs)["transient_settling_time"]
     for i, mass in enumerate(("5 g", "10 g")):
-        device = load(example, [f"mass={mass}"])
-        motion = simulate(
-            device.drive,
-            mouse_velocity=device.mouse_velocity,
-            displacement=device.displacement,
-            plate_load=device.plate_load,
-            skin_stretch=device.skin_stretch,
-            duration=device.duration,
-        )
+        device = load_device(example, [f"mass={mass}"])
+        motion = simulate(device.drive, device.release, duration=device.duration)
         assert found[i] == motion.transient.settling_time
 
 

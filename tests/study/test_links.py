@@ -10,9 +10,9 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
-from pindrive import Contact, Drive, simulate
+from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
-from pindrive.files.device import ConfigError, load, motion_of
+from pindrive.files.device import ConfigError, load_device, motion_of
 from pindrive.quantities.drive import INPUTS
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked
@@ -21,7 +21,7 @@ from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.outputs import MEASURED
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import influence
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -105,12 +105,9 @@ def test_a_swept_point_is_the_device_with_that_value_set() -> None:
                 plate=Contact(plate, plate * 26.5 / 22.0, [(u, part * plate) for u, part in shape]),
                 finger=Contact(finger, 1.5 * finger, stiffness=at["finger.stiffness"]),
             ),
-            mouse_velocity=0.060,
-            displacement=0.002,
-            # 40 % of what the skin can hold
-            skin_stretch=0.4 * 1.5 * finger / at["finger.stiffness"],
+            Release(0.060, 0.002, skin_stretch=0.4 * 1.5 * finger / at["finger.stiffness"]),
         )
-        set_so = load(
+        set_so = load_device(
             "device.toml",
             [f"{k}={at[k]!r} N" for k in ("plate.kinetic", "finger.kinetic")]
             + [f"finger.stiffness={at['finger.stiffness']!r} N/m"],
@@ -135,10 +132,10 @@ def test_what_is_given_by_itself_does_not_follow() -> None:
     assert plan.links == {"plate.static": Linked("plate.kinetic", 2.0)}
     plan = study('[axes]\nplate.static = ["30 mN", "40 mN"]\n')
     assert plan.links == {}, "kinetic friction leads"
-    device = load("device.toml", ["plate.kinetic=30 mN", "plate.static=31 mN"])
+    device = load_device("device.toml", ["plate.kinetic=30 mN", "plate.static=31 mN"])
     assert device.drive.plate == Contact(0.030, 0.031)
     with pytest.raises(ConfigError, match=r"--set plate\.static: plate\.static must be at least"):
-        load("device.toml", ["plate.static=10 mN"])
+        load_device("device.toml", ["plate.static=10 mN"])
 
 
 def test_a_ratio_to_zero_is_none() -> None:
@@ -147,7 +144,7 @@ def test_a_ratio_to_zero_is_none() -> None:
     assert plan.links == {}
     found = evaluate(plan, plan.columns(0, 2), 2, ("status",))
     assert [status != 0 for status in found["status"]] == [False, True]
-    assert load("device.toml", ["plate.kinetic=1 mN"]).drive.plate == Contact(0.001, 0.0265)
+    assert load_device("device.toml", ["plate.kinetic=1 mN"]).drive.plate == Contact(0.001, 0.0265)
 
 
 def test_static_friction_equal_to_kinetic_stays_equal_to_the_bit() -> None:
@@ -168,9 +165,9 @@ def test_damping_given_as_a_ratio_stays_that_ratio() -> None:
             damping = 2.0 * 0.16 * np.sqrt(mass * 100.0) if keep else 0.32
             contacts = {"plate": Contact(0.022, 0.0265), "finger": Contact(0.005)}
             drive = Drive(mass=mass, stiffness=100.0, damping=damping, **contacts)
-            motion = simulate(drive, mouse_velocity=0.060, displacement=0.002)
+            motion = simulate(drive, Release(0.060, 0.002))
             assert found[i] == pytest.approx(motion.transient.settling_time, rel=1e-12)
-            one = motion_of(load("device.toml", [f"mass={mass} kg"]))
+            one = motion_of(load_device("device.toml", [f"mass={mass} kg"]))
             assert one.transient.settling_time == pytest.approx(found[i], rel=1e-12)
 
 
@@ -335,12 +332,12 @@ def test_elasticities_take_along_what_follows() -> None:
     found = elasticities(plan, KEYS, plan.links)
     compared = 0
     for key in KEYS:
-        own = load("device.toml").values()[key]
+        own = load_device("device.toml").values()[key]
         unit = {"drive.mass": "kg", "finger.stiffness": "N/m"}.get(key, "N")
         assert isinstance(own, float)
         low, high = (
             motion_of(
-                load(
+                load_device(
                     "device.toml",
                     [f"duration={found.duration!r} s", f"{key}={own * factor!r} {unit}"],
                 )

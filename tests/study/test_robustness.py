@@ -9,11 +9,11 @@ import pytest
 from scipy import stats
 from typer.testing import CliRunner
 
-from pindrive import simulate_batch
+from pindrive import Contact, Drive, Release, simulate_batch
 from pindrive.cli.app import app
 from pindrive.study.design import Plan
 from pindrive.study.robustness import Share, robustness
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 HERE = Path(__file__).parents[1]
 STUDY = HERE.parent / "examples" / "tactile-mouse-study.toml"
@@ -37,14 +37,15 @@ def test_the_yield_is_that_of_other_draws(tmp_path: Path) -> None:
     plan = study(tmp_path, TOLERANCES + '[specification]\nswing = [">= 0.9 mm", "<= 1.2 mm"]\n')
     found = robustness(plan, count=count)
     rng = np.random.default_rng(298)
+    drive = Drive(
+        mass=0.010, stiffness=100.0, damping=0.40, plate=Contact(0.02), finger=Contact(0.005)
+    )
     other = simulate_batch(
+        drive,
+        Release(0.1),
         mass=rng.normal(0.010, 0.0004, count),
-        stiffness=100.0,
-        damping=0.40,
         plate_kinetic=rng.uniform(0.014, 0.026, count),
-        finger_kinetic=0.005,
         mouse_velocity=rng.uniform(0.080, 0.130, count),
-        displacement=0.0,
     ).transient_swing
     expected = float(((other >= 0.9e-3) & (other <= 1.2e-3)).mean())
     assert found.all_met is not None

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pindrive import Contact, Drive, simulate
+from pindrive import Contact, Drive, Release, simulate
 from pindrive.files.output import OutputError
 from pindrive.study import runner
 from pindrive.study.checkpoint import Journal
 from pindrive.study.design import Plan
-from pindrive.study.spec import load_study
 from pindrive.study.store import Piece, Store
+from pindrive.study.study import load_study
 from studies import HERE, SAMPLED, files, plan, run, uninterrupted
 
 
@@ -49,7 +49,7 @@ def test_numbers_are_those_of_simulate() -> None:
                     plate=Contact(float(at.plate_kinetic)),
                     finger=Contact(float(at.finger_kinetic)),
                 )
-                motion = simulate(drive, mouse_velocity=float(at.mouse_velocity), duration=0.2)
+                motion = simulate(drive, Release(float(at.mouse_velocity)), duration=0.2)
                 numbers = motion.numbers()
                 for name, value in numbers.items():
                     variable = name.replace(".", "_")
@@ -76,7 +76,7 @@ def test_the_ledger_is_kept_where_it_is_named() -> None:
         assert named.energy_damper_dissipated.attrs["units"] == "J"
         device = load_study("study.toml").device
         for i, speed in enumerate(named.mouse_velocity.values):
-            motion = simulate(device.drive, mouse_velocity=speed)
+            motion = simulate(device.drive, Release(speed))
             assert named.energy_damper_dissipated[i] == motion.energy.damper_dissipated
             assert abs(named.energy_residual[i]) < 1e-12 * motion.energy.damper_dissipated
 

@@ -13,13 +13,13 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from pindrive.cli.app import app
-from pindrive.files.device import load, motion_of
+from pindrive.files.device import load_device, motion_of
 from pindrive.files.template import DRIVE
 from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.sensitivity import influence, ranges_of
 from pindrive.study.sobol import sobol_indices
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = EXAMPLES / "tactile-mouse-study.toml"
@@ -142,13 +142,13 @@ KEYS = (
 def test_elasticities_are_differences() -> None:
     """Of whole device files, a millionth up and down, with all that follows the key."""
     found = elasticities(load_study(STUDY), KEYS, LINKS)
-    own = load(DEVICE).values()
+    own = load_device(DEVICE).values()
     compared = 0
     for key in KEYS:
         changed = [key, *(name for name, link in LINKS.items() if link.of == key)]
         low, high = (
             motion_of(
-                load(
+                load_device(
                     DEVICE,
                     [
                         f"duration={found.duration!r} s",

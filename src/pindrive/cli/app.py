@@ -123,10 +123,10 @@ def init(
 @app.command()
 def check(file: DeviceArgument) -> None:
     """Say what is wrong with a device file, or what it describes."""
-    from pindrive.files.device import load
+    from pindrive.files.device import load_device
 
     with refusing():
-        device = load(file)
+        device = load_device(file)
         pressing = device.whole.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.friction import Coefficients
@@ -157,7 +157,7 @@ def simulate(
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive.files import export
-    from pindrive.files.device import load, motion_of
+    from pindrive.files.device import load_device, motion_of
     from pindrive.files.output import (
         MOTION_CSV,
         MOTION_JSON,
@@ -169,7 +169,7 @@ def simulate(
     from pindrive.quantities import budgets
 
     with refusing():
-        device = load(file, overrides or ())
+        device = load_device(file, overrides or ())
         wanted: list[tuple[Output, Callable[[Motion, Path], None]]] = []
         if plot:
             from pindrive.plot.motion import write_figure

@@ -58,10 +58,10 @@ def scan(
     overrides: OverridesOption = None,
 ) -> None:
     """Move the device over a page and say what its pins do."""
-    from pindrive.files.device import load
+    from pindrive.files.device import load_device
 
     with refusing(), ExitStack() as stack:
-        device_file = load(file, overrides or (), whole=True)
+        device_file = load_device(file, overrides or (), whole=True)
         assert device_file.whole
         device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
         from pindrive.files.output import FILMS, LINES_CSV, SCAN_NETCDF, Output, naming, writing

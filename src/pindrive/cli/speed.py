@@ -42,10 +42,10 @@ def speed(
     overrides: OverridesOption = None,
 ) -> None:
     """Say how fast the hand may move before two lines run into one."""
-    from pindrive.files.device import load
+    from pindrive.files.device import load_device
 
     with refusing(), ExitStack() as stack:
-        device_file = load(file, overrides or (), whole=True)
+        device_file = load_device(file, overrides or (), whole=True)
         assert device_file.whole
         pitches = [
             step

@@ -59,7 +59,7 @@ def sweep(
     from pindrive.cli.study_tables import sweep_report
     from pindrive.study.runner import on_threads
     from pindrive.study.runner import sweep as work_off
-    from pindrive.study.spec import load_study
+    from pindrive.study.study import load_study
 
     target = output or study.with_suffix(".nc")
     with refusing():
@@ -207,7 +207,7 @@ def sensitivity(
             rows=rows,
             seed=seed,
             threads=threads,
-            tell=tell,
+            progress=tell,
         )
 
     def draw(found: Influence, name: str) -> Figure:
@@ -247,7 +247,7 @@ def robustness(
     def answer(plan: Plan, tell: Progress) -> Robustness:
         from pindrive.study.robustness import robustness
 
-        return robustness(plan, count=draws, seed=seed, threads=threads, tell=tell)
+        return robustness(plan, count=draws, seed=seed, threads=threads, progress=tell)
 
     def draw(found: Robustness, name: str) -> Figure:
         from pindrive.plot.robustness import plot_robustness
@@ -282,7 +282,7 @@ def _answered(
 ) -> tuple[Plan, Found]:
     """A study and what was asked of it, with a progress bar and, where wanted, a picture."""
     from pindrive.files.output import naming, writing
-    from pindrive.study.spec import load_study
+    from pindrive.study.study import load_study
 
     with refusing():
         plan = load_study(study, overrides or ())

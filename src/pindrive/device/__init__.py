@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pindrive.device.hand import HandPath, lines, read_csv, strokes, through
     from pindrive.device.page import Scene
     from pindrive.device.pin_array import PinArray
+    from pindrive.device.reading import Page, Reading
     from pindrive.device.scanning import PinScan, PinState, Scan, scan
 
 __all__ = [
@@ -26,9 +27,11 @@ __all__ = [
     "Device",
     "Electromagnet",
     "HandPath",
+    "Page",
     "PinArray",
     "PinScan",
     "PinState",
+    "Reading",
     "Scan",
     "Scene",
     "lines",
@@ -50,9 +53,11 @@ __getattr__, __dir__ = attach(
         "Device": "pindrive.device.device",
         "Electromagnet": "pindrive.device.electromagnet",
         "HandPath": "pindrive.device.hand",
+        "Page": "pindrive.device.reading",
         "PinArray": "pindrive.device.pin_array",
         "PinScan": "pindrive.device.scanning",
         "PinState": "pindrive.device.scanning",
+        "Reading": "pindrive.device.reading",
         "Scan": "pindrive.device.scanning",
         "Scene": "pindrive.device.page",
         "lines": "pindrive.device.hand",

@@ -83,27 +83,22 @@ class Scene:
         return (left <= px) & (px <= right) & (top <= py) & (py <= bottom)
 
     def at(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
-        """Luminance at places (m, any shape) on the page, linear between the middles of pixels.
+        """Luminance at places (m, any shape), linear between the middles of pixels.
 
-        In the outer half of the outermost pixels it is theirs.
-
-        Raises:
-            ValueError: a place is not on the page.
+        In the outer half of the outermost pixels it is theirs; beyond the page it is that of blank
+        paper, 1.
         """
         px, py = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
         inside = self.contains(px, py)
-        if not inside.all():
-            left, right, top, bottom = (1e3 * edge for edge in self.extent)
-            required = f"within {left:g} to {right:g} mm across, {top:g} to {bottom:g} mm down"
-            given = f"{1e3 * px[~inside].flat[0]:g} mm, {1e3 * py[~inside].flat[0]:g} mm"
-            raise ValueError(refusal("a place", required, given))
+        left, right, top, bottom = self.extent
+        px, py = np.clip(px, left, right), np.clip(py, top, bottom)
         (rows, columns), (x0, y0) = self.luminance.shape, self.origin
         i, u = _between((px - x0) / self.pixel, columns)
         j, w = _between((py - y0) / self.pixel, rows)
         i1, j1 = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
         above = self.luminance[j, i] * (1.0 - u) + self.luminance[j, i1] * u
         below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
-        return np.asarray(above * (1.0 - w) + below * w)
+        return np.where(inside, above * (1.0 - w) + below * w, 1.0)
 
     def dark(self, threshold: float = 0.5) -> NDArray[np.bool_]:
         """Which pixels hold information: darker than the threshold, in [0, 1]."""

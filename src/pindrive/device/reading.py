@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from math import radians
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -16,8 +17,6 @@ from pindrive.quantities import budgets
 from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from pindrive.device.hand import HandPath
     from pindrive.device.page import Scene
     from pindrive.device.pin_array import PinArray
@@ -144,7 +143,7 @@ def _size(extent: Iterable[float]) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page:
-    """One of `text`, `image` and `grating`.
+    """What is on a page, one of `text`, `image` and `grating`, and how the hand moves over it.
 
     Args:
         text: one or more lines.
@@ -152,13 +151,35 @@ class Page:
         grating: from line to line in each of several groups, m.
         font: a file for the text; None: DejaVu Sans.
         path: a CSV of the hand's path; None: strokes.
+
+    Raises:
+        ValueError: a pitch is no number or out of its range.
     """
 
-    text: str | None = None
-    image: Path | None = None
-    grating: tuple[float, ...] | None = None
-    font: Path | None = None
-    path: Path | None = None
+    text: str | None
+    image: Path | None
+    grating: tuple[float, ...] | None
+    font: Path | None
+    path: Path | None
+
+    def __init__(
+        self,
+        *,
+        text: str | None = None,
+        image: str | PathLike[str] | None = None,
+        grating: Iterable[float] | None = None,
+        font: str | PathLike[str] | None = None,
+        path: str | PathLike[str] | None = None,
+    ) -> None:
+        """Validate the pitches, and keep paths."""
+        if grating is not None:
+            found = [check("pitch", x, label=f"grating[{i}]") for i, x in enumerate(grating)]
+            object.__setattr__(self, "grating", tuple(found))
+        else:
+            object.__setattr__(self, "grating", None)
+        object.__setattr__(self, "text", text)
+        for name, file in (("image", image), ("font", font), ("path", path)):
+            object.__setattr__(self, name, None if file is None else Path(file))
 
     def check(self, label: str, where: str = "") -> None:
         """Refuse none or several of them, and a font without text.

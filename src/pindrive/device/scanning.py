@@ -12,7 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import degrees
-from typing import TYPE_CHECKING, Final
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
@@ -23,22 +24,25 @@ from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
+from pindrive.device.reading import Page, Reading
 from pindrive.device.trajectory import Way, check_vibration
 from pindrive.lazy import xr
-from pindrive.motion.drive import Profile
+from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
-from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 ROUNDING: Final = 1e-9
 """So much too low is no sample rate too low."""
-MAX_ANGLE: Final = QUANTITIES["max_angle"].default or 0.0
 AT_ONCE: Final = 1 << 18
 """Looks at the page that are taken together: more take memory and save no time."""
 FINER: Final = 4.0
@@ -46,6 +50,22 @@ FINER: Final = 4.0
 
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
+
+
+class DescribedDevice(Protocol):
+    """A device with how a hand reads with it and what counts as felt, as a device file says."""
+
+    @property
+    def device(self) -> Device:
+        """The device."""
+
+    @property
+    def reading(self) -> Reading:
+        """How a hand reads with it."""
+
+    @property
+    def criteria(self) -> object:
+        """What counts as felt: `pindrive.evaluation.Criteria`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,12 +84,16 @@ class PinState:
     """Where the control block stands."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class PinScan:
-    """What happened to one pin in a scan. Times are those of the hand's path."""
+    """One pin in a scan: its inputs, and the motion to which they lead, computed when first asked.
+
+    Times are those of the hand's path.
+    """
 
     number: int
     """Its place in the array, from 0."""
+    drive: Drive
     begin: float
     end: float
     """Of the scan, s."""
@@ -81,14 +105,31 @@ class PinScan:
     """What it made of it: when the coil was switched."""
     current: Current
     """The current in the coil, a part of the full one, over time."""
-    load: float | Profile
-    """Factor on the plate's friction, over the time since `begin`."""
-    motion: Motion
-    """The pin's motion, over the time since `begin`."""
+    release: Release
+    """The state at `begin`, and the inputs over the time since."""
     coil: CoilState
     """The coil's last switching."""
     decision: Decision
     """Where the control block stands at the end."""
+
+    @property
+    def motion(self) -> Motion:
+        """The pin's motion, over the time since `begin`.
+
+        Raises:
+            ValueError: the simulation had to be given up.
+        """
+        kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
+        if "_motion" not in kept:
+            kept["_motion"] = self._followed()
+        found: Motion = kept["_motion"]
+        return found
+
+    def _followed(self) -> Motion:
+        motion = simulated(self.drive, self.release, duration=self.end - self.begin)
+        if motion.status != "ok":
+            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        return motion
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Deflection of the pin in the housing at times t (s, any shape), m.
@@ -116,6 +157,11 @@ class PinScan:
             required = f"from {self.begin!r} s to {self.end!r} s"
             raise ValueError(refusal("t", required, f"{times.min()!s} to {times.max()!s} s"))
         return times - self.begin
+
+    @property
+    def load(self) -> float | Profile:
+        """Factor on the plate's friction, over the time since `begin`."""
+        return self.release.plate_load
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -154,6 +200,42 @@ class Scan:
     pins: tuple[PinScan, ...]
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
+    criteria: object = None
+    """What counts as felt unless `evaluate` is given other ones; None: the literature's."""
+
+    def __repr__(self) -> str:
+        """What was scanned, for how long, by how many pins, in a line."""
+        pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
+        return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status}>"
+
+    @property
+    def status(self) -> str:
+        """Whether the simulation of every pin came to its end: "ok", as `scan` raises otherwise."""
+        return next((pin.motion.status for pin in self.pins if pin.motion.status != "ok"), "ok")
+
+    def evaluate(self, criteria: object = None) -> Any:
+        """What the finger was shown against what is printed, line by line.
+
+        Args:
+            criteria: what counts as felt, a `pindrive.evaluation.Criteria`; those of the device
+                file unless given, and of a device without one the middle of the literature.
+
+        Returns:
+            A `pindrive.evaluation.Judgement`: lines shown and missed, their lag and smear.
+        """
+        chosen = self.criteria if criteria is None else criteria
+        return lazy.call("pindrive.evaluation.perception:judge", self, chosen)
+
+    def plot(self, pin: int | None = None) -> Figure:
+        """What the device read and what the pins did, as a figure that a notebook shows.
+
+        Args:
+            pin: the one drawn in detail, from 0; one that reads a line unless given.
+
+        Returns:
+            A figure; `figure.savefig(FILE)` writes it.
+        """
+        return self.evaluate().plot(pin)  # type: ignore[no-any-return]
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -197,24 +279,27 @@ class Scan:
 
 
 def scan(
-    device: Device,
-    scene: Scene,
-    path: HandPath,
+    device: Device | DescribedDevice,
+    page: Page | Scene | str,
+    hand: HandPath | Reading | str | PathLike[str] | None = None,
     *,
     start: Sequence[PinState] | None = None,
-    max_angle: float = MAX_ANGLE,
+    max_angle: float | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Scan:
-    """Move a device over a scene along a path.
+    """Move a device over a page, and follow each of its pins exactly.
 
     Args:
-        device: the device.
-        scene: what is on the page.
-        path: where the hand is; where its axis crosses the array's middle.
+        device: as `load_device` reads it; or a `Device`, whose hand reads as `Reading` has it.
+        page: what is on it: a `Page` (text, an image, or lines), a `Scene`, or the text itself.
+        hand: how the hand moves: a `HandPath`, whose places are where the hand's axis crosses the
+            array's middle; a `Reading`, which strokes along the lines of the page; or the CSV of a
+            recorded path. None: as the device file says, and strokes along the page's lines.
         start: where each pin stands at the path's begin, as `Scan.state` of a scan that ended
             there; None: at the springs' rest, all magnets off.
-        max_angle: between motion and drive axis beyond which a warning is given, rad.
+        max_angle: between motion and drive axis beyond which a warning is given, rad, from 0 to a
+            right angle; as the device file says unless given.
         threads: how many pins are followed at once, at least 1; None: as many as there are cores.
         progress: told after each pin.
 
@@ -222,85 +307,80 @@ def scan(
         The scan, with its warnings.
 
     Raises:
-        ValueError: a spot leaves the scene, a state is missing or cannot be, `threads` is no
-            count, there is more to do than `pindrive.quantities.budgets` allow, or a simulation
-            had to be given up.
+        ValueError: the page or the recording cannot be read, a state is missing or cannot be,
+            `threads` is no count, there is more to do than `pindrive.quantities.budgets` allow, or
+            a simulation had to be given up.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> device = pd.load_device("tactile-reader.toml")
+        >>> scan = pd.scan(device, pd.Page(grating=[0.004]))
+        >>> scan
+        <Scan of lines every 4 mm by 16 pins in 1.18438 s, ok>
+        >>> scan.evaluate().counts["judged.shown"]
+        64
     """
-    if start is not None and len(start) != len(device.array):
-        required = f"one state for each pin, {len(device.array)}"
+    described = None if isinstance(device, Device) else device
+    if described is not None and not isinstance(getattr(described, "device", None), Device):
+        required = "a Device, or what load_device reads"
+        raise ValueError(refusal("device", required, repr(device)))
+    whole = device if isinstance(device, Device) else device.device
+    reading = Reading() if described is None else described.reading
+    if isinstance(hand, Reading):
+        reading, hand = hand, None
+    if isinstance(page, str):
+        page = Page(text=page)
+    if not isinstance(page, Page | Scene):
+        raise ValueError(refusal("page", "a Page, a Scene or text", repr(page)))
+    if isinstance(page, Page):
+        page.check("{}")
+    scene = page if isinstance(page, Scene) else page.scene(reading, whole.array)
+    if hand is None:
+        path = (
+            reading.strokes(scene, whole.array)
+            if isinstance(page, Scene)
+            else page.hand(reading, scene, whole.array)
+        )
+    else:
+        path = hand if isinstance(hand, HandPath) else reading.record(fspath(hand))
+    if start is not None and len(start) != len(whole.array):
+        required = f"one state for each pin, {len(whole.array)}"
         raise ValueError(refusal("start", required, str(len(start))))
+    angle = reading.max_angle if max_angle is None else check("max_angle", max_angle)
     workers = worker_count(threads)
-    prepared = prepare(device, scene, path, start)
-    pins: list[PinScan] = []
+    pins = prepare(whole, scene, path, start)
     segments = 0
-    pool = ThreadPoolExecutor(max_workers=min(workers, len(prepared)))
+    pool = ThreadPoolExecutor(max_workers=min(workers, len(pins)))
     try:
-        for pin in pool.map(PreparedPin.follow, prepared):
-            pins.append(pin)
-            segments += pin.motion.segment_count
-            budgets.SEGMENTS.check(segments, f"after {len(pins)} of {len(prepared)} pins")
+        for done, motion in enumerate(pool.map(lambda pin: pin.motion, pins), 1):
+            segments += motion.segment_count
+            budgets.SEGMENTS.check(segments, f"after {done} of {len(pins)} pins")
             if progress:
-                progress(len(pins), len(prepared))
+                progress(done, len(pins))
     finally:  # what has not begun never does, after an error or Ctrl-C
         pool.shutdown(wait=False, cancel_futures=True)
-    return Scan(device=device, scene=scene, path=path, pins=tuple(pins), max_angle=max_angle)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PreparedPin:
-    """A pin's inputs, known before anything moves: the scene is read, the coil is switched."""
-
-    number: int
-    device: Device
-    begin: float
-    end: float
-    looks: NDArray[np.float64]
-    luminance: NDArray[np.float64]
-    commands: Commands
-    current: Current
-    load: float | Profile
-    plate_velocity: Profile
-    start: PinState
-    coil: CoilState
-    decision: Decision
-
-    def follow(self) -> PinScan:
-        """The motion that they lead to."""
-        motion = simulated(
-            self.device.drive,
-            mouse_velocity=self.plate_velocity,
-            displacement=self.start.position,
-            velocity=self.start.velocity,
-            plate_load=self.load,
-            skin_stretch=self.start.skin_stretch,
-            duration=self.end - self.begin,
-        )
-        if motion.status != "ok":
-            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
-        return PinScan(
-            number=self.number,
-            begin=self.begin,
-            end=self.end,
-            looks=self.looks,
-            luminance=self.luminance,
-            commands=self.commands,
-            current=self.current,
-            load=self.load,
-            motion=motion,
-            coil=self.coil,
-            decision=self.decision,
-        )
+    return Scan(
+        device=whole,
+        scene=scene,
+        path=path,
+        pins=tuple(pins),
+        max_angle=angle,
+        criteria=None if described is None else described.criteria,
+    )
 
 
 def prepare(
     device: Device, scene: Scene, path: HandPath, start: Sequence[PinState] | None = None
-) -> list[PreparedPin]:
-    """Read the scene under each spot and switch the coils; arguments and errors as for `scan`."""
+) -> list[PinScan]:
+    """Read the scene under each spot and switch the coils; nothing moves yet.
+
+    Arguments and errors as for `scan`.
+    """
     check_work(device, scene, path)
     looks = device.control.looks(path.begin, path.end)
     plate_velocity = path.plate_velocity(device.array.axis)
     states = [PinState()] * len(device.array) if start is None else start
-    prepared: list[PreparedPin] = []
+    prepared: list[PinScan] = []
     rows = switchings = 0
     for number, state in enumerate(states):
         luminance = _seen(device, scene, path, looks, number)
@@ -313,18 +393,18 @@ def prepare(
         rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
-            PreparedPin(
+            PinScan(
                 number=number,
-                device=device,
+                drive=device.drive,
                 begin=path.begin,
                 end=path.end,
                 looks=looks,
                 luminance=luminance,
                 commands=commands,
                 current=current,
-                load=load,
-                plate_velocity=plate_velocity,
-                start=state,
+                release=Release(
+                    plate_velocity, state.position, state.velocity, load, state.skin_stretch
+                ),
                 coil=coil,
                 decision=decision,
             )
@@ -380,33 +460,8 @@ def _seen(
     for begin in range(0, len(looks), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
         x, y = (place + off for place, off in zip(path.position(looks[part]), offset, strict=True))
-        _check_on_page(scene, x, y, looks[part], pin)
         luminance[part] = scene.at(x, y)
     return luminance
-
-
-def _check_on_page(
-    scene: Scene,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    t: NDArray[np.float64],
-    pin: int,
-) -> None:
-    inside = scene.contains(x, y)
-    if inside.all():
-        return
-    look = int(np.argmin(inside))
-    left, right, top, bottom = (1e3 * edge for edge in scene.extent)
-    required = (
-        f"within {scene.title}, {left:g} to {right:g} mm across and {top:g} to {bottom:g} mm down"
-    )
-    raise ValueError(
-        refusal(
-            f"the path of pin {pin}",
-            required,
-            f"({1e3 * x[look]:g} mm, {1e3 * y[look]:g} mm) at {t[look]:g} s",
-        )
-    )
 
 
 def _doubts(scan: Scan) -> list[str]:
@@ -414,6 +469,9 @@ def _doubts(scan: Scan) -> list[str]:
     found = []
     device, scene, path, max_angle = scan.device, scan.scene, scan.path, scan.max_angle
     control, speed = device.control, path.peak_speed
+    beyond = _beyond(scan)
+    if beyond:
+        found.append(beyond)
     enough = control.enough_rate(speed, scene.pixel)
     if control.sample_rate < enough * (1.0 - ROUNDING):
         found.append(
@@ -445,6 +503,26 @@ def _doubts(scan: Scan) -> list[str]:
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
             )
     return found
+
+
+def _beyond(scan: Scan) -> str:
+    """How long a pin's spot is beyond the page, where it sees blank paper; empty: never."""
+    worst, part = 0, 0.0
+    for pin in scan.pins:
+        off = 0
+        for begin in range(0, len(pin.looks), AT_ONCE):
+            spots = scan.spot(pin.number, pin.looks[begin : begin + AT_ONCE])
+            off += int(np.count_nonzero(~scan.scene.contains(spots[:, 0], spots[:, 1])))
+        if off > part * len(pin.looks):
+            worst, part = pin.number, off / len(pin.looks)
+    if not part:
+        return ""
+    left, right, top, bottom = (1e3 * edge for edge in scan.scene.extent)
+    shown = f"{part:.0%}" if part >= 0.01 else "less than 1%"
+    return (
+        f"the spot of pin {worst} is beyond the page, {left:g} to {right:g} mm across and {top:g} "
+        f"to {bottom:g} mm down, for {shown} of the time: it sees blank paper there"
+    )
 
 
 def _overlaps(scan: Scan) -> list[str]:

@@ -61,8 +61,7 @@ def printed(scan: Scan) -> list[list[Printed]]:
             t: NDArray[np.float64], dx: float = dx, dy: float = dy
         ) -> NDArray[np.float64]:
             x, y = path.position(t)
-            left, right, top, bottom = scene.extent
-            return scene.at(np.clip(x + dx, left, right), np.clip(y + dy, top, bottom)) - threshold
+            return scene.at(x + dx, y + dy) - threshold
 
         edges, first, last = _edges(lightness, _looks(path, counts))
         passed += 0.5 * len(edges)

@@ -8,9 +8,14 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
+from pindrive import lazy
+from pindrive.lazy import xr
+from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from pindrive.device.scanning import Scan
 
 Fate = Literal["shown", "unseen", "merged", "faint"]
@@ -145,6 +150,33 @@ class Judgement:
     """Pin after pin, in the order of time. Lines that the way does not cross whole are left out."""
     echoes: tuple[Echo, ...]
     """False lines."""
+
+    def __repr__(self) -> str:
+        """What became of the lines, in a line."""
+        lines, missed = len(self.lines), len(self.lines) - len(self.shown)
+        shown = f"{lines - missed} of {counted(lines, 'line')} shown"
+        return f"<Judgement of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
+
+    @property
+    def status(self) -> str:
+        """That of the scan."""
+        return self.scan.status
+
+    def plot(self, pin: int | None = None) -> Figure:
+        """The scan and one pin of it, from 0, as `Scan.plot` draws them."""
+        figure: Figure = lazy.call("pindrive.plot.scan:plot_scan", self, pin)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """Each line under each pin, each false line, and the counts, with units.
+
+        Returns:
+            Variables over `line`: `pin`, `fate`, `time_begin` and `time_end` (s, when its edges
+            passed under the spot) and the numbers of `Line.numbers`; over `echo`: those of `Echo`;
+            a scalar for each of `counts`.
+        """
+        made: xr.Dataset = lazy.call("pindrive.evaluation.dataset:dataset", self)
+        return made
 
     @property
     def shown(self) -> tuple[Line, ...]:

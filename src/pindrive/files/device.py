@@ -11,11 +11,13 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import inf
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from pindrive.files.ratios import keep_ratios
+from pindrive.files.ratios import written as as_text
 from pindrive.files.schema import (
     Place,
     Value,
@@ -23,15 +25,20 @@ from pindrive.files.schema import (
     drive_of,
     drive_problems,
     read_values,
-    start_of,
+    release_of,
+    table_of,
 )
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE
 from pindrive.motion.drive import Drive, Profile
-from pindrive.quantities.quantity import Rows
+from pindrive.motion.release import Release
+from pindrive.quantities.quantity import Rows, counted
 from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
+    from pindrive.device.device import Device
+    from pindrive.device.reading import Reading
+    from pindrive.evaluation.results import Criteria
     from pindrive.files.whole_device import Whole
     from pindrive.motion.motion import Motion
 
@@ -77,11 +84,7 @@ class DeviceFile:
     name: str
     description: str
     drive: Drive
-    mouse_velocity: float | Profile
-    plate_load: float | Profile
-    displacement: float
-    velocity: float | None
-    skin_stretch: float | None
+    release: Release
     duration: float | None
     settling_band: float
     tables: Mapping[str, Any]
@@ -95,14 +98,54 @@ class DeviceFile:
         """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
         return "damping_ratio" in self.tables["drive"]
 
+    def __repr__(self) -> str:
+        """Which file, and what it describes, in a line."""
+        pins = f", {counted(len(self.whole.array()), 'pin')}" if self.whole else ""
+        name = f" {quoted(self.name)}" if self.name else ""
+        return f"<DeviceFile {self.path}{name}: {self.drive.mass:g} kg{pins}>"
+
+    @property
+    def device(self) -> Device:
+        """The whole device, with the usual values of what the file does not say.
+
+        Raises:
+            ConfigError: no magnet can hold by this drive's plate.
+        """
+        return self._whole.device(self.drive)
+
+    @property
+    def reading(self) -> Reading:
+        """How a hand reads with it."""
+        return self._whole.reading()
+
+    @property
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
+        return self._whole.criteria()
+
+    def with_whole(self) -> DeviceFile:
+        """The same with `whole`, also of a file without a table of it."""
+        return device_of(self.path, self.tables, whole=True)
+
+    @property
+    def _whole(self) -> Whole:
+        whole = self.whole or self.with_whole().whole
+        assert whole
+        return whole
+
     def values(self) -> dict[str, float | Rows | None]:
         """The value of every key that holds a quantity, in SI; None where it was left out.
 
         What changes is its rows: (speed, force) or (time, value).
         """
-        owner = {"drive": self.drive, "plate": self.drive.plate, "finger": self.drive.finger}
+        drive = self.drive
+        parts = {"plate": drive.plate, "finger": drive.finger, "motion": self.release}
+        own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
         places = ((key, *key.split(".")) for key in DRIVE)
-        values = {key: getattr(owner.get(table, self), name) for key, table, name in places}
+        values = {
+            key: own[key] if key in own else getattr(parts.get(table, drive), name)
+            for key, table, name in places
+        }
         if self.whole:
             values |= {key: self.whole.value(key) for key in WHOLE}
         return {
@@ -111,22 +154,38 @@ class DeviceFile:
         }
 
 
-def load(
-    path: str | PathLike[str], overrides: Iterable[str] = (), *, whole: bool = False
+def load_device(
+    path: str | PathLike[str],
+    overrides: Iterable[str] | Mapping[str, object] = (),
+    *,
+    whole: bool = False,
 ) -> DeviceFile:
-    """The device file at `path`, with single values set otherwise.
+    """The device that the file at `path` describes, with single values set otherwise.
 
     Args:
-        path: a TOML file; `template()` is one.
-        overrides: "key=value" each, the key in full (plate.kinetic=30 mN) or its last part where
+        path: a TOML file; `pindrive init FILE` writes one.
+        overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
+            text has a unit. A key is given in full (plate.kinetic=30 mN) or by its last part where
             that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
             a value that is set keeps its ratio to it unless it is set too: static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
-        whole: the whole device is wanted, also of a file without a table of it.
+        whole: the whole device is wanted at once, also of a file without a table of it; otherwise
+            what such a file leaves out has its usual value where it is requested.
+
+    Returns:
+        The drive and its release in SI; `device`, `reading` and `criteria` are the whole device,
+        how a hand reads with it and what counts as felt. `scan` and `Study` take it.
 
     Raises:
-        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds.
+        ConfigError: the file cannot be read, or holds anything unknown, missing or out of bounds;
+            a line for each problem, with file, key, value and bound. It is a ValueError.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> device = pd.load_device("tactile-mouse.toml", {"mass": "12 g", "plate.kinetic": 0.03})
+        >>> device.drive.mass, device.drive.plate.kinetic
+        (0.012, 0.03)
     """
     file = Path(path)
     settings, problems = settings_of(overrides)
@@ -179,12 +238,15 @@ def device_of(
         drive = drive_of(values)
     except ValueError as error:  # each value in range, but not all together
         raise ConfigError([f"{file}: {error}"]) from None
+    motion = table_of(values, "motion")
     device = DeviceFile(
         path=file,
         name=tables["device"].get("name", ""),
         description=tables["device"].get("description", ""),
         drive=drive,
-        **start_of(values),
+        release=release_of(values),
+        duration=motion["duration"],
+        settling_band=motion["settling_band"],
         tables=tables,
         settings=settings,
         whole=around,
@@ -199,11 +261,7 @@ def motion_of(device: DeviceFile) -> Motion:
 
     return simulated(
         device.drive,
-        mouse_velocity=device.mouse_velocity,
-        displacement=device.displacement,
-        velocity=device.velocity,
-        plate_load=device.plate_load,
-        skin_stretch=device.skin_stretch,
+        device.release,
         duration=device.duration,
         settling_band=device.settling_band,
     )
@@ -269,8 +327,14 @@ def _with_all_tables(file: Path, given: Mapping[str, Any]) -> dict[str, Any]:
     return tables
 
 
-def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
-    """What "key=value" on the command line sets, each, and what is wrong with it."""
+def settings_of(
+    overrides: Iterable[str] | Mapping[str, object],
+) -> tuple[list[Setting], list[str]]:
+    """What "key=value" on the command line, or a mapping, sets, and what is wrong with it."""
+    if isinstance(overrides, Mapping):
+        return [_setting(str(key), value) for key, value in overrides.items()], []
+    if isinstance(overrides, str):
+        raise ConfigError([refusal("overrides", 'a list, like ["mass=12 g"]', quoted(overrides))])
     settings, problems = [], []
     for override in overrides:
         given, equals, text = (part.strip() for part in override.partition("="))
@@ -288,6 +352,14 @@ def settings_of(overrides: Iterable[str]) -> tuple[list[Setting], list[str]]:
                 continue
         settings.append(Setting(given, value, place))
     return settings, problems
+
+
+def _setting(given: str, value: object) -> Setting:
+    """A value from Python: a number is SI."""
+    keys = keys_meant(given)
+    if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
+        value = as_text(keys[0], float(value))
+    return Setting(given, value, f"overrides[{quoted(given)}]")
 
 
 def _rows_as_toml(text: str) -> object:

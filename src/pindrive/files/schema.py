@@ -24,6 +24,7 @@ from pindrive.motion.drive import (
     check_stretch,
     check_times,
 )
+from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, check, refusal
@@ -167,10 +168,13 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
     return Drive(**given, damping=damping, plate=plate, finger=finger)
 
 
-def start_of(values: Mapping[str, Value]) -> dict[str, Any]:
-    """The inputs and the start of the motion that [motion] describes, as `simulate` takes them."""
+def release_of(values: Mapping[str, Value]) -> Release:
+    """The initial state and the inputs that [motion] describes."""
     given = table_of(values, "motion")
-    return {name: over_time(value) for name, value in given.items()}
+    del given["duration"], given["settling_band"]
+    for name in ("mouse_velocity", "plate_load"):
+        given[name] = over_time(given[name])
+    return Release(**given)
 
 
 def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
@@ -190,12 +194,11 @@ def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
 def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together between the tables, each of which fits within itself."""
     plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
-    start = start_of(values)
-    stretch = start["skin_stretch"]
+    load, stretch = over_time(values["motion.plate_load"]), values["motion.skin_stretch"]
     problems = Problems(place)
     problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
     load_keys = ("motion.plate_load", "plate.curve")
-    problems.check(check_load, plate, start["plate_load"], keys=load_keys)
+    problems.check(check_load, plate, load, keys=load_keys)
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")
         problems.check(check_stretch, stretch, finger, keys=stretch_keys)

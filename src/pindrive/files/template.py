@@ -21,10 +21,7 @@ NUMBERS: Final[dict[str, Quantity]] = DRIVE | WHOLE
 
 def usual(quantity: Quantity) -> str:
     """A usual value of `quantity` as text: "10 g"; of one that must be rows, their last."""
-    value = quantity.example if quantity.default is None else quantity.default
-    if value is None:
-        value = quantity.rows[-1][1]
-    return quantity.written(value)
+    return quantity.usual
 
 
 def usual_rows(quantity: Quantity) -> str:

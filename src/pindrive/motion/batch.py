@@ -9,15 +9,20 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.lazy import xr
+from pindrive.motion.drive import Profile
+from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
-from pindrive.quantities.table import QUANTITIES, refusal, warn_of
+from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
 
     Broadcastable = ArrayLike | xr.DataArray
 
@@ -40,8 +45,10 @@ _ARGUMENTS: Final = {
         "velocity",
         "duration",
         "settling_band",
+        "plate_load",
     )
 }
+_OF_THE_CORE: Final = tuple(name for name in _ARGUMENTS if name != "plate_load")
 # What an argument is where it is left out: another one, infinite, or the usual value.
 _SAME_AS: Final = {
     "plate_static": "plate_kinetic",
@@ -49,7 +56,9 @@ _SAME_AS: Final = {
     "velocity": "mouse_velocity",
 }
 _INFINITE: Final = ("finger_stiffness", "duration")
-_LEFT_OUT: Final = {"settling_band": _core.settling_band} | dict.fromkeys(_INFINITE, inf)
+_LEFT_OUT: Final = {"settling_band": _core.settling_band, "plate_load": 1.0} | dict.fromkeys(
+    _INFINITE, inf
+)
 
 # In the order of `Status` and `End` in model.hpp.
 _FAILURES: Final = ("too_many_events", "standstill")
@@ -62,80 +71,73 @@ _FLAGS: Final = {
 
 
 def simulate_batch(
+    drive: Drive,
+    release: Release,
     *,
-    mass: Broadcastable,
-    stiffness: Broadcastable,
-    damping: Broadcastable,
-    plate_kinetic: Broadcastable,
-    plate_static: Broadcastable | None = None,
-    finger_kinetic: Broadcastable,
-    finger_static: Broadcastable | None = None,
-    finger_stiffness: Broadcastable | None = None,
-    mouse_velocity: Broadcastable,
-    displacement: Broadcastable,
-    velocity: Broadcastable | None = None,
-    duration: Broadcastable | None = None,
-    settling_band: Broadcastable | None = None,
     energy: bool = False,
     threads: int | None = None,
+    **varied: Broadcastable | None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
 
-    The arguments broadcast as NumPy's do: numbers, arrays, or xarray DataArrays, whose dimensions
-    go by their names. No trajectory is stored. Python runs on meanwhile, and Ctrl-C ends a batch.
+    The varied arguments broadcast as NumPy's do: numbers, arrays, or xarray DataArrays, whose
+    dimensions go by their names; where text has a unit, it may stand for a number. No trajectory is
+    stored. Python runs on meanwhile, and Ctrl-C ends a batch.
 
     Args:
-        mass: m, kg, from 1e-12 to 1e12.
-        stiffness: k, N/m, from 1e-12 to 1e12.
-        damping: b, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
-        plate_kinetic: friction force of the sliding plate, N, at least 0.
-        plate_static: largest force of the plate without sliding, N, at least the kinetic one; None:
-            the kinetic one.
-        finger_kinetic: friction force of the sliding finger, N, at least 0.
-        finger_static: largest force of the finger without sliding, N, at least the kinetic one;
-            None: the kinetic one.
-        finger_stiffness: tangential stiffness of the finger's skin, N/m, greater than 0; infinite
-            or None: rigid.
-        mouse_velocity: v_p, m/s.
-        displacement: x(0), m.
-        velocity: x'(0), m/s; None: the plate's, as for a pin that was carried.
-        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; infinite or None:
-            long enough to see each ending.
-        settling_band: half the band about the end in which a motion counts as settled, a part of
-            |x(0) - x_end|, above 0 and at most 1; None: 0.05.
+        drive: what every drive has, but for what is varied.
+        release: what every release has, but for what is varied.
         energy: the terms of the energy ledger too; a point then takes some ten times as long.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
+        **varied: of the drive `mass`, `stiffness`, `damping`, `plate_kinetic`, `plate_static`,
+            `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite: rigid); of the release
+            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; and `duration` (infinite:
+            long enough to see each ending) and `settling_band`, as for `simulate`, which has their
+            ranges. Static friction that is None in a contact is the kinetic one, and a velocity
+            that is None the plate's, at every point.
 
     Returns:
-        Variables in the shape that the arguments have together, with unit and meaning in their
-        attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
+        Variables in the shape that the varied arguments have together, with unit and meaning in
+        their attributes and named as in `Motion.to_dataset`: the numbers of the transient and the
         ending, and with `energy` those of the ledger; `ending`, how it ends, and `status`, both
         with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
-        number of `events`. The arguments are the coordinates. A point that `simulate` would refuse
-        does not stop the others: its status says which argument is bad, and its numbers are NaN.
+        number of `events`. The coordinates are what was varied, and what drive and release have. A
+        point that `simulate` would refuse does not stop the others: its status says which argument
+        is bad, and its numbers are NaN.
 
     Raises:
-        ValueError: an argument holds something else than numbers, shapes do not fit together, or
-            `threads` is no count.
+        ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
+            together, or `threads` is no count; a drive or a release has what only `simulate`
+            follows: a friction curve, an input that changes, a given stretch of the skin.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    given: dict[str, Broadcastable | None] = {k: v for k, v in locals().items() if k in _ARGUMENTS}
-    for name, argument in given.items():
+    unknown = varied.keys() - _ARGUMENTS.keys()
+    if unknown:
+        raise ValueError(refusal("varied", f"of {', '.join(_ARGUMENTS)}", min(unknown)))
+    for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
             _warn(name, argument)
-    return batched(given, energy=energy, threads=threads)
+    return batched(drive, release, varied, energy=energy, threads=threads)
 
 
 def batched(
-    given: Mapping[str, Broadcastable | None], *, energy: bool = False, threads: int | None = None
+    drive: Drive,
+    release: Release,
+    varied: Mapping[str, Broadcastable | None],
+    *,
+    energy: bool = False,
+    threads: int | None = None,
 ) -> xr.Dataset:
-    """What `simulate_batch` does of the arguments `given` by their names, without its warnings."""
+    """What `simulate_batch` does, without its warnings; None is an argument that is not varied."""
     from pindrive import __version__
 
     workers = worker_count(threads)
-    named = {name: value for name, value in given.items() if value is not None}
+    named: dict[str, Broadcastable] = {
+        **_constants(drive, release, varied),
+        **{name: value for name, value in varied.items() if value is not None},
+    }
     sizes, arguments, coordinates = _shared_shape(named)
     shape = tuple(sizes.values())
 
@@ -143,7 +145,11 @@ def batched(
     for name in _ARGUMENTS.keys() - named.keys():
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     status = _status(aligned, shape)
-    spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
+    if (aligned["plate_load"] != 1.0).any():
+        with np.errstate(invalid="ignore", over="ignore"):  # of points that are bad
+            for name in ("plate_kinetic", "plate_static"):
+                aligned[name] = aligned[name] * aligned["plate_load"]
+    spread = [np.broadcast_to(aligned[name], shape) for name in _OF_THE_CORE]
     table = _core.simulate_batch(spread, status.ravel(), workers, bool(energy))
     table["transient.settled"] = ~np.isnan(table["transient.settling_time"])
 
@@ -157,6 +163,46 @@ def batched(
         for name, column in table.items()
     }
     return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+
+
+def _constants(
+    drive: Drive, release: Release, varied: Mapping[str, Broadcastable | None]
+) -> dict[str, Broadcastable]:
+    """What drive and release have of the arguments that are not varied, but what is left out."""
+    check_fits(drive, release)
+    plate, finger = drive.plate, drive.finger
+    for name, contact in (("plate", plate), ("finger", finger)):
+        if contact.curved:
+            required = "without a friction curve; `simulate` follows one"
+            raise ValueError(refusal(name, required, f"{len(contact.curve or ())} rows"))
+    if release.skin_stretch is not None:
+        given = f"{release.skin_stretch!r} m"
+        raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))
+    has = {
+        "mass": drive.mass,
+        "stiffness": drive.stiffness,
+        "damping": drive.damping,
+        "plate_kinetic": plate.kinetic,
+        "plate_static": plate.static,
+        "finger_kinetic": finger.kinetic,
+        "finger_static": finger.static,
+        "finger_stiffness": None if finger.rigid else finger.stiffness,
+        "mouse_velocity": release.mouse_velocity,
+        "displacement": release.displacement,
+        "velocity": release.velocity,
+        "plate_load": release.plate_load,
+    }
+    found: dict[str, Broadcastable] = {}
+    for name, value in has.items():
+        if value is None or varied.get(name) is not None:
+            continue
+        if isinstance(value, Profile):
+            if value.changes:
+                required = "constant; `simulate` follows one that changes"
+                raise ValueError(refusal(name, required, f"a Profile of {len(value.times)} rows"))
+            value = value.values[0]
+        found[name] = value
+    return found
 
 
 # ---- shapes --------------------------------------------------------------------------------------
@@ -218,11 +264,14 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
     """An argument as an array of floats, if it holds numbers."""
     try:
         array = np.asarray(values)
-        if array.dtype.kind not in "iuf":
-            raise TypeError
-        return array.astype(np.float64, copy=False)
-    except (TypeError, ValueError):
-        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values))) from None
+    except ValueError:  # rows of unlike length
+        array = np.empty(0, np.object_)
+    if array.dtype.kind == "U":
+        texts = (check(_ARGUMENTS[name].name, str(text), label=name) for text in array.flat)
+        return np.fromiter(texts, np.float64, array.size).reshape(array.shape)
+    if array.dtype.kind not in "iuf":
+        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values)))
+    return array.astype(np.float64, copy=False)
 
 
 def _warn(name: str, given: Broadcastable) -> None:

@@ -44,7 +44,8 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, Column]:
     if not motion.drive.finger.rigid:
         found["stretch"] = Column(motion.stretch(t), "m", "stretch of the finger's skin")
         found["stretch_rate"] = Column(motion.stretch_rate(t), "m/s", "stretch rate of the skin")
-    if isinstance(motion.mouse_velocity, Profile) and motion.mouse_velocity.changes:
+    given = motion.release.mouse_velocity
+    if isinstance(given, Profile) and given.changes:
         found["plate_velocity"] = Column(
             motion.plate_velocity(t), "m/s", "velocity of the plate in the housing"
         )

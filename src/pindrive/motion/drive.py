@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import islice, pairwise
 from math import copysign, inf, isinf, isnan, sqrt
 from operator import lt
-from typing import TYPE_CHECKING, cast, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from pindrive.quantities.quantity import brief, counted
 from pindrive.quantities.table import QUANTITIES, check, refusal
@@ -23,6 +23,8 @@ __all__ = ["Contact", "Drive", "Profile"]
 @dataclass(frozen=True, slots=True, init=False)
 class Contact:
     """Dry friction between the pin drive and a surface: the plate or the fingertip.
+
+    Every number may also be text with a unit, such as "20 mN"; a bare number is SI.
 
     Args:
         kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
@@ -46,16 +48,20 @@ class Contact:
 
     def __init__(
         self,
-        kinetic: float | None = None,
-        static: float | None = None,
-        curve: Iterable[tuple[float, float]] | None = None,
-        stiffness: float = inf,
+        kinetic: float | str | None = None,
+        static: float | str | None = None,
+        curve: Iterable[tuple[float | str, float | str]] | None = None,
+        stiffness: float | str = inf,
     ) -> None:
         """Validate, and keep plain floats and tuples."""
         rows = None if curve is None else _checked_curve(curve)
         if kinetic is None and rows is None:
             raise ValueError(refusal("kinetic", "a number in N unless a curve is given", "None"))
-        at_rest = rows[0][1] if kinetic is None and rows else check("kinetic", cast(float, kinetic))
+        at_rest = (
+            rows[0][1]
+            if kinetic is None and rows
+            else check("kinetic", cast("float | str", kinetic))
+        )
         if rows:
             check_curve(rows, at_rest)
         if static is not None:
@@ -190,7 +196,9 @@ def check_stretch(
         raise ValueError(refusal(label, required, given, where))
 
 
-def _checked_curve(curve: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+def _checked_curve(
+    curve: Iterable[tuple[float | str, float | str]],
+) -> tuple[tuple[float, float], ...]:
     try:
         rows = [(speed, force) for speed, force in curve]
     except (TypeError, ValueError):
@@ -232,9 +240,11 @@ def check_slopes(
     raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
+
+    Every number may also be text with a unit, such as "12 g"; a bare number is SI.
 
     Args:
         mass: electromagnet and pin, kg, from 1e-12 to 1e12.
@@ -253,11 +263,22 @@ class Drive:
     plate: Contact
     finger: Contact
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        mass: float | str,
+        stiffness: float | str,
+        damping: float | str,
+        plate: Contact,
+        finger: Contact,
+    ) -> None:
         """Validate, and keep plain floats."""
-        object.__setattr__(self, "mass", check("mass", self.mass))
-        object.__setattr__(self, "stiffness", check("stiffness", self.stiffness))
-        object.__setattr__(self, "damping", check("damping", self.damping))
+        put = object.__setattr__
+        put(self, "mass", check("mass", mass))
+        put(self, "stiffness", check("stiffness", stiffness))
+        put(self, "damping", check("damping", damping))
+        put(self, "plate", plate)
+        put(self, "finger", finger)
         ratios = QUANTITIES["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios
@@ -277,9 +298,9 @@ class Drive:
     def with_damping_ratio(
         cls,
         *,
-        mass: float,
-        stiffness: float,
-        damping_ratio: float,
+        mass: float | str,
+        stiffness: float | str,
+        damping_ratio: float | str,
         plate: Contact,
         finger: Contact,
     ) -> Drive:
@@ -315,7 +336,7 @@ class Drive:
         return 2.0 * sqrt(self.mass) * sqrt(self.stiffness)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Profile:
     """A quantity over time: linear between its rows, constant before the first and after the last.
 
@@ -323,28 +344,28 @@ class Profile:
     velocity may not.
 
     Args:
-        times: s, from -1e12 to 1e12, none less than the one before, no three alike; at least one.
+        times: s, or text with a unit, from -1e12 to 1e12, none less than the one before, no three
+            alike; at least one.
         values: one for each time, SI, from -1e12 to 1e12, as is the rate between two rows.
 
     Raises:
         ValueError: lengths differ, times decrease, a number or a rate is out of range.
     """
 
-    times: Sequence[float]
-    values: Sequence[float]
+    times: tuple[float, ...]
+    values: tuple[float, ...]
 
-    def __post_init__(self) -> None:
+    def __init__(self, times: Iterable[float | str], values: Iterable[float]) -> None:
         """Validate, and keep tuples of plain floats."""
-        times = _column(self.times, "profile.time", "times")
-        values = _column(self.values, "profile.value", "values")
-        if not times:
+        t, y = _column(times, "profile.time", "times"), _column(values, "profile.value", "values")
+        if not t:
             raise ValueError(refusal("times", "at least one", "none"))
-        if len(times) != len(values):
-            raise ValueError(refusal("values", f"as many as times, {len(times)}", len(values)))
-        check_times(times, label="times[{}]")
-        check_slopes(list(zip(times, values, strict=True)), "profile.rate", label="profile")
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "values", values)
+        if len(t) != len(y):
+            raise ValueError(refusal("values", f"as many as times, {len(t)}", len(y)))
+        check_times(t, label="times[{}]")
+        check_slopes(list(zip(t, y, strict=True)), "profile.rate", label="profile")
+        object.__setattr__(self, "times", t)
+        object.__setattr__(self, "values", y)
 
     @property
     def changes(self) -> bool:
@@ -381,10 +402,10 @@ class Profile:
         return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
 
 
-def _column(values: Iterable[float], name: str, label: str) -> tuple[float, ...]:
+def _column(values: Iterable[float | str], name: str, label: str) -> tuple[float, ...]:
     """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
     try:
-        listed = values.tolist() if hasattr(values, "tolist") else list(values)
+        listed: list[Any] = values.tolist() if hasattr(values, "tolist") else list(values)
         bounds = QUANTITIES[name].limits
         plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
         if plain and min(listed) in bounds and max(listed) in bounds:

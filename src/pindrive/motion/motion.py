@@ -12,15 +12,12 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
-from pindrive.motion.drive import (
-    Drive,
-    Profile,
-)
+from pindrive.motion.drive import Profile
+from pindrive.motion.release import core_numbers
 from pindrive.motion.results import (
     Certificate,
     ContactName,
     ContactUse,
-    CoreNumbers,
     Ending,
     Event,
     Ledger,
@@ -41,6 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
     from pindrive.motion.sensitivity import Sensitivity
 
 
@@ -49,47 +48,32 @@ class Motion:
 
     Attributes:
         drive: the drive that was simulated.
-        mouse_velocity: the plate's velocity in the housing, m/s, constant or a `Profile`.
-        displacement: x(0), m.
-        initial_velocity: x'(0), m/s.
-        plate_load: factor on the plate's friction, constant or a `Profile`.
-        skin_stretch: stretch of a compliant finger that gripped at the start, m; None: not given.
-        starts_with_plate: whether x'(0) is the plate's velocity because no other was given.
+        release: the initial state and the inputs.
         settling_band: half the band about the end that counts as settled, a part of
             |x(0) - x_end|.
-        core_numbers: the same as the core takes them.
+        core_numbers: drive, release and the duration, as the core takes them.
         duration: s; the one given, or long enough to see the ending.
     """
 
     def __init__(
         self,
-        numbers: CoreNumbers,
         drive: Drive,
-        mouse_velocity: float | Profile,
-        displacement: float,
-        initial_velocity: float,
-        plate_load: float | Profile,
-        skin_stretch: float | None,
-        starts_with_plate: bool,
+        release: Release,
+        duration: float | None = None,
         settling_band: float = _core.settling_band,
     ) -> None:
-        self.core_numbers = numbers
-        self._core = core = _core.simulate(*numbers)
         self.drive = drive
-        self.mouse_velocity = mouse_velocity
-        self.displacement = displacement
-        self.initial_velocity = initial_velocity
-        self.plate_load = plate_load
-        self.skin_stretch = skin_stretch
-        self.starts_with_plate = starts_with_plate
+        self.release = release
         self.settling_band = settling_band
+        self.core_numbers = core_numbers(drive, release, duration)
+        self._core = core = _core.simulate(*self.core_numbers)
         self.duration: float = core.duration(settling_band)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what was simulated: the rest follows from it."""
-        given = (self.mouse_velocity, self.displacement, self.initial_velocity, self.plate_load)
-        start = (self.skin_stretch, self.starts_with_plate, self.settling_band)
-        return Motion, (self.core_numbers, self.drive, *given, *start)
+        asked = self.core_numbers[-1]
+        duration = None if asked == inf else asked
+        return Motion, (self.drive, self.release, duration, self.settling_band)
 
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""
@@ -169,9 +153,8 @@ class Motion:
     def plate_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
         times = _times(t)
-        if isinstance(self.mouse_velocity, Profile):
-            return self.mouse_velocity(times)
-        return np.full_like(times, self.mouse_velocity)
+        given = self.release.mouse_velocity
+        return given(times) if isinstance(given, Profile) else np.full_like(times, given)
 
     def _evaluate(
         self,
@@ -315,11 +298,12 @@ class Motion:
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
         for name in ("mouse_velocity", "plate_load"):
-            given = getattr(self, name)
+            given = getattr(self.release, name)
             values[name] = given.rows if isinstance(given, Profile) else given
-        values |= {"displacement": self.displacement, "velocity": self.initial_velocity}
-        if self.skin_stretch is not None:
-            values["skin_stretch"] = self.skin_stretch
+        values["displacement"] = self.release.displacement
+        values["velocity"] = self.release.initial_velocity
+        if self.release.skin_stretch is not None:
+            values["skin_stretch"] = self.release.skin_stretch
         return values | {"duration": self.duration, "settling_band": self.settling_band}
 
     def sensitivity(self, parameters: Sequence[str]) -> Sensitivity:

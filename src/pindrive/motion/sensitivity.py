@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
     from pindrive.motion.results import CoreNumbers, Rows, Side
 
 __all__ = ["Sensitivity"]
@@ -65,11 +66,9 @@ class Simulated(Protocol):
 
     duration: float
     settling_band: float
-    displacement: float
-    initial_velocity: float
-    starts_with_plate: bool
     core_numbers: CoreNumbers
     drive: Drive
+    release: Release
 
     def position(self, t: ArrayLike, side: Side) -> object: ...
     def velocity(self, t: ArrayLike, side: Side) -> object: ...
@@ -271,7 +270,7 @@ def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
     along = _mapped(lambda _: 0.0, numbers)
     for place in places:
         along = _replaced(along, place, 1.0)
-    if motion.starts_with_plate:
+    if motion.release.velocity is None:
         along = _replaced(along, (8,), _start_slope(numbers[5], along[5]) + along[8])
     return along, size
 
@@ -315,8 +314,8 @@ def _natural_size(motion: Simulated, place: Place) -> float:
     """A size, in this motion, for a parameter that is zero."""
     drive, omega = motion.drive, motion.drive.natural_frequency
     speeds = (abs(v) for _, v in motion.core_numbers[5])
-    fastest = max(abs(motion.initial_velocity), *speeds)
-    length = max(abs(motion.displacement), fastest / omega) or 1e-3
+    fastest = max(abs(motion.release.initial_velocity), *speeds)
+    length = max(abs(motion.release.displacement), fastest / omega) or 1e-3
     match place:
         case (0 | 1 | 2,):
             return drive.mass * omega

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from math import inf, nan
-
-import numpy as np
+from math import inf
+from typing import TYPE_CHECKING
 
 from pindrive import _core
-from pindrive.motion.drive import (
-    Drive,
-    Profile,
-    check_continuous,
-    check_load,
-    check_skin,
-    check_stretch,
-)
 from pindrive.motion.motion import Motion
-from pindrive.motion.results import (
-    CoreNumbers,
-    Rows,
-)
+from pindrive.motion.release import check_fits
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
+
+if TYPE_CHECKING:
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
+    from pindrive.motion.results import CoreNumbers
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (
@@ -37,27 +30,16 @@ _GLANCE = (
 
 def simulate(
     drive: Drive,
+    release: Release,
     *,
-    mouse_velocity: float | Profile,
-    displacement: float = 0.0,
-    velocity: float | None = None,
-    plate_load: float | Profile = 1.0,
-    skin_stretch: float | None = None,
-    duration: float | None = None,
-    settling_band: float = _core.settling_band,
+    duration: float | str | None = None,
+    settling_band: float | str = _core.settling_band,
 ) -> Motion:
     """Follow the pin of a drive from its release, exactly.
 
     Args:
         drive: the drive; its finger may be compliant, its contacts may have friction curves.
-        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s, up to 1e12
-            either way; constant or a `Profile` without steps, whose acceleration acts on the pin.
-        displacement: x(0), deflection from the spring's rest, m, up to 1e12 either way.
-        velocity: x'(0), m/s, up to 1e12 either way; None: the plate's, as for a pin that was
-            carried.
-        plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
-        skin_stretch: stretch of a compliant finger that grips at the start, m; None: the stretch of
-            a finger being slid along or, for a pin at rest, none.
+        release: the initial state, and the inputs that act on the pin.
         duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; None: long enough
             to see the ending.
         settling_band: half the band about the end in which the motion counts as settled, a part of
@@ -74,19 +56,10 @@ def simulate(
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    motion = simulated(
-        drive,
-        mouse_velocity=mouse_velocity,
-        displacement=displacement,
-        velocity=velocity,
-        plate_load=plate_load,
-        skin_stretch=skin_stretch,
-        duration=duration,
-        settling_band=settling_band,
-    )
+    motion = simulated(drive, release, duration=duration, settling_band=settling_band)
     if not _plausible(motion.core_numbers):
         given = motion.inputs()
-        for name in ("velocity",) * (velocity is None) + ("duration",) * (duration is None):
+        for name in ("velocity",) * (release.velocity is None) + ("duration",) * (duration is None):
             del given[name]
         for name, value in given.items():
             warn_of(name, value, stacklevel=2)
@@ -95,64 +68,17 @@ def simulate(
 
 def simulated(
     drive: Drive,
+    release: Release,
     *,
-    mouse_velocity: float | Profile,
-    displacement: float = 0.0,
-    velocity: float | None = None,
-    plate_load: float | Profile = 1.0,
-    skin_stretch: float | None = None,
-    duration: float | None = None,
-    settling_band: float = _core.settling_band,
+    duration: float | str | None = None,
+    settling_band: float | str = _core.settling_band,
 ) -> Motion:
     """What `simulate` does, without its warnings: for numbers that no person has written."""
-    if not isinstance(drive, Drive):
-        raise ValueError(refusal("drive", "a Drive", repr(drive)))
-    v_plate = _rows(mouse_velocity, "mouse_velocity")
-    load = _rows(plate_load, "plate_load")
-    x = check("displacement", displacement)
-    v = _value_at_start(v_plate) if velocity is None else check("velocity", velocity)
-    end = inf if duration is None else check("duration", duration)
-    band = check("settling_band", settling_band)
-    if duration is not None:
+    check_fits(drive, release)
+    end = None if duration is None else check("duration", duration)
+    if end is not None:
         check_phase(end, drive.natural_frequency)
-    plate, finger = drive.plate, drive.finger
-    if not plate.rigid:
-        raise ValueError(refusal("plate stiffness", "infinite", f"{plate.stiffness!r} N/m"))
-    check_skin(finger)
-    check_load(plate, plate_load)
-    stretch = nan if skin_stretch is None else check("skin_stretch", skin_stretch)
-    if skin_stretch is not None:
-        check_stretch(stretch, finger)
-    numbers = (
-        drive.mass,
-        drive.stiffness,
-        drive.damping,
-        (plate.kinetic, plate.static_friction, plate.stiffness, plate.curve or ()),
-        (finger.kinetic, finger.static_friction, finger.stiffness, finger.curve or ()),
-        v_plate,
-        load,
-        x,
-        v,
-        stretch,
-        end,
-    )
-    with_plate = velocity is None
-    return Motion(numbers, drive, mouse_velocity, x, v, plate_load, skin_stretch, with_plate, band)
-
-
-def _rows(given: float | Profile, name: str) -> Rows:
-    """An input as rows (time, value): one row is a constant."""
-    if not isinstance(given, Profile):
-        return [(0.0, check(name, given))]
-    bounds, limits = QUANTITIES[name].bounds, QUANTITIES[name].limits
-    if name == "mouse_velocity":
-        check_continuous(given, "m/s")
-    if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
-        for i, y in enumerate(given.values):
-            check(name, y, label=f"{name} values[{i}]")
-    if not given.changes:
-        return [(0.0, given.values[0])]
-    return list(given.rows)
+    return Motion(drive, release, end, check("settling_band", settling_band))
 
 
 def check_phase(
@@ -185,10 +111,3 @@ def _plausible(numbers: CoreNumbers) -> bool:
         and abs(v) <= v1
         and (t0 <= duration <= t1 or duration == inf)
     )
-
-
-def _value_at_start(rows: Rows) -> float:
-    if len(rows) == 1:
-        return rows[0][1]
-    times, values = zip(*rows, strict=True)
-    return float(np.interp(0.0, times, values))

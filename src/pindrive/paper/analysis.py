@@ -9,9 +9,10 @@ import xarray as xr
 from matplotlib.colors import ListedColormap
 
 from pindrive.motion.batch import batched
+from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.exhibit import Exhibit, by_case, page, tidy, trend
-from pindrive.paper.release import Release
+from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
@@ -25,10 +26,10 @@ POINTS: Final = 201
 
 def release(
     ratio: ArrayLike, speed: ArrayLike, friction: ArrayLike, displacement: ArrayLike = 1.0
-) -> Release:
+) -> Releases:
     """A release in units of m and 1/ω_0, and of a length that is 1."""
     damping = 2 * np.asarray(ratio, dtype=np.float64)
-    return Release(
+    return Releases(
         mass=1.0,
         stiffness=1.0,
         damping=damping,
@@ -133,16 +134,15 @@ def first_reversal() -> Exhibit:
     wide = np.linspace(0.01, 2.0, 161)
     limit = formulas.limit_damping_ratio(release(0.0, wide, 0.2, 1.2))
     found = batched(
+        UNIT_DRIVE,
+        UNIT_RELEASE,
         dict(
-            mass=1.0,
-            stiffness=1.0,
             damping=xr.DataArray(2 * fine, dims="ratio_of_map"),
             plate_kinetic=0.2,
-            finger_kinetic=0.0,
             mouse_velocity=xr.DataArray(wide, dims="speed_of_map"),
             displacement=1.2,
             duration=20.0,
-        )
+        ),
     ).transpose("ratio_of_map", "speed_of_map")
     angles = {"units": "rad"}
     times = found["transient_first_reversal_time"].to_numpy()
@@ -234,15 +234,9 @@ def steady_and_rest() -> Exhibit:
     finger = 1 / ratio
     rest = release(0.0, 1.0, 3.0, 0.0)
     found = batched(
-        dict(
-            mass=1.0,
-            stiffness=1.0,
-            damping=0.0,
-            plate_kinetic=3.0 + finger,
-            finger_kinetic=finger,
-            mouse_velocity=1.0,
-            displacement=3.0,  # where the pin breaks away: x_p - x_f
-        )
+        UNIT_DRIVE,
+        Release(mouse_velocity=1.0, displacement=3.0),  # where the pin breaks away: x_p - x_f
+        dict(plate_kinetic=3.0 + finger, finger_kinetic=finger),
     )
     period = 2 * np.pi
     data = xr.Dataset(

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper import formulas
-from pindrive.paper.release import Release
+from pindrive.paper.release import Releases
 
 if TYPE_CHECKING:
     from pindrive.paper.formulas import Array
 
 
-def initial_phase(r: Release) -> Array:
+def initial_phase(r: Releases) -> Array:
     """(8): arctg(v_p / (ω d) - α / ω)."""
     d, _ = formulas.coefficients(r)
     w = formulas.damped_frequency(r)
@@ -25,34 +25,34 @@ def initial_phase(r: Release) -> Array:
         return np.arctan(r.mouse_velocity / (w * d) - formulas.decay_rate(r) / w)
 
 
-def velocity_phase(r: Release) -> Array:
+def velocity_phase(r: Releases) -> Array:
     """(10): arctg(b ω_0 / sqrt(4k² - b²)), whose units do not agree; SI values are put in."""
     square = 4 * r.stiffness**2 - r.damping**2
     root = np.sqrt(np.where(square > 0.0, square, np.nan))
     return np.arctan(r.damping * formulas.natural_frequency(r) / root)
 
 
-def peak_displacement(r: Release) -> Array:
+def peak_displacement(r: Releases) -> Array:
     """(14)."""
     return _extreme(r, formulas.peak_time(r)) + formulas.friction_offset(r)
 
 
-def trough_displacement(r: Release) -> Array:
+def trough_displacement(r: Releases) -> Array:
     """(16)."""
     return _trough(r) + formulas.friction_offset(r)
 
 
-def swing(r: Release) -> Array:
+def swing(r: Releases) -> Array:
     """(17)."""
     return _extreme(r, formulas.peak_time(r)) - _trough(r)
 
 
-def return_velocity(r: Release) -> Array:
+def return_velocity(r: Releases) -> Array:
     """(20)."""
     return -formulas.natural_frequency(r) * _extreme(r, formulas.return_velocity_time(r))
 
 
-def forward_velocity(r: Release) -> Array:
+def forward_velocity(r: Releases) -> Array:
     """(23), which is meant to be v_p in the limit case."""
     t = formulas.limit_reversal_time(r)
     lag = formulas.velocity_phase(r)
@@ -60,27 +60,27 @@ def forward_velocity(r: Release) -> Array:
     return -formulas.natural_frequency(r) * _extreme(r, t) * wave
 
 
-def limit_reversal_time(r: Release) -> Array:
+def limit_reversal_time(r: Releases) -> Array:
     """(25) and (26)."""
     quarter = np.pi / 2 + formulas.initial_phase(r) - 2 * formulas.velocity_phase(r)
     return quarter / formulas.damped_frequency(r)
 
 
-def periods_to_steady(r: Release) -> Array:
+def periods_to_steady(r: Releases) -> Array:
     """The text: 0.5 (x_0 / x_d + 1)."""
     return 0.5 * (r.displacement / formulas.friction_offset(r) + 1)
 
 
-def periods_to_rest(r: Release, finger_friction: Array) -> Array:
+def periods_to_rest(r: Releases, finger_friction: Array) -> Array:
     """The text: v_p / (4 x_d ω_0), where x_d has to be the finger's."""
     offset = finger_friction / r.stiffness
     return r.mouse_velocity / (4 * offset * formulas.natural_frequency(r))
 
 
-def _extreme(r: Release, t: Array) -> Array:
+def _extreme(r: Releases, t: Array) -> Array:
     fading: Array = np.exp(formulas.decay_rate(r) * t)
     return fading * formulas.amplitude(r)
 
 
-def _trough(r: Release) -> Array:
+def _trough(r: Releases) -> Array:
     return -_extreme(r, formulas.trough_time(r))

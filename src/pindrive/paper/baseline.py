@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import Final
 
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.release import Release
 from pindrive.quantities.table import QUANTITIES
 
 VALUES: Final = {
@@ -25,16 +27,15 @@ MASS, STIFFNESS = VALUES["mass"], VALUES["stiffness"]
 CRITICAL: Final = 2 * sqrt(MASS * STIFFNESS)
 """Damping at which it stops oscillating, N·s/m."""
 
-DRIVE: Final = {
-    "mass": MASS,
-    "stiffness": STIFFNESS,
-    "damping": VALUES["damping_ratio"] * CRITICAL,
-    "plate_kinetic": VALUES["plate.kinetic"],
-    "finger_kinetic": VALUES["finger.kinetic"],
-    "mouse_velocity": VALUES["mouse_velocity"],
-    "displacement": VALUES["displacement"],
-}
-"""The same as arguments of `simulate_batch`; static = kinetic friction, as in (1)."""
+DRIVE: Final = Drive.with_damping_ratio(
+    mass=MASS,
+    stiffness=STIFFNESS,
+    damping_ratio=VALUES["damping_ratio"],
+    plate=Contact(VALUES["plate.kinetic"]),
+    finger=Contact(VALUES["finger.kinetic"]),
+)
+"""Static = kinetic friction, as in (1)."""
+RELEASE: Final = Release(VALUES["mouse_velocity"], VALUES["displacement"])
 
 SOURCES: Final = tuple(
     (
@@ -57,3 +58,9 @@ def stated(*leave_out: str) -> str:
         for name, value in VALUES.items()
         if name not in leave_out
     )
+
+
+def value(argument: str) -> float:
+    """The assumed value (SI) of an argument of `simulate_batch`."""
+    by_argument = {name.replace(".", "_"): assumed for name, assumed in VALUES.items()}
+    return DRIVE.damping if argument == "damping" else by_argument[argument]

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.motion.batch import batched
 from pindrive.paper import population
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.paper.formulas import Array
-    from pindrive.paper.release import Release
+    from pindrive.paper.release import Releases
 
     Truth = NDArray[np.bool_]
 
@@ -56,20 +55,9 @@ class Claim:
         return "does not hold"
 
 
-def batch(r: Release, finger: Array | float = 0.0, *, velocity: Array | None = None) -> xr.Dataset:
+def batch(r: Releases, finger: Array | float = 0.0, *, velocity: Array | None = None) -> xr.Dataset:
     """The exact numbers of these releases, with finger friction (N), from another velocity."""
-    return batched(
-        dict(
-            mass=r.mass,
-            stiffness=r.stiffness,
-            damping=r.damping,
-            plate_kinetic=r.friction,
-            finger_kinetic=finger,
-            mouse_velocity=r.mouse_velocity,
-            displacement=r.displacement,
-            velocity=velocity,
-        )
-    )
+    return r.batch(finger_kinetic=finger, velocity=velocity)
 
 
 def swing(found: xr.Dataset) -> Array:

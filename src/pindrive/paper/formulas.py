@@ -1,6 +1,6 @@
 """The paper's closed-form analysis, equations (2) to (26), corrected.
 
-Every function takes a `Release` and gives an array of its shape. They describe the pin from its
+Every function takes `Releases` and gives an array of its shape. They describe the pin from its
 release until friction first changes sign, at t_1 (`first_reversal_time`); before they describe it
 at all, three things must hold (`applies`): the drive is underdamped, and the spring and the damper
 together pull harder than the plate's friction, backwards. Elsewhere the answer is NaN.
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pindrive.paper.release import Release
+from pindrive.paper.release import Releases
 from pindrive.quantities.table import refusal
 
 if TYPE_CHECKING:
@@ -55,12 +55,12 @@ __all__ = [
 # ---- the oscillator: (2), (3) --------------------------------------------------------------------
 
 
-def natural_frequency(r: Release) -> Array:
+def natural_frequency(r: Releases) -> Array:
     """ω_0 = sqrt(k / m), rad/s, of (2)."""
     return np.sqrt(r.stiffness / r.mass)
 
 
-def friction_offset(r: Release) -> Array:
+def friction_offset(r: Releases) -> Array:
     """x_d = F / k, m, of (2): where spring and friction balance while the pin slides backwards.
 
     F is the plate's friction. (2) calls it F_2, which in (1) is the finger's: the analysis drops
@@ -69,19 +69,19 @@ def friction_offset(r: Release) -> Array:
     return r.friction / r.stiffness
 
 
-def decay_rate(r: Release) -> Array:
+def decay_rate(r: Releases) -> Array:
     """α = -b / 2m, 1/s, of (3); never positive."""
     return -r.damping / (2 * r.mass)
 
 
-def damped_frequency(r: Release) -> Array:
+def damped_frequency(r: Releases) -> Array:
     """ω = sqrt(ω_0² - α²), rad/s, (3); NaN for a drive that is not underdamped."""
     w0, a = natural_frequency(r), -decay_rate(r)
     square = (w0 - a) * (w0 + a)
     return np.sqrt(np.where(square > 0.0, square, np.nan))
 
 
-def applies(r: Release) -> NDArray[np.bool_]:
+def applies(r: Releases) -> NDArray[np.bool_]:
     """Whether (4) to (26) describe the pin right after its release.
 
     Underdamped, and k x_0 + b v_p >= F. Below that the plate carries the pin on; below -F friction
@@ -94,18 +94,18 @@ def applies(r: Release) -> NDArray[np.bool_]:
 # ---- the motion: (4) to (11) ---------------------------------------------------------------------
 
 
-def coefficients(r: Release) -> tuple[Array, Array]:
+def coefficients(r: Releases) -> tuple[Array, Array]:
     """C_1 and C_2 of (4) and (5), m: C_1 = d, C_2 = (v_p - α d) / ω."""
     d = np.where(applies(r), r.displacement - friction_offset(r), np.nan)
     return d, (r.mouse_velocity - decay_rate(r) * d) / damped_frequency(r)
 
 
-def amplitude(r: Release) -> Array:
+def amplitude(r: Releases) -> Array:
     """X_m,0 = sqrt(C_1² + C_2²), m, (7)."""
     return np.hypot(*coefficients(r))
 
 
-def velocity_phase(r: Release) -> Array:
+def velocity_phase(r: Releases) -> Array:
     """φ'_0 = arctg(-α / ω), rad, (10): by how much the velocity leads.
 
     Printed also as arctg(b ω_0 / sqrt(4k² - b²)), which lacks an ω_0²: right is
@@ -114,7 +114,7 @@ def velocity_phase(r: Release) -> Array:
     return np.arctan2(-decay_rate(r), damped_frequency(r))
 
 
-def initial_phase(r: Release) -> Array:
+def initial_phase(r: Releases) -> Array:
     """φ_0, rad, (8), from φ'_0 up to φ'_0 + π.
 
     Printed as arctg(v_p / (ω d) - α / ω), which is in the wrong quadrant where x_0 < x_d. The angle
@@ -127,28 +127,28 @@ def initial_phase(r: Release) -> Array:
     return velocity_phase(r) + np.arctan2(damped_frequency(r) * r.mouse_velocity, along)
 
 
-def position(t: ArrayLike, r: Release) -> Array:
+def position(t: ArrayLike, r: Releases) -> Array:
     """x(t), m, (6), at times t (s) that broadcast against the release; holds until t_1."""
     t = np.asarray(t, dtype=np.float64)
     wave: Array = np.cos(damped_frequency(r) * t - initial_phase(r))
     return _fading(r, t) * amplitude(r) * wave + friction_offset(r)
 
 
-def velocity(t: ArrayLike, r: Release) -> Array:
+def velocity(t: ArrayLike, r: Releases) -> Array:
     """x'(t), m/s, (9); holds until t_1. Right as printed, with the right φ_0 and φ'_0."""
     t = np.asarray(t, dtype=np.float64)
     wave: Array = np.sin(damped_frequency(r) * t - initial_phase(r) + velocity_phase(r))
     return -_fading(r, t) * natural_frequency(r) * amplitude(r) * wave
 
 
-def acceleration(t: ArrayLike, r: Release) -> Array:
+def acceleration(t: ArrayLike, r: Releases) -> Array:
     """x''(t), m/s², (11); holds until t_1. Right as printed, with the right φ_0 and φ'_0."""
     t = np.asarray(t, dtype=np.float64)
     wave: Array = np.cos(damped_frequency(r) * t - initial_phase(r) + 2 * velocity_phase(r))
     return -_fading(r, t) * natural_frequency(r) ** 2 * amplitude(r) * wave
 
 
-def _fading(r: Release, t: Array) -> Array:
+def _fading(r: Releases, t: Array) -> Array:
     """e^(αt)."""
     fading: Array = np.exp(decay_rate(r) * t)
     return fading
@@ -160,27 +160,27 @@ def _fading(r: Release, t: Array) -> Array:
 # (14), (16), (17) and, for the velocity's extreme, in (20).
 
 
-def peak_time(r: Release) -> Array:
+def peak_time(r: Releases) -> Array:
     """t_a = (φ_0 - φ'_0) / ω, s, (13): the first displacement maximum; always before t_1."""
     return (initial_phase(r) - velocity_phase(r)) / damped_frequency(r)
 
 
-def peak_displacement(r: Release) -> Array:
+def peak_displacement(r: Releases) -> Array:
     """x_m,a = e^(α t_a) X_m,0 cos φ'_0 + x_d, m, (14); printed without cos φ'_0."""
     return _extreme(r, peak_time(r)) + friction_offset(r)
 
 
-def trough_time(r: Release) -> Array:
+def trough_time(r: Releases) -> Array:
     """t_c = t_a + π / ω, s, (15): the minimum that follows; never after t_1."""
     return peak_time(r) + np.pi / damped_frequency(r)
 
 
-def trough_displacement(r: Release) -> Array:
+def trough_displacement(r: Releases) -> Array:
     """x_m,c = -e^(α t_c) X_m,0 cos φ'_0 + x_d, m, (16); printed without cos φ'_0."""
     return -_extreme(r, trough_time(r)) + friction_offset(r)
 
 
-def swing(r: Release) -> Array:
+def swing(r: Releases) -> Array:
     """x_m,a - x_m,c = X_m,0 cos φ'_0 e^(α t_a) (1 + e^(α π / ω)), m, (17).
 
     Printed without cos φ'_0, and with an index p that means nothing.
@@ -188,13 +188,13 @@ def swing(r: Release) -> Array:
     return _extreme(r, peak_time(r)) * (1 + _fading(r, np.pi / damped_frequency(r)))
 
 
-def return_velocity_time(r: Release) -> Array:
+def return_velocity_time(r: Releases) -> Array:
     """t_b = (π/2 + φ_0 - 2 φ'_0) / ω, s, (18) and (19): between t_a and t_c."""
     quarter = np.pi / 2 + initial_phase(r) - 2 * velocity_phase(r)
     return quarter / damped_frequency(r)
 
 
-def return_velocity(r: Release) -> Array:
+def return_velocity(r: Releases) -> Array:
     """v_m,b = -e^(α t_b) ω_0 X_m,0 cos φ'_0, m/s, (20): the extreme velocity on the way back.
 
     Printed without cos φ'_0.
@@ -202,7 +202,7 @@ def return_velocity(r: Release) -> Array:
     return -natural_frequency(r) * _extreme(r, return_velocity_time(r))
 
 
-def _extreme(r: Release, t: Array) -> Array:
+def _extreme(r: Releases, t: Array) -> Array:
     """How far from its middle an oscillation is at its extreme at t."""
     return _fading(r, t) * amplitude(r) * np.cos(velocity_phase(r))
 
@@ -210,7 +210,7 @@ def _extreme(r: Release, t: Array) -> Array:
 # ---- the first reversal of friction: (21) to (26) ------------------------------------------------
 
 
-def first_reversal_time(r: Release) -> Array:
+def first_reversal_time(r: Releases) -> Array:
     """t_1, s, the root of (21) and (22): the pin comes back to the plate's velocity.
 
     The paper calls it analytically impossible; it is the exact root that the core isolates, in
@@ -223,7 +223,7 @@ def first_reversal_time(r: Release) -> Array:
     return np.where(late > 0.0, times, np.nan)
 
 
-def limit_reversal_time(r: Release) -> Array:
+def limit_reversal_time(r: Releases) -> Array:
     """(3π/2 + φ_0 - 2 φ'_0) / ω, s, (25) and (26): the velocity's extreme on the way forward.
 
     It is t_1 in the limit case, in which that extreme just touches v_p, and the latest that t_1 can
@@ -232,7 +232,7 @@ def limit_reversal_time(r: Release) -> Array:
     return return_velocity_time(r) + np.pi / damped_frequency(r)
 
 
-def forward_velocity(r: Release) -> Array:
+def forward_velocity(r: Releases) -> Array:
     """The extreme velocity on the way forward, m/s: (21) at the time (26).
 
     Friction reverses if it reaches v_p; in the limit case it is v_p. (23) is meant to say so but
@@ -241,7 +241,7 @@ def forward_velocity(r: Release) -> Array:
     return natural_frequency(r) * _extreme(r, limit_reversal_time(r))
 
 
-def limit_damping_ratio(r: Release) -> Array:
+def limit_damping_ratio(r: Releases) -> Array:
     """The damping ratio of the limit case: with more, friction never reverses after this release.
 
     Where the extreme (26) of the velocity is v_p, by bisection: (26) gives t_1 there, but not when
@@ -260,7 +260,7 @@ def limit_damping_ratio(r: Release) -> Array:
 # ---- the steady state, and rest ------------------------------------------------------------------
 
 
-def steady_amplitude(r: Release) -> Array:
+def steady_amplitude(r: Releases) -> Array:
     """v_p / ω_0, m: of the oscillation that lasts, undamped, about x_d with a frictionless finger.
 
     The paper gives it as a bound, x_m <= v_p / ω_0. From this release it is reached: the pin comes
@@ -270,7 +270,7 @@ def steady_amplitude(r: Release) -> Array:
     return np.where(lasts, r.mouse_velocity / natural_frequency(r), np.nan)
 
 
-def reversals_to_steady(r: Release) -> Array:
+def reversals_to_steady(r: Releases) -> Array:
     """How often friction changes sign until the undamped pin is carried by the plate, as floats.
 
     It is at v_p at the places x_0 → 2 x_d - x_0 → -2 x_d - x_1 …, until |x| <= x_d. The paper's
@@ -284,7 +284,7 @@ def reversals_to_steady(r: Release) -> Array:
     return np.where(r.damping == 0.0, count, np.nan)
 
 
-def time_to_steady(r: Release) -> Array:
+def time_to_steady(r: Releases) -> Array:
     """When the steady oscillation of `steady_amplitude` begins, s: the transitional period.
 
     The sum of the swings between the reversals and of the last carried stretch, up to x_d. For
@@ -306,7 +306,7 @@ def time_to_steady(r: Release) -> Array:
     return np.where(np.isfinite(count), time + carried, count)
 
 
-def periods_to_rest(r: Release, finger_friction: ArrayLike) -> Array:
+def periods_to_rest(r: Releases, finger_friction: ArrayLike) -> Array:
     """How many periods after its last break-away from the plate the undamped pin rests.
 
     Each half swing takes 2 x_f from the amplitude, x_f = finger friction / k. The paper has

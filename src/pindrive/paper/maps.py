@@ -17,7 +17,7 @@ from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
 from pindrive.paper.exhibit import Exhibit, at_most, page, tidy, trend
 from pindrive.paper.population import SEED
-from pindrive.paper.release import Release
+from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import GREY, SMALL
 
 if TYPE_CHECKING:
@@ -78,15 +78,14 @@ def numbers(groups: Mapping[str, xr.DataArray | float]) -> xr.Dataset:
     """What `simulate_batch` says of a drive given by its groups, in units of m, x_0 and 1/ω_0."""
     values = {name: groups.get(name, group.baseline) for name, group in GROUPS.items()}
     return batched(
+        UNIT_DRIVE,
+        UNIT_RELEASE,
         dict(
-            mass=1.0,
-            stiffness=1.0,
             damping=2 * values["damping"],
             plate_kinetic=values["plate"],
             finger_kinetic=values["finger"],
             mouse_velocity=values["speed"],
-            displacement=1.0,
-        )
+        ),
     )
 
 
@@ -186,17 +185,14 @@ def _checks() -> tuple[float, float]:
     groups = {n: xr.DataArray(draw.uniform(0.02, g.most, count)) for n, g in GROUPS.items()}
     m, k, x0 = draw.uniform(2e-3, 2e-2, count), draw.uniform(20, 400, count), 1e-3
     w0 = np.sqrt(k / m)
-    real = batched(
-        dict(
-            mass=m,
-            stiffness=k,
-            damping=2 * groups["damping"].values * np.sqrt(m * k),
-            plate_kinetic=groups["plate"].values * k * x0,
-            finger_kinetic=groups["finger"].values * k * x0,
-            mouse_velocity=groups["speed"].values * w0 * x0,
-            displacement=x0,
-        )
-    )
+    real = Releases(
+        mass=m,
+        stiffness=k,
+        damping=2 * groups["damping"].values * np.sqrt(m * k),
+        friction=groups["plate"].values * k * x0,
+        mouse_velocity=groups["speed"].values * w0 * x0,
+        displacement=x0,
+    ).batch(finger_kinetic=groups["finger"].values * k * x0)
     unit = numbers(groups)
     pairs = (
         (w0 * real["transient_settling_time"].values, unit["transient_settling_time"].values),
@@ -207,7 +203,7 @@ def _checks() -> tuple[float, float]:
     found = plane("plate", "finger")
     plate, finger = np.meshgrid(found.plate.values, found.finger.values)
     g = GROUPS
-    release = Release(
+    release = Releases(
         mass=1.0,
         stiffness=1.0,
         damping=2 * g["damping"].baseline,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 from matplotlib.patches import Circle, FancyBboxPatch, Patch
 
-from pindrive import Contact, Drive, Profile, simulate
+from pindrive import Profile, simulate
 from pindrive.paper import baseline
 from pindrive.paper.exhibit import Exhibit, page, tidy
 from pindrive.plot.style import GREY, PALETTE, SMALL
@@ -31,16 +32,6 @@ _TINT: Final = {"carried": 0.55, "resting": 0.22}
 _HOLD: Final = 12.0
 """The magnet's pull while it holds, as a factor on the plate's friction."""
 _CARRY: Final = baseline.VALUES["displacement"] / baseline.VALUES["mouse_velocity"]
-
-
-def _drive(damping: float) -> Drive:
-    return Drive(
-        mass=baseline.MASS,
-        stiffness=baseline.STIFFNESS,
-        damping=damping,
-        plate=Contact(baseline.VALUES["plate.kinetic"]),
-        finger=Contact(baseline.VALUES["finger.kinetic"]),
-    )
 
 
 def _modes(motion: Motion, t: NDArray[np.float64]) -> NDArray[np.int8]:
@@ -69,9 +60,11 @@ def displacement() -> Exhibit:
     t = np.linspace(0.0, 0.3, 1201)
     motions = {
         (reading, factor): simulate(
-            _drive(factor * (baseline.CRITICAL if reading == "ratio" else 1.0)),
-            mouse_velocity=baseline.VALUES["mouse_velocity"],
-            displacement=baseline.VALUES["displacement"],
+            replace(
+                baseline.DRIVE,
+                damping=factor * (baseline.CRITICAL if reading == "ratio" else 1.0),
+            ),
+            baseline.RELEASE,
         )
         for reading in READINGS
         for factor in FACTORS
@@ -183,13 +176,9 @@ def _key(figure: Figure) -> None:
 def velocity() -> Exhibit:
     """The velocity of the pin over a line: carried, released, at rest. Computed, not measured."""
     breakaway = _CARRY
-    motion = simulate(
-        _drive(baseline.DRIVE["damping"]),
-        mouse_velocity=baseline.VALUES["mouse_velocity"],
-        displacement=0.0,
-        plate_load=Profile([0.0, breakaway, breakaway + 1e-4], [_HOLD, _HOLD, 1.0]),
-        duration=0.25,
-    )
+    load = Profile([0.0, breakaway, breakaway + 1e-4], [_HOLD, _HOLD, 1.0])
+    release = replace(baseline.RELEASE, displacement=0.0, plate_load=load)
+    motion = simulate(baseline.DRIVE, release, duration=0.25)
     t = motion.sample_times(1001)
     released = next(s.end for s in motion.segments if s.mode == "carried")
     after = t >= released

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.paper import formulas
-from pindrive.paper.release import Release
+from pindrive.paper.release import Releases
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from pindrive.paper.formulas import Array
+    from pindrive.paper.release import Releases
 
 
 SEED = 298
@@ -34,7 +35,7 @@ UNDAMPED_RANGES = "F 5–50 mN, v_p 20–300 mm/s, x_0 0–3 mm"
 """What else `undamped` draws from."""
 
 
-def damped(count: int = COUNT, seed: int = SEED) -> Release:
+def damped(count: int = COUNT, seed: int = SEED) -> Releases:
     """Releases to which the paper's analysis applies, `RANGES` wide, with x_0 > 0."""
     draw = np.random.default_rng(seed)
     m, k = draw.uniform(2e-3, 20e-3, count), draw.uniform(20.0, 400.0, count)
@@ -42,7 +43,7 @@ def damped(count: int = COUNT, seed: int = SEED) -> Release:
     friction, v = draw.uniform(0.0, 0.05, count), draw.uniform(0.0, 0.3, count)
     b = 2 * ratio * np.sqrt(m * k)
     held = np.maximum(friction - b * v, 0.0) / k
-    return Release(
+    return Releases(
         mass=m,
         stiffness=k,
         damping=b,
@@ -52,10 +53,10 @@ def damped(count: int = COUNT, seed: int = SEED) -> Release:
     )
 
 
-def undamped(count: int = COUNT, seed: int = SEED) -> Release:
+def undamped(count: int = COUNT, seed: int = SEED) -> Releases:
     """Releases without damping, `UNDAMPED_RANGES` wide, m and k as in `damped`."""
     draw = np.random.default_rng(seed)
-    return Release(
+    return Releases(
         mass=draw.uniform(2e-3, 20e-3, count),
         stiffness=draw.uniform(20.0, 400.0, count),
         damping=0.0,
@@ -65,7 +66,7 @@ def undamped(count: int = COUNT, seed: int = SEED) -> Release:
     )
 
 
-def limit_cases(count: int = COUNT, seed: int = SEED) -> Release:
+def limit_cases(count: int = COUNT, seed: int = SEED) -> Releases:
     """The releases of `damped` that lie beyond x_d, each with the damping of its limit case."""
     r = damped(count, seed)
     r = r.take((r.displacement > formulas.friction_offset(r)) & (r.mouse_velocity > 0.0))
@@ -82,7 +83,7 @@ SAMPLES: Final = 9
 class Facts:
     """What the exact simulator says of the stated releases."""
 
-    r: Release
+    r: Releases
 
     @cached_property
     def batch(self) -> xr.Dataset:
@@ -116,7 +117,7 @@ class Facts:
         return found[0], found[1], found[2]
 
     @cached_property
-    def first(self) -> Release:
+    def first(self) -> Releases:
         """The first `SAMPLED` releases."""
         return self.r.take(slice(SAMPLED))
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.motion.batch import batched
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.release import Release
+from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import NON_NEGATIVE
 from pindrive.quantities.table import QUANTITIES, refusal
 
@@ -16,14 +20,22 @@ if TYPE_CHECKING:
 
     from pindrive.motion.motion import Motion
 
-__all__ = ["Release"]
+__all__ = ["Releases"]
 
-_QUANTITY = {"friction": "plate.kinetic"}
+UNIT_DRIVE: Final = Drive(
+    mass=1.0, stiffness=1.0, damping=0.0, plate=Contact(0.0), finger=Contact(0.0)
+)
+UNIT_RELEASE: Final = Release(mouse_velocity=0.0, displacement=1.0)
+"""A drive without friction and damping, and its release, in units of m, x_0 and 1/ω_0."""
+
+_QUANTITY: Final = {"friction": "plate.kinetic"}
 """Where a field's bounds stand in the table of quantities, if not under its own name."""
+_ARGUMENT: Final = {"friction": "plate_kinetic"}
+"""What a field is called in `simulate_batch`, if not the same."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Release:
+class Releases:
     """The release that equations (2) to (26) describe: of a pin that the plate carried.
 
     One contact, the plate, with kinetic = static friction; the finger is frictionless. Each
@@ -76,13 +88,15 @@ class Release:
         """The shape of every field, and of every answer."""
         return self.mass.shape
 
-    def take(self, index: slice | NDArray[np.bool_]) -> Release:
+    def take(self, index: slice | NDArray[np.bool_]) -> Releases:
         """Some of these releases, by a slice or a mask of their (one-dimensional) arrays."""
-        return Release(**{field.name: getattr(self, field.name)[index] for field in fields(self)})
+        return Releases(**{field.name: getattr(self, field.name)[index] for field in fields(self)})
 
-    def replace(self, **changes: ArrayLike) -> Release:
+    def replace(self, **changes: ArrayLike) -> Releases:
         """The same releases with other values for some fields."""
-        return Release(**{f.name: changes.get(f.name, getattr(self, f.name)) for f in fields(self)})
+        return Releases(
+            **{f.name: changes.get(f.name, getattr(self, f.name)) for f in fields(self)}
+        )
 
     def motion(
         self,
@@ -98,9 +112,6 @@ class Release:
             finger: friction force of the finger, N, kinetic = static; the analysis has none.
             duration: as for `pindrive.simulate`.
         """
-        from pindrive import Contact, Drive
-        from pindrive.motion.simulate import simulated
-
         drive = Drive(
             mass=float(self.mass[index]),
             stiffness=float(self.stiffness[index]),
@@ -108,31 +119,17 @@ class Release:
             plate=Contact(float(self.friction[index])),
             finger=Contact(finger),
         )
-        return simulated(
-            drive,
-            mouse_velocity=float(self.mouse_velocity[index]),
-            displacement=float(self.displacement[index]),
-            duration=duration,
-        )
+        release = Release(float(self.mouse_velocity[index]), float(self.displacement[index]))
+        return simulated(drive, release, duration=duration)
 
-    def batch(self, **others: ArrayLike) -> xr.Dataset:
+    def batch(self, **others: ArrayLike | None) -> xr.Dataset:
         """The exact numbers of every release, the finger frictionless.
 
         Args:
-            others: what stands for, or beside, the arrays of the releases.
+            others: what stands for, or beside, the arrays of the releases, as for `simulate_batch`.
         """
-        from pindrive.motion.batch import batched
-
-        given: dict[str, Any] = {
-            "mass": self.mass,
-            "stiffness": self.stiffness,
-            "damping": self.damping,
-            "plate_kinetic": self.friction,
-            "finger_kinetic": 0.0,
-            "mouse_velocity": self.mouse_velocity,
-            "displacement": self.displacement,
-        }
-        return batched(given | others)
+        given = {_ARGUMENT.get(f.name, f.name): getattr(self, f.name) for f in fields(self)}
+        return batched(UNIT_DRIVE, UNIT_RELEASE, given | others)
 
 
 def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -58,7 +58,7 @@ def curves() -> xr.Dataset:
     values = np.array([np.linspace(p.least, p.most, POINTS) for p in PARAMETERS])
     columns: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
     for parameter, along in zip(PARAMETERS, values, strict=True):
-        found = batched({**baseline.DRIVE, parameter.argument: along})
+        found = batched(baseline.DRIVE, baseline.RELEASE, {parameter.argument: along})
         for name in names:
             columns[name].append(found[name].to_numpy())
     dims = ("parameter", "point")
@@ -213,6 +213,6 @@ def _jumping(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour:
 def _mark_baseline(
     axes: Axes, p: Parameter, values: NDArray[np.float64], y: NDArray[np.float64]
 ) -> None:
-    at = baseline.DRIVE[p.argument]
+    at = baseline.value(p.argument)
     height = float(np.interp(at, values, y))
     axes.plot(p.scale * at, height, "o", color="black", ms=3.0, zorder=4)

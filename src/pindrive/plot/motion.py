@@ -154,7 +154,7 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
         )
     axes.plot(trace.x, trace.v, color=PALETTE["curve"], gid="curve")
     _mark_events(trace, axes, [e.position * MM for e, _ in trace.events], "velocity")
-    if not isinstance(motion.mouse_velocity, Profile):
+    if not isinstance(motion.release.mouse_velocity, Profile):
         _draw_plate(motion, axes, trace)
     _mark_ends(motion, trace, axes)
     axes.set_xlabel("displacement $x$ (mm)")
@@ -230,8 +230,8 @@ def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
         "gid": "plate",
     }
     level = float(motion.plate_velocity(trace.end)) * MM
-    if isinstance(motion.mouse_velocity, Profile):
-        rows = [t for t in motion.mouse_velocity.times if 0.0 < t < trace.end]
+    if isinstance(motion.release.mouse_velocity, Profile):
+        rows = [t for t in motion.release.mouse_velocity.times if 0.0 < t < trace.end]
         times = np.array([0.0, *rows, trace.end])
         axes.plot(times * trace.scale, motion.plate_velocity(times) * MM, **dashed)
     else:
@@ -281,7 +281,7 @@ def _band(motion: Motion) -> float:
     """Half the band that counts as settled, mm; 0 where there is none to show."""
     if motion.ending.kind not in ("resting", "decaying"):
         return 0.0
-    return motion.settling_band * abs(motion.displacement - motion.ending.position) * MM
+    return motion.settling_band * abs(motion.release.displacement - motion.ending.position) * MM
 
 
 def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -364,10 +364,10 @@ def _course(name: str, values: Sequence[float]) -> str:
 def stuck_name(motion: Motion, mode: str) -> str:
     """What a phase stuck in this way is called."""
     if mode == "resting" and (
-        isinstance(motion.mouse_velocity, Profile) or not motion.drive.finger.rigid
+        isinstance(motion.release.mouse_velocity, Profile) or not motion.drive.finger.rigid
     ):
         return "at rest"
-    if motion.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
+    if motion.release.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
         return NAME[mode]
     on_finger = "" if motion.drive.finger.frictionless else "finger and "
     return f"at rest on {on_finger}plate"
@@ -394,7 +394,7 @@ def outcome(motion: Motion) -> str:
 
 def parameters(motion: Motion) -> str:
     """The drive and its release."""
-    drive, v_plate = motion.drive, motion.mouse_velocity
+    drive, v_plate = motion.drive, motion.release.mouse_velocity
     words = [
         f"$m$ = {short('mass', drive.mass)}",
         f"$k$ = {short('stiffness', drive.stiffness)}",
@@ -407,12 +407,12 @@ def parameters(motion: Motion) -> str:
         words.append(rf"$F_\mathrm{{{index}}}$ = {_course('plate.kinetic', along)}{more}")
     if not drive.finger.rigid:
         words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
-    if isinstance(motion.plate_load, Profile) or motion.plate_load != 1.0:
-        words.append(f"$λ$ = {_course('plate_load', _values(motion.plate_load))}")
+    if isinstance(motion.release.plate_load, Profile) or motion.release.plate_load != 1.0:
+        words.append(f"$λ$ = {_course('plate_load', _values(motion.release.plate_load))}")
     words.append(rf"$v_\mathrm{{p}}$ = {_course('mouse_velocity', _values(v_plate))}")
-    words.append(f"$x_0$ = {short('displacement', motion.displacement)}")
-    if motion.initial_velocity != float(motion.plate_velocity(0.0)):
-        words.append(f"$v_0$ = {short('velocity', motion.initial_velocity)}")
+    words.append(f"$x_0$ = {short('displacement', motion.release.displacement)}")
+    if motion.release.initial_velocity != float(motion.plate_velocity(0.0)):
+        words.append(f"$v_0$ = {short('velocity', motion.release.initial_velocity)}")
     lines = [words[0]]
     for word in words[1:]:
         longer = f"{lines[-1]}, {word}"

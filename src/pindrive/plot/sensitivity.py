@@ -51,7 +51,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
         figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
         if found.near:
             near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
-            _draw_near(near, found, found.near, numbers)
+            draw_elasticities(near, found.near, numbers)
         else:
             near = over = figure.subplots()
         _draw_over(over, found, numbers)
@@ -91,9 +91,9 @@ def _ranges(found: Influence) -> str:
     return ",\n".join(lines)
 
 
-def _draw_near(axes: Axes, found: Influence, near: Elasticities, numbers: Sequence[str]) -> None:
+def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) -> None:
     """Elasticities: blue where a number grows with the key, red where it falls."""
-    values = np.array([[near.table[n][key] for key in found.keys] for n in numbers])
+    values = np.array([[near.table[n][key] for key in near.keys] for n in numbers])
     strength = np.sign(values) * np.sqrt(np.abs(values) / _FULL)
     axes.imshow(strength, cmap=_SIGNED, vmin=-1.0, vmax=1.0, aspect="auto")
     for edge in range(1, max(values.shape)):

@@ -141,6 +141,14 @@ class Quantity:
         """How many display units make one SI unit."""
         return DISPLAY.get(self.unit, (self.unit, 1.0))[1]
 
+    @property
+    def usual(self) -> str:
+        """A usual value of it as text: "10 g"; of one that must be rows, their last."""
+        value = self.example if self.default is None else self.default
+        if value is None:
+            value = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
+        return self.written(value)
+
     def written(self, value: float) -> str:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
         return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()

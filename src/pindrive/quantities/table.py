@@ -10,6 +10,7 @@ import warnings
 from operator import index
 from typing import Final, SupportsFloat, SupportsIndex, cast
 
+from pindrive import lazy
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.evaluation import JUDGE
@@ -32,7 +33,7 @@ def refusal(label: str, required: str, given: object, where: str = "") -> str:
 
 def check(
     name: str,
-    value: SupportsFloat,
+    value: SupportsFloat | str,
     *,
     where: str = "",
     label: str | None = None,
@@ -42,13 +43,13 @@ def check(
 
     Args:
         name: a name of the table.
-        value: SI value.
+        value: SI value, or text with a unit: "12 g".
         where: the place it was written, said first in the message: file and key.
         label: what the message calls the quantity; its name unless given.
         given: how the value was written, for the message; `value` with its SI unit unless given.
 
     Raises:
-        ValueError: no number, not finite, or out of bounds.
+        ValueError: no number, text without the unit, not finite, or out of bounds.
     """
     quantity = QUANTITIES[name]
     label = name if label is None else label
@@ -61,9 +62,16 @@ def check(
         size = getattr(value, "shape", None)
         shown = f"{len(cast(list[object], value))} values" if size is None else f"an array {size}"
         raise ValueError(refusal(label, many, shown, where))
+    elif isinstance(value, str):
+        given = lazy.call("pindrive.quantities.units:quoted", value) if given is None else given
+        try:
+            example, unit = quantity.usual, quantity.unit or "1"
+            number = lazy.call("pindrive.quantities.units:to_si", value, unit, example)
+        except ValueError as error:
+            raise ValueError(refusal(label, str(error), given, where)) from None
     else:
         try:
-            if isinstance(value, (str, bytes, bool)):
+            if isinstance(value, (bytes, bool)):
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError, OverflowError):

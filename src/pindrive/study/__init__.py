@@ -1,7 +1,7 @@
 """Studies: many releases or scans of one device, each with other values of its keys.
 
-A study file names a device and says which of its keys change and how. `sweep` computes every
-point into one NetCDF file; maps, sensitivities and yields follow from the same files.
+A study file, or Python, names a device and says which of its keys change and how. `Study.run` and
+`sweep` compute every point; sensitivities and yields follow from the same study.
 """
 
 from __future__ import annotations
@@ -11,13 +11,18 @@ from typing import TYPE_CHECKING
 from pindrive.lazy import attach
 
 if TYPE_CHECKING:
-    from pindrive.study.design import Plan
+    from pindrive.study.local_sensitivity import Elasticities
+    from pindrive.study.robustness import Robustness
     from pindrive.study.runner import Result, sweep
-    from pindrive.study.spec import load_study
+    from pindrive.study.sensitivity import Influence
+    from pindrive.study.study import Study, load_study
 
 __all__ = [
-    "Plan",
+    "Elasticities",
+    "Influence",
     "Result",
+    "Robustness",
+    "Study",
     "load_study",
     "sweep",
 ]
@@ -25,9 +30,12 @@ __all__ = [
 __getattr__, __dir__ = attach(
     __name__,
     {
-        "Plan": "pindrive.study.design",
+        "Elasticities": "pindrive.study.local_sensitivity",
+        "Influence": "pindrive.study.sensitivity",
         "Result": "pindrive.study.runner",
-        "load_study": "pindrive.study.spec",
+        "Robustness": "pindrive.study.robustness",
+        "Study": "pindrive.study.study",
+        "load_study": "pindrive.study.study",
         "sweep": "pindrive.study.runner",
     },
 )

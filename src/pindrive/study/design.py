@@ -14,6 +14,8 @@ from pindrive.files.device import Setting, device_of
 from pindrive.files.ratios import written
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.motion.batch import batched
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.release import Release
 from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
 
 if TYPE_CHECKING:
@@ -182,7 +184,7 @@ def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
 @cache
 def flags(name: str) -> tuple[str, ...]:
     """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
-    names = ("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic", "mouse_velocity")
-    one = batched({**dict.fromkeys(names, 1.0), "displacement": 0.0})
+    drive = Drive(mass=1.0, stiffness=1.0, damping=1.0, plate=Contact(1.0), finger=Contact(1.0))
+    one = batched(drive, Release(1.0), {})
     refused = ("refused",) if name == "status" else ()
     return (*one[name].attrs["flag_meanings"].split(), *refused)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,6 +12,7 @@ from pindrive.files.ratios import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.study.design import flags, variable
 from pindrive.study.outputs import LEDGER, MEASURED
@@ -27,14 +29,11 @@ _WHOLE: Final = {
     **dict.fromkeys(("status", "ending", "events"), np.int64),
     "transient_settled": np.bool_,
 }
+_NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
+"""What is asked of a motion, beside its drive and its release."""
+_RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
-
-_BATCH = (
-    *("mass", "stiffness", "damping", "plate_kinetic", "plate_static", "finger_kinetic"),
-    *("finger_static", "finger_stiffness", "mouse_velocity", "displacement", "velocity"),
-    *("duration", "settling_band"),
-)
 
 
 def evaluate(
@@ -58,19 +57,18 @@ def evaluate(
         from pindrive.study.scans import evaluate_scans
 
         return evaluate_scans(plan, columns, count, outputs, threads)
-    inputs = _inputs(plan.device, columns)
-    if is_slow(plan.device, columns):
+    device = plan.device
+    inputs = _inputs(device, columns)
+    if is_slow(device, columns):
         table = _one_by_one(inputs, count)
     else:
-        for static in ("plate_static", "finger_static"):
-            if inputs[static] is None:
-                inputs[static] = inputs[static.replace("static", "kinetic")]
-        inputs["plate_static"] = inputs["plate_static"] * inputs["plate_load"]
-        inputs["plate_kinetic"] = inputs["plate_kinetic"] * inputs["plate_load"]
-        given = {k: v for k, v in inputs.items() if k in _BATCH and v is not None}
-        given["mass"] = np.broadcast_to(given["mass"], (count,))
+        varied = {name: inputs[name] for name in (*map(variable, columns), *_NOT_OF_THE_DRIVE)}
+        if "damping_ratio" in varied or device.by_ratio:
+            varied["damping"] = inputs["damping"]
+            varied.pop("damping_ratio", None)
+        varied["mass"] = np.broadcast_to(inputs["mass"], (count,))
         energy = not set(LEDGER).isdisjoint(outputs)
-        found = batched(given, energy=energy, threads=threads)
+        found = batched(device.drive, device.release, varied, energy=energy, threads=threads)
         table = {name: found[name].values for name in outputs if name != "reason"}
         if "reason" in outputs:
             table["reason"] = _bad_arguments(found["status"].values)
@@ -90,14 +88,14 @@ def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Whether the points of a device must be simulated one by one."""
     changes = {
-        "motion.mouse_velocity": isinstance(device.mouse_velocity, Profile),
-        "motion.plate_load": isinstance(device.plate_load, Profile),
+        "motion.mouse_velocity": isinstance(device.release.mouse_velocity, Profile),
+        "motion.plate_load": isinstance(device.release.plate_load, Profile),
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
         or device.drive.plate.curved
         or device.drive.finger.curved
-        or device.skin_stretch is not None
+        or device.release.skin_stretch is not None
         or "motion.skin_stretch" in swept
     )
 
@@ -105,7 +103,7 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
 def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     """Every input of a motion by its name in Python: a column, or what the device has."""
     given: dict[str, Any] = {variable(key): value for key, value in device.values().items()}
-    given |= {"mouse_velocity": device.mouse_velocity, "plate_load": device.plate_load}
+    given |= {name: getattr(device.release, name) for name in _RELEASE}
     given |= {variable(key): values for key, values in columns.items()}
     if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
         mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
@@ -168,10 +166,8 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         for name, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf))
     )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    start = (
-        *("mouse_velocity", "displacement", "velocity", "plate_load", "skin_stretch", "duration"),
-        "settling_band",
-    )
     return simulated(
-        Drive(**body, plate=plate, finger=finger), **{name: given[name] for name in start}
+        Drive(**body, plate=plate, finger=finger),
+        Release(**{name: given[name] for name in _RELEASE}),
+        **{name: given[name] for name in _NOT_OF_THE_DRIVE},
     )

@@ -6,12 +6,19 @@ from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from pindrive import lazy
 from pindrive.files.device import motion_of
+from pindrive.lazy import xr
+from pindrive.quantities.quantity import counted
 from pindrive.study.design import variable
 from pindrive.study.distributions import base_value, exponents
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from matplotlib.figure import Figure
 
     from pindrive.study.design import Plan
     from pindrive.study.distributions import Linked
@@ -20,7 +27,7 @@ _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 """Keys along which the core has no derivatives."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Elasticities:
     """By how many per cent each number changes when a key grows by one per cent."""
 
@@ -33,6 +40,40 @@ class Elasticities:
     """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
     """Why, for each key with numbers that have no derivative."""
+    name: str = ""
+    """Of the study."""
+
+    def __repr__(self) -> str:
+        """Of how many numbers and keys, in a line."""
+        numbers, keys = counted(len(self.table), "number"), counted(len(self.keys), "key")
+        return f"<Elasticities of {numbers} to {keys}, {self.status}>"
+
+    @property
+    def status(self) -> str:
+        """Either "ok", or which keys have no derivatives and why."""
+        return "; ".join(f"{key}: {reason}" for key, reason in self.gaps.items()) or "ok"
+
+    def plot(self) -> Figure:
+        """The elasticities as a table of colours, numbers down and keys across."""
+        figure: Figure = lazy.call("pindrive.plot.local_sensitivity:plot_elasticities", self)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """The elasticities as data.
+
+        Returns:
+            `elasticity` over (number, key), without unit, and `value` over `number`, the numbers at
+            the device's own values, SI; NaN where there is none.
+        """
+        numbers = [*self.table]
+        rows = [[self.table[number][key] for key in self.keys] for number in numbers]
+        data = {
+            "elasticity": (("number", "key"), np.array(rows), {"units": "1"}),
+            "value": ("number", np.array([self.values[number] for number in numbers])),
+        }
+        coords = {"number": numbers, "key": [*self.keys]}
+        attributes = {"status": self.status, "duration": self.duration}
+        return xr.Dataset(data, coords=coords, attrs=attributes)
 
 
 def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:
@@ -77,7 +118,7 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps)
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, plan.name)
 
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:

@@ -32,6 +32,20 @@ class StudyPage:
     checksums: tuple[tuple[str, str], ...]
     """SHA-256 of each file, by the name of its key."""
 
+    @classmethod
+    def of(cls, page: Page, place: str) -> StudyPage:
+        """A page with what its files hold now.
+
+        Args:
+            page: the page.
+            place: where it was written, for messages.
+
+        Raises:
+            ValueError: a file cannot be read.
+        """
+        files = page.files.items()
+        return cls(page, tuple((k, _checksum(path, f"{place}: page.{k}")) for k, path in files))
+
     def identity(self) -> dict[str, Any]:
         """All that a scan takes from it."""
         parts = {"text": self.page.text, "grating": self.page.grating}
@@ -64,12 +78,12 @@ class StudyPage:
         return self.page.hand(reading, scene, array)
 
 
-def read_page(table: Any, file: Path) -> StudyPage:
+def read_page(table: Any, file: Path) -> Page:
     """The page that [page] describes; its files stand beside the study file.
 
     Raises:
-        ValueError: a key is unknown or malformed, a file cannot be read, or there is not exactly
-            one of text, image and grating.
+        ValueError: a key is unknown or malformed, or there is not exactly one of text, image and
+            grating.
     """
     if not isinstance(table, dict):
         raise ValueError(refusal("page", "a table, [page]", quoted(table), str(file)))
@@ -86,9 +100,7 @@ def read_page(table: Any, file: Path) -> StudyPage:
             parts[key] = given if key == "text" else file.parent / given
     page = Page(**parts)
     page.check("page.{}", str(file))
-    files = page.files.items()
-    sums = tuple((name, _checksum(path, f"{file}: page.{name}")) for name, path in files)
-    return StudyPage(page, sums)
+    return page
 
 
 def _pitches(given: object, file: str) -> tuple[float, ...]:

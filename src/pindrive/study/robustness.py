@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import lazy
 from pindrive.files.device import motion_of
-from pindrive.lazy import optimize, stats
+from pindrive.lazy import optimize, stats, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate, follow
+from pindrive.study.outputs import attributes
 from pindrive.study.refusals import Refusal, exist, refusals
-from pindrive.study.sensitivity import Ranges, ranges_of
+from pindrive.study.sensitivity import Ranges, left_out, ranges_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Progress
@@ -84,7 +87,7 @@ class WorstCase:
     """The same point followed by itself; None of a scan."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Robustness:
     """What `robustness` found."""
 
@@ -104,6 +107,49 @@ class Robustness:
     all_met: Share | None
     """How many meet all of them: the yield."""
     worst: tuple[WorstCase, ...]
+    name: str = ""
+    """Of the study."""
+
+    def __repr__(self) -> str:
+        """How many designs, and how many meet the specification, in a line."""
+        met = f"{self.all_met.text} meet the specification" if self.all_met else "no specification"
+        return f"<Robustness of {counted(self.designs, 'design')}: {met}, {self.status}>"
+
+    @property
+    def status(self) -> str:
+        """Either "ok", or how many draws cannot exist and were left out."""
+        return left_out(self.refusals)
+
+    def plot(self) -> Figure:
+        """How the watched numbers spread, with the limits, as a figure that a notebook shows."""
+        figure: Figure = lazy.call("pindrive.plot.robustness:plot_robustness", self, self.name)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """The watched numbers of every design, and the yield.
+
+        Returns:
+            A variable over `design` for each watched number, SI, NaN where a design has none; over
+            `limit`: `met`, `met_low` and `met_high`, the part of the designs that meets each limit
+            of the specification and its 95 % confidence interval, and `worst`, the worst value
+            found.
+        """
+        data: dict[str, Any] = {
+            name: ("design", values, attributes(name)) for name, values in self.values.items()
+        }
+        shares = [share for _, share in self.shares]
+        for name, parts in (
+            ("met", [share.met / share.of for share in shares]),
+            ("met_low", [share.low for share in shares]),
+            ("met_high", [share.high for share in shares]),
+            ("worst", [case.value for case in self.worst]),
+        ):
+            data[name] = ("limit", np.array(parts, np.float64))
+        coords = {"limit": [demand.text() for demand, _ in self.shares]}
+        found: dict[str, Any] = {"status": self.status, "draws": self.draws, "seed": self.seed}
+        if self.all_met:
+            found["yield"] = self.all_met.met / self.all_met.of
+        return xr.Dataset(data, coords=coords, attrs=found)
 
     @property
     def designs(self) -> int:
@@ -117,12 +163,12 @@ class Robustness:
 
 
 def robustness(
-    plan: Plan,
+    study: Plan,
     *,
     count: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    tell: Progress = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Robustness:
     """Draw designs within the tolerances of a study and hold them against its specification.
 
@@ -130,16 +176,31 @@ def robustness(
     `Quantity.follows`). A draw that cannot exist all the same is no design: it is counted apart.
 
     Args:
-        plan: a study with tolerances.
+        study: a study with tolerances.
         count: independent random draws, at least 1; the confidence interval rests on them. 100 000
             unless given, of scans 1000.
         seed: of the draws and of the search for the worst case.
         threads: all cores unless given.
-        tell: called with the points done and the points in all.
+        progress: called with the points done and the points in all.
+
+    Returns:
+        The spread of the watched numbers, the yield against each limit and against all, and the
+        worst case that a search found; `to_dataset` and `plot` give them as data and as a figure.
 
     Raises:
         ValueError: there are no tolerances, no draw can exist, or there are too many to keep.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> study = pd.Study(
+        ...     pd.load_device("tactile-mouse.toml"),
+        ...     tolerances={"mass": "5 %", "drive.stiffness": "10 %"},
+        ...     specification={"settling_time": "<= 1 s"},
+        ... )
+        >>> pd.robustness(study, count=500)
+        <Robustness of 500 designs: 100.000 % meet the specification, ok>
     """
+    plan = study
     ranges = ranges_of(plan, tolerances=True)
     if count is None:
         count = USUAL_COUNT_OF_SCANS if plan.page else USUAL_COUNT
@@ -161,7 +222,7 @@ def robustness(
         points = np.array([scatter.ppf(portion) for portion, scatter in portions])
         drawn.append(points)
         parts.append(numbers(points))
-        tell(end, count)
+        progress(end, count)
     table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     points = np.concatenate(drawn, axis=1)
 
@@ -189,6 +250,7 @@ def robustness(
         ),
         None if every is None else Share.of_designs(int(every.sum()), size),
         tuple(_worst(plan, ranges, d, points, table, numbers, seed) for d in plan.demands),
+        plan.name,
     )
 
 

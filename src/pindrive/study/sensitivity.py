@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive import lazy
+from pindrive.lazy import xr
 from pindrive.quantities import budgets
+from pindrive.quantities.quantity import counted
 from pindrive.study.design import COUNTS
 from pindrive.study.distributions import Distribution, Linked, as_distribution, with_links
 from pindrive.study.evaluate import evaluate
 from pindrive.study.local_sensitivity import Elasticities, elasticities
-from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED
+from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
 from pindrive.study.refusals import Refusal, exist, refusals
 from pindrive.study.sobol import Indices, sobol_indices
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Progress
@@ -77,19 +81,66 @@ def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
     return Ranges(scatter, fixed, plan.links)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Influence:
-    """Local and global sensitivity of every number to every key."""
+    """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
 
     keys: tuple[str, ...]
     ranges: Ranges
     near: Elasticities | None
-    """None of scans, which have no exact derivatives."""
+    """None where they were not requested, and of scans, which have no exact derivatives."""
     over: Mapping[str, Indices]
     rows: int
     points: int
     refusals: tuple[Refusal, ...]
     """Points that cannot exist, as their values contradict each other; left out."""
+    name: str = ""
+    """Of the study."""
+
+    def __repr__(self) -> str:
+        """Of how many numbers and keys, from how many points, in a line."""
+        numbers, keys = counted(len(self.over), "number"), counted(len(self.keys), "key")
+        points = counted(self.points, "point")
+        return f"<Sobol' indices of {numbers} over {keys}, {points}, {self.status}>"
+
+    @property
+    def status(self) -> str:
+        """Either "ok", or how many points cannot exist and were left out."""
+        return left_out(self.refusals)
+
+    def plot(self) -> Figure:
+        """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
+        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_influence", self, self.name)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """The indices with their 95 % confidence intervals.
+
+        Returns:
+            Variables over (number, key): `first_order` and `total`, and the ends of their intervals
+            as `first_order_low`, `first_order_high`, `total_low` and `total_high`; NaN where a
+            number is constant or exists too rarely. Over `number`: `spread`, its standard deviation
+            in SI, and `kept`, the part of the rows in which it exists.
+        """
+        numbers = [*self.over]
+        data: dict[str, Any] = {}
+        for part, order in (("first", "first_order"), ("total", "total")):
+            for field, end in (("value", ""), ("low", "_low"), ("high", "_high")):
+                rows = [getattr(getattr(self.over[n], part), field) for n in numbers]
+                data[f"{order}{end}"] = (("number", "key"), np.array(rows), {"units": "1"})
+        data["spread"] = ("number", np.array([self.over[n].spread for n in numbers]))
+        data["kept"] = ("number", np.array([self.over[n].kept for n in numbers]), {"units": "1"})
+        coords = {"number": numbers, "key": [*self.keys]}
+        title = {"title": f"Sobol' indices of {self.name}"} if self.name else {}
+        return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status})
+
+
+def left_out(refusals: Sequence[Refusal]) -> str:
+    """Either "ok", or how many points or draws cannot exist, and the commonest reason."""
+    if not refusals:
+        return "ok"
+    total = counted(sum(refusal.count for refusal in refusals), "point")
+    return f"{total} cannot exist and left out: {refusals[0].reason}"
 
 
 def askable(plan: Plan) -> tuple[str, ...]:
@@ -97,31 +148,53 @@ def askable(plan: Plan) -> tuple[str, ...]:
     return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
 
 
-def influence(
-    plan: Plan,
+def sobol(
+    study: Plan,
     *,
     tolerances: bool = False,
     numbers: Sequence[str] = (),
     rows: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    tell: Progress = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Influence:
-    """Elasticities at the device's values and Sobol' indices over the ranges of a study.
+    """Which key matters over the ranges of a study: Sobol' indices of first order and total.
+
+    The estimators are those of Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018, the intervals a
+    bootstrap over the rows.
 
     Args:
-        plan: the study.
-        tolerances: over [tolerances] instead of [axes].
-        numbers: the variables to analyse; all that exist unless given, of the energy ledger
-            those that the study names in its outputs.
-        rows: of the design, a power of 2, at least 128; 8192 unless given, of scans 256.
+        study: whose axes are the ranges; each key is drawn independently of the others.
+        tolerances: over the study's tolerances instead of its axes.
+        numbers: the numbers to analyse, as "settling_time"; all that exist unless given, of
+            the energy ledger those that the study names in its outputs.
+        rows: of the design, a power of 2, at least 128, of (keys + 2) points each; 8192 unless
+            given, of scans 256.
         seed: of the sequence and the bootstrap.
-        threads: all cores unless given.
-        tell: called with the points done and the points in all.
+        threads: how many work; as many as there are cores unless given.
+        progress: called with the points done and the points in all.
+
+    Returns:
+        The indices; `to_dataset` and `plot` give them as data and as a figure.
 
     Raises:
-        ValueError: nothing varies, or `rows` is no power of 2 or too large.
+        ValueError: nothing varies, a number is unknown, or `rows` is no power of 2 or too large.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> study = pd.Study(
+        ...     pd.load_device("tactile-mouse.toml"),
+        ...     tolerances={"mass": "5 %", "drive.stiffness": "10 %"},
+        ... )
+        >>> found = pd.sobol(study, numbers=["settling_time"], rows=128)
+        >>> found
+        <Sobol' indices of 1 number over 2 keys, 512 points, ok>
+        >>> found.to_dataset().total.dims
+        ('number', 'key')
     """
+    plan = study
+    among = askable(plan)
+    numbers = [known_output(name, "numbers", among) for name in numbers]
     ranges = ranges_of(plan, tolerances)
     keys = tuple(ranges.scatter)
     usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
@@ -143,7 +216,7 @@ def influence(
             part = points[:, begin : begin + plan.at_a_time]
             columns = ranges.columns(plan, part)
             parts.append(evaluate(plan, columns, part.shape[1], outputs, threads))
-            tell(min(begin + plan.at_a_time, total), total)
+            progress(min(begin + plan.at_a_time, total), total)
         found = {name: np.concatenate([part[name] for part in parts]) for name in outputs}
         refused = refusals(plan, ranges.columns(plan, points), found.pop("reason"))
         designs = exist(found.pop("status"))
@@ -152,5 +225,59 @@ def influence(
         return found
 
     over = sobol_indices(function, [*ranges.scatter.values()], rows, seed)
-    near = None if plan.page else elasticities(plan, keys, ranges.links)
-    return Influence(keys, ranges, near, over, rows, rows * (len(keys) + 2), refused)
+    points = rows * (len(keys) + 2)
+    return Influence(keys, ranges, None, over, rows, points, refused, plan.name)
+
+
+def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
+    """By how many per cent each number changes where a key of a study grows by one per cent.
+
+    Exact derivatives at the device's own values, by dual numbers through every event.
+
+    Args:
+        study: of releases; its axes say the keys.
+        tolerances: the keys of its tolerances instead.
+
+    Returns:
+        The elasticities, NaN where one does not exist, with the reason of a key that has none.
+
+    Raises:
+        ValueError: the study is one of scans, which have no exact derivatives, or nothing varies.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> study = pd.Study(
+        ...     pd.load_device("tactile-mouse.toml"), axes={"drive.stiffness": [90.0, 110.0]}
+        ... )
+        >>> near = pd.local_sensitivity(study)
+        >>> round(near.table["transient_swing"]["drive.stiffness"], 3)
+        0.097
+    """
+    if study.page:
+        raise ValueError(f"{study.path}: a study of scans has no exact derivatives; sobol takes it")
+    ranges = ranges_of(study, tolerances)
+    return elasticities(study, tuple(ranges.scatter), ranges.links)
+
+
+def influence(
+    plan: Plan,
+    *,
+    tolerances: bool = False,
+    numbers: Sequence[str] = (),
+    rows: int | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = lambda done, total: None,
+) -> Influence:
+    """Sobol' indices as `sobol` finds them, with elasticities beside them where there are any."""
+    found = sobol(
+        plan,
+        tolerances=tolerances,
+        numbers=numbers,
+        rows=rows,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )
+    near = None if plan.page else local_sensitivity(plan, tolerances=tolerances)
+    return replace(found, near=near)

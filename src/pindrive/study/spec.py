@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from pindrive.device.reading import Page
 from pindrive.files.device import (
     STUDY_KEYS,
     TABLES,
@@ -48,17 +49,8 @@ _SAMPLE: Final = ("method", "count", "seed")
 _TEMPLATE: Final = 'a study names its device, base = "device.toml", and what to vary in [axes]'
 
 
-def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
-    """The study file at `path`, its device with single values set otherwise.
-
-    Args:
-        path: a TOML file that names a device, or holds one, and says what to vary.
-        overrides: "key=value" each, as for `pindrive.config.load`; after those in its table [set].
-
-    Raises:
-        ConfigError: the file or its device cannot be read, or holds anything unknown, malformed,
-            out of bounds or contradictory.
-    """
+def read_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan:
+    """What the study file at `path` says; arguments and errors as for `load_study`."""
     file = Path(path)
     tables = read_tables(file, _TEMPLATE)
     if not tables.keys() & {*STUDY_KEYS} and tables.keys() & {*TABLES}:
@@ -69,11 +61,42 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
             ]
         )
     problems = _unknown(tables, file)
-    page = _page(tables, file, problems)
+    if "page" in tables:
+        tables["page"] = _page(tables["page"], file, problems)
     device, text = _device(tables, file, overrides)
-    reader = _Reader(str(file), tables, device, problems)
+    return plan_of(tables, device, path=file, place=str(file), text=text, problems=problems)
+
+
+def plan_of(
+    tables: Mapping[str, Any],
+    device: DeviceFile,
+    *,
+    path: Path,
+    place: str,
+    text: str,
+    problems: Iterable[str] = (),
+) -> Plan:
+    """The study of a device that the tables of a study file describe.
+
+    Args:
+        tables: what TOML makes of them; `page` is a `Page`, or None of a page that was refused.
+        device: what varies.
+        path: the file that a sweep must not write to.
+        place: where the tables were written, for messages.
+        text: the same as text, to be kept with the numbers.
+        problems: what was found wrong before.
+
+    Raises:
+        ConfigError: anything unknown, malformed, out of bounds or contradictory.
+    """
+    problems = list(problems)
+    page = None
+    if isinstance(tables.get("page"), Page):
+        page = _gathered(tables["page"], place, problems)
+        device = device if device.whole else device.with_whole()
+    reader = _Reader(place, tables, device, problems)
     plan = Plan(
-        path=file,
+        path=path,
         name=reader.text("name") or device.name,
         text=text,
         device=device,
@@ -83,11 +106,11 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
         chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
-        demands=demands(reader.table("specification"), str(file), problems, reader.among),
+        demands=demands(reader.table("specification"), place, problems, reader.among),
         page=page,
     )
     problems += _too_much(plan)
-    problems += conflicts(plan, str(file))
+    problems += conflicts(plan, place)
     if problems:
         raise ConfigError(list(dict.fromkeys(problems)))
     return plan
@@ -121,10 +144,19 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
     return problems
 
 
-def _page(tables: Mapping[str, Any], file: Path, problems: list[str]) -> StudyPage | None:
-    """The page; what is wrong with it is appended to `problems`."""
+def _page(table: Any, file: Path, problems: list[str]) -> Page | None:
+    """The page of a table [page]; what is wrong with it is appended to `problems`."""
     try:
-        return read_page(tables["page"], file) if "page" in tables else None
+        return read_page(table, file)
+    except ValueError as error:
+        problems.append(str(error))
+        return None
+
+
+def _gathered(page: Page, place: str, problems: list[str]) -> StudyPage | None:
+    """A page with what its files hold; what is wrong with it is appended to `problems`."""
+    try:
+        return StudyPage.of(page, place)
     except ValueError as error:
         problems.append(str(error))
         return None

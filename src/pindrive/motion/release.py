@@ -1,0 +1,131 @@
+"""A release as data: the state in which the pin starts, and the inputs that act on it. SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, nan
+from typing import TYPE_CHECKING
+
+from pindrive.motion.drive import (
+    Drive,
+    Profile,
+    check_continuous,
+    check_load,
+    check_skin,
+    check_stretch,
+)
+from pindrive.quantities.table import QUANTITIES, check, refusal
+
+if TYPE_CHECKING:
+    from pindrive.motion.results import CoreNumbers, Rows
+
+__all__ = ["Release"]
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Release:
+    """The initial state of a pin, and the inputs that act on it from t = 0 on.
+
+    Every number may also be text with a unit, such as "60 mm/s"; a bare number is SI.
+
+    Args:
+        mouse_velocity: v_p, the velocity at which the plate passes under the mouse, m/s, up to 1e12
+            either way; constant, or a `Profile` without steps, whose acceleration acts on the pin.
+        displacement: x(0), deflection from the spring's rest, m, up to 1e12 either way.
+        velocity: x'(0), m/s, up to 1e12 either way; None: the plate's, as for a pin that was
+            carried.
+        plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
+        skin_stretch: stretch of a compliant finger that grips at the start, m, up to 1e12 either
+            way; None: the stretch of a finger being slid along or, for a pin at rest, none.
+
+    Raises:
+        ValueError: a value is no number or out of its range, or the mouse velocity has a step.
+    """
+
+    mouse_velocity: float | Profile
+    displacement: float
+    velocity: float | None
+    plate_load: float | Profile
+    skin_stretch: float | None
+
+    def __init__(
+        self,
+        mouse_velocity: float | str | Profile,
+        displacement: float | str = 0.0,
+        velocity: float | str | None = None,
+        plate_load: float | str | Profile = 1.0,
+        skin_stretch: float | str | None = None,
+    ) -> None:
+        """Validate, and keep plain floats."""
+        put = object.__setattr__
+        put(self, "mouse_velocity", _input("mouse_velocity", mouse_velocity))
+        put(self, "displacement", check("displacement", displacement))
+        put(self, "velocity", None if velocity is None else check("velocity", velocity))
+        put(self, "plate_load", _input("plate_load", plate_load))
+        stretch = None if skin_stretch is None else check("skin_stretch", skin_stretch)
+        put(self, "skin_stretch", stretch)
+
+    @property
+    def initial_velocity(self) -> float:
+        """x'(0), m/s: the one that was given, or the plate's."""
+        if self.velocity is not None:
+            return self.velocity
+        given = self.mouse_velocity
+        return given(0.0) if isinstance(given, Profile) else given
+
+
+def _input(name: str, given: float | str | Profile) -> float | Profile:
+    """A constant or a profile, each value of it checked."""
+    if not isinstance(given, Profile):
+        return check(name, given)
+    bounds, limits = QUANTITIES[name].bounds, QUANTITIES[name].limits
+    if name == "mouse_velocity":
+        check_continuous(given, "m/s")
+    if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
+        for i, y in enumerate(given.values):
+            check(name, y, label=f"{name} values[{i}]")
+    return given
+
+
+def check_fits(drive: Drive, release: Release) -> None:
+    """Refuse a drive and a release that the core cannot follow together.
+
+    Raises:
+        ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
+            hold; a friction curve at a compliant finger, or at a plate whose load changes.
+    """
+    if not isinstance(drive, Drive):
+        raise ValueError(refusal("drive", "a Drive", repr(drive)))
+    if not isinstance(release, Release):
+        raise ValueError(refusal("release", "a Release", repr(release)))
+    if not drive.plate.rigid:
+        raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
+    check_skin(drive.finger)
+    check_load(drive.plate, release.plate_load)
+    if release.skin_stretch is not None:
+        check_stretch(release.skin_stretch, drive.finger)
+
+
+def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:
+    """A drive, a release and a duration (s; None: until the ending is seen) as the core has it."""
+    plate, finger = drive.plate, drive.finger
+    return (
+        drive.mass,
+        drive.stiffness,
+        drive.damping,
+        (plate.kinetic, plate.static_friction, plate.stiffness, plate.curve or ()),
+        (finger.kinetic, finger.static_friction, finger.stiffness, finger.curve or ()),
+        _rows(release.mouse_velocity),
+        _rows(release.plate_load),
+        release.displacement,
+        release.initial_velocity,
+        nan if release.skin_stretch is None else release.skin_stretch,
+        inf if duration is None else duration,
+    )
+
+
+def _rows(given: float | Profile) -> Rows:
+    """An input as rows (time, value): one row is a constant."""
+    if not isinstance(given, Profile):
+        return [(0.0, given)]
+    return list(given.rows) if given.changes else [(0.0, given.values[0])]

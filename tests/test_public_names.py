@@ -1,0 +1,50 @@
+"""What `import pindrive` offers: reachable, documented, and with examples that run."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+from types import FunctionType
+
+import pytest
+
+import pindrive as pd
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+FUNCTIONS = [name for name in pd.__all__ if isinstance(getattr(pd, name), FunctionType)]
+WITH_EXAMPLES = ["Study", "load_device", "load_study", "local_sensitivity", "robustness"]
+WITH_EXAMPLES += ["scan", "sobol"]
+
+
+def test_completion_offers_the_public_names() -> None:
+    assert dir(pd) == sorted(pd.__all__)
+    named = {"load_device", "scan", "Study", "sobol", "robustness", "local_sensitivity"}
+    assert named < {*dir(pd)}
+
+
+def test_the_package_is_imported_without_its_modules() -> None:
+    script = "import sys, pindrive; print([m for m in sys.modules if m.startswith('pindrive.')])"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_say_arguments_results_and_errors(name: str) -> None:
+    words = inspect.getdoc(getattr(pd, name)) or ""
+    for part in ("Args:", "Returns:", "Raises:"):
+        assert part in words, part
+    for argument in inspect.signature(getattr(pd, name)).parameters:
+        assert argument in words, argument
+
+
+@pytest.mark.parametrize("name", WITH_EXAMPLES)
+def test_the_examples_of_the_documentation_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(EXAMPLES)
+    (example,) = doctest.DocTestFinder(recurse=False).find(getattr(pd, name), name, globs={})
+    assert example.examples
+    said: list[str] = []
+    result = doctest.DocTestRunner().run(example, out=said.append)
+    assert not result.failed, "".join(said)
