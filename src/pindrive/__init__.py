@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
     from pindrive.motion.release import Release
     from pindrive.motion.simulate import simulate
+    from pindrive.quantities.status import Status
     from pindrive.quantities.table import ImplausibleValueWarning
     from pindrive.study.robustness import robustness
     from pindrive.study.sensitivity import local_sensitivity, sobol
@@ -35,6 +36,7 @@ __all__ = [
     "Release",
     "Scan",
     "Scene",
+    "Status",
     "Study",
     "__version__",
     "load_device",
@@ -59,6 +61,7 @@ _HOME = {
     "Release": "pindrive.motion.release",
     "Scan": "pindrive.device.scanning",
     "Scene": "pindrive.device.page",
+    "Status": "pindrive.quantities.status",
     "Study": "pindrive.study.study",
     "load_device": "pindrive.files.device",
     "load_study": "pindrive.study.study",

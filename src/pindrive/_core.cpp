@@ -367,4 +367,10 @@ NB_MODULE(_core, m) {
   bind_batch(m);
   m.attr("settling_band") = pd::settling_band;
   m.attr("event_limit") = pd::event_limit;
+  nb::dict statuses;  // Status in quantities/status.py
+  statuses["ok"] = static_cast<int>(pd::Status::ok);
+  statuses["too_many_events"] = static_cast<int>(pd::Status::too_many_events);
+  statuses["standstill"] = static_cast<int>(pd::Status::standstill);
+  statuses["stopped"] = static_cast<int>(pd::Status::stopped);
+  m.attr("statuses") = statuses;
 }

@@ -107,3 +107,5 @@ def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(devic
 settling_band: float = 0.05
 
 event_limit: int = 1000000
+
+statuses: dict = ...

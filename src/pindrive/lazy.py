@@ -28,6 +28,7 @@ __all__ = [
     "qmc",
     "rich_console",
     "rich_progress",
+    "signal",
     "special",
     "stats",
     "xr",
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib import ft2font
     from PIL import Image, ImageDraw, ImageFont, ImageOps, features
-    from scipy import optimize, special, stats
+    from scipy import optimize, signal, special, stats
     from scipy.stats import qmc
 else:
 
@@ -73,6 +74,7 @@ else:
     rich_console = _Module("rich.console")
     rich_progress = _Module("rich.progress")
     optimize = _Module("scipy.optimize")
+    signal = _Module("scipy.signal")
     special = _Module("scipy.special")
     stats = _Module("scipy.stats")
     qmc = _Module("scipy.stats.qmc")

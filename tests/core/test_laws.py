@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drives import Case, cases
-from pindrive import Contact, Drive, Motion, Release
+from pindrive import Contact, Drive, Motion, Release, Status
 
 Run = tuple[list[tuple[float, str, str]], np.ndarray, np.ndarray]
 
@@ -140,7 +140,7 @@ def test_left_and_right_limits_agree_in_position_and_velocity(case: Case) -> Non
 @given(cases())
 def test_every_motion_without_a_duration_knows_its_ending(case: Case) -> None:
     motion = case.run()
-    assert motion.status == "ok"
+    assert motion.status == Status.ok
     assert motion.ending.kind != "moving"
     assert motion.transient.settled or motion.release.displacement == motion.ending.position
     assert motion.duration < inf

@@ -16,7 +16,7 @@ from hypothesis import given
 from numpy.typing import NDArray
 
 from drives import Case, cases
-from pindrive import Contact, Drive, Motion, Release, _core, simulate, simulate_batch
+from pindrive import Contact, Drive, Motion, Release, Status, _core, simulate, simulate_batch
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 
 ENDINGS = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
@@ -101,7 +101,7 @@ def assert_same(point: xr.Dataset, motion: Motion) -> None:
     assert {k: point[v].item() for k, v in NUMBERS.items()} == pytest.approx(
         {k: numbers[k] for k in NUMBERS}, rel=0.0, abs=0.0, nan_ok=True
     )
-    assert meaning(point.status) == motion.status == "ok"
+    assert point.status == motion.status == Status.ok
     told = meaning(point.ending)
     if motion.ending.kind == "steady":
         assert told == str(motion.ending.cycle).replace("-", "_").replace(" ", "_")
@@ -120,7 +120,7 @@ def test_every_number_is_that_of_simulate_to_the_bit() -> None:
     endings = set()
     for i in range(400):
         motion = alone({name: float(values[i]) for name, values in points.items()})
-        if motion.status == "ok":
+        if motion.status == Status.ok:
             one = batch.isel(dim_0=i)
             endings.add(meaning(one.ending))
             if "duration" in one.coords and one.duration == inf:
@@ -138,7 +138,7 @@ def test_the_ledger_of_energies_is_there_when_asked_for_and_closes() -> None:
     names = {q.name: q.name.replace(".", "_") for q in ENERGY}
     for i in range(200):
         motion = alone({name: float(values[i]) for name, values in points.items()})
-        if motion.status == "ok":
+        if motion.status == Status.ok:
             numbers, one = motion.numbers(), batch.isel(dim_0=i)
             assert {k: one[v].item() for k, v in names.items()} == {k: numbers[k] for k in names}
     terms = [batch[v] for v in names.values() if v != "energy_residual"]

@@ -10,7 +10,7 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
+from pindrive import Contact, Drive, Profile, Release, Status, simulate, simulate_batch
 
 DRIVE = Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005))
 STOP = Profile([0.0, 0.1], [0.06, 0.0])
@@ -141,10 +141,8 @@ def test_a_batch_varies_a_base() -> None:
 def test_a_batch_varies_the_load_and_marks_one_that_is_bad() -> None:
     loads = [0.0, 1.0, 3.0, -1.0, nan]
     batch = simulate_batch(DRIVE, Release(STOP), mouse_velocity=0.06, plate_load=loads)
-    meanings = batch.status.attrs["flag_meanings"].split()
-    flags = batch.status.attrs["flag_values"].tolist()
-    told = [meanings[flags.index(status)] for status in batch.status]
-    assert told == ["ok", "ok", "ok", "bad_plate_load", "bad_plate_load"]
+    bad = Status.bad_plate_load
+    assert batch.status.values.tolist() == [Status.ok, Status.ok, Status.ok, bad, bad]
     for i, load in enumerate(loads[:3]):
         alone = simulate(DRIVE, Release(0.06, plate_load=load))
         assert batch.transient_finger_dissipated[i] == alone.transient.finger.dissipated

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 from command import EXAMPLE, GOOD, refused, run
-from pindrive import Contact, Drive, Release, simulate, simulate_batch
+from pindrive import Contact, Drive, Release, Status, simulate, simulate_batch
 from pindrive.files.device import load_device, motion_of
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import influence
@@ -68,8 +68,7 @@ def test_many_points_have_the_band_of_each() -> None:
         assert found.duration.values.tolist() == [motion.duration for motion in motions]
         assert found.settling_band.attrs["symbol"] == "ε"
     bad = simulate_batch(drive, Release(0.06), settling_band=[0.0, 0.5, 1.5, np.nan])
-    meanings = bad.status.attrs["flag_meanings"].split()
-    assert [meanings[i] for i in bad.status.values] == [
+    assert [Status(code).name for code in bad.status.values] == [
         "bad_settling_band", "ok", "bad_settling_band", "bad_settling_band",
     ]  # fmt: skip
 

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from command import run
-from pindrive import Contact, Drive, Profile, Release, simulate
+from pindrive import Contact, Drive, Profile, Release, Status, simulate
 from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, strokes
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.perception import judge
@@ -236,7 +236,7 @@ def test_switchings_and_rows_are_counted_pin_by_pin(monkeypatch: pytest.MonkeyPa
 def test_a_fine_pull_is_refused_and_not_made(monkeypatch: pytest.MonkeyPatch) -> None:
     fine = replace(device(), magnet=Electromagnet(deviation=1e-8))
     path = strokes([(0.0005, 0.004), (0.0095, 0.004)], 0.1)
-    assert scan(fine, tall(), path).pins[0].motion.status == "ok"
+    assert scan(fine, tall(), path).pins[0].motion.status == Status.ok
     monkeypatch.setattr(budgets, "INPUT_ROWS", replace(budgets.INPUT_ROWS, most=20_000))
     with pytest.raises(ValueError, match=r"over all pins, must be at most 20000, got \d+ \("):
         scan(fine, tall(), path)

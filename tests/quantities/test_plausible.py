@@ -19,6 +19,7 @@ from pindrive import (
     Motion,
     Profile,
     Release,
+    Status,
     simulate,
     simulate_batch,
 )
@@ -56,7 +57,7 @@ def test_the_corners_of_the_bounds_are_computed(mass: float, stiffness: float) -
         period = 6.3 * (mass / stiffness) ** 0.5
         duration = min(max(30.0 * period, 1e-12), 1e12)
         motion = simulate(drive, Release(speed, -speed), duration=duration)
-        assert motion.status == "ok"
+        assert motion.status == Status.ok
         assert motion.certificate().motion_law < 1e-12
         assert motion.certificate().friction_law < 1e-12
         assert isfinite(motion.energy.residual)

@@ -19,7 +19,7 @@ from PIL import Image
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
-from pindrive import Contact, Drive
+from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
@@ -30,7 +30,6 @@ from pindrive.files.output import OutputError
 from pindrive.files.template import NUMBERS
 from pindrive.plot.sensitivity import plot_influence
 from pindrive.plot.slices import plot_study
-from pindrive.study.design import flags
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate
 from pindrive.study.outputs import SCAN_OUTPUTS
@@ -42,7 +41,7 @@ from pindrive.study.study import load_study
 from scan_studies import COILED, DEVICE, GRATING, study, swept
 
 AROUND = ("control", "array", "scan", "judge")
-REFUSED = flags("status").index("refused")
+REFUSED = Status.refused
 
 
 @pytest.fixture(autouse=True)

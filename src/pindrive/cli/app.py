@@ -122,7 +122,20 @@ def init(
 
 @app.command()
 def check(file: DeviceArgument) -> None:
-    """Say what is wrong with a device file, or what it describes."""
+    """Say what is wrong with a device file, or what it describes; or what a recording (CSV) is.
+
+    Of a recording of the hand: its rate and resolution, and its peak speed before and after
+    smoothing.
+    """
+    if file.suffix.lower() == ".csv":
+        from pindrive.cli.tables import path_words
+        from pindrive.device.recording import read_csv
+
+        with refusing():
+            path = read_csv(file)
+        for line in (path.about, path_words(path, 0.0)):
+            typer.echo(line)
+        return
     from pindrive.files.device import load_device
 
     with refusing():
@@ -186,7 +199,7 @@ def simulate(
             to_json = Output(json, MOTION_JSON, "--json")
             wanted.append((to_json, lambda m, part: export.write_json(m, device, part)))
         budgets.MOTION_SAMPLES.check(samples, where="--samples")
-        with writing([output for output, _ in wanted], [file]) as parts:
+        with writing([output for output, _ in wanted], device.inputs) as parts:
             motion = motion_of(device)
             for output, write in wanted:
                 with naming(output.path):
@@ -194,6 +207,8 @@ def simulate(
     from pindrive.cli.tables import motion_report, show
 
     show(motion_report(motion))
+    if device.recording_words:
+        typer.echo(device.recording_words)
     for output, _ in wanted:
         typer.echo(f"Wrote {output.path}")
 

@@ -268,9 +268,10 @@ def _say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
     """What becomes of the plate's friction coefficient, where the study changes it."""
     from pindrive.study.validation import coefficient_words
 
-    words = coefficient_words(plan, tolerances=tolerances)
-    if words:
-        typer.echo(words, err=words.startswith("warning: "))
+    found = coefficient_words(plan, tolerances=tolerances)
+    if found:
+        words, doubtful = found
+        typer.echo(f"warning: {words}" if doubtful else words, err=doubtful)
 
 
 def _answered(

@@ -16,7 +16,7 @@ from pindrive.files import template
 from pindrive.files.device import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
-from pindrive.study.design import flags
+from pindrive.quantities.status import Status
 from pindrive.study.distributions import base_value
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.refusals import why
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from pindrive.study.design import Plan
     from pindrive.study.local_sensitivity import Elasticities
-    from pindrive.study.refusals import Refusal
+    from pindrive.study.refusals import RefusedPoints
     from pindrive.study.robustness import Robustness, Share, WorstCase
     from pindrive.study.runner import Result
     from pindrive.study.sensitivity import Influence
@@ -89,8 +89,7 @@ def _statuses(done: Result) -> list[tuple[str, int, int]]:
             for flag, first, number in zip(*np.unique(part, True, False, True), strict=True):
                 before, place = found.get(int(flag), (0, begin * inner + int(first)))
                 found[int(flag)] = (before + int(number), place)
-    meanings = flags("status")
-    named = [(meanings[flag], *of) for flag, of in found.items() if flag]
+    named = [(Status(flag).name, *of) for flag, of in found.items() if flag]
     return sorted(named, key=lambda of: -of[1])
 
 
@@ -170,7 +169,7 @@ def _notes(found: Influence) -> list[str]:
     return lines
 
 
-def _refused(found: Sequence[Refusal], of: int, what: str) -> list[str]:
+def _refused(found: Sequence[RefusedPoints], of: int, what: str) -> list[str]:
     """How many cannot exist and are left out, and why."""
     if not found:
         return []

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.device.device import Device
+    from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
@@ -81,17 +82,25 @@ def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
 
 def _words(scan: Scan) -> list[str]:
     device, path = scan.device, scan.path
-    largest, _ = path.angles(device.array.axis)
-    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
     worst = max(pin.motion.certificate().worst for pin in scan.pins)
     doubt = "" if worst <= TRUSTED else " Do not trust this scan."
     return [
-        f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
-        f"{degrees(largest):.3g} deg off the drive axis.",
+        path_words(path, device.array.axis),
+        *([path.about] if path.about else []),
         *gap_words(scan),
         *device_words(device),
         f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
     ]
+
+
+def path_words(path: HandPath, axis: float) -> str:
+    """How long the hand moves, how fast, and how far off the drive axis (rad)."""
+    largest, _ = path.angles(axis)
+    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
+    return (
+        f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
+        f"{degrees(largest):.3g} deg off the drive axis."
+    )
 
 
 def device_words(device: Device) -> list[str]:
@@ -197,6 +206,7 @@ def device_report(device: DeviceFile) -> RenderableType:
         lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
     elif not drive.plate.frictionless:
         lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
+    lines += [device.recording_words] if device.recording_words else []
     return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
 
 
@@ -212,8 +222,8 @@ def regime(damping_ratio: float) -> str:
 def motion_report(motion: Motion) -> RenderableType:
     """Phases, numbers, and how the motion ends."""
     words = [ending(motion), trust(motion)]
-    if motion.status != "ok":
-        words.append(f"The simulation {motion.status}.")
+    if motion.status:
+        words.append(f"The simulation {motion.status.explanation}.")
     lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
     return Group(_phases(motion), _numbers(motion), *lines)
 
@@ -292,6 +302,10 @@ def _add_rows(table: Table, name: str, rows: Rows, key: str) -> None:
     quantity = QUANTITIES[name]
     across = QUANTITIES[COLUMNS[quantity.rows_of][0]]
     for i, (place, value) in enumerate(rows):
+        if HEAD <= i < len(rows) - TAIL:
+            if i == HEAD:
+                table.add_row("...", "", "", "", counted(len(rows) - HEAD - TAIL, "more row"))
+            continue
         at = f"at {across.written(place)}"
         table.add_row(
             "" if i else key,

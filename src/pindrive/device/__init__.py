@@ -11,10 +11,11 @@ if TYPE_CHECKING:
     from pindrive.device.controller import Commands, ControlBlock, Decision
     from pindrive.device.device import Device
     from pindrive.device.electromagnet import CoilState, Current, Electromagnet
-    from pindrive.device.hand import HandPath, lines, read_csv, strokes, through
+    from pindrive.device.hand import HandPath, lines, strokes
     from pindrive.device.page import Scene
     from pindrive.device.pin_array import PinArray
     from pindrive.device.reading import Page, Reading
+    from pindrive.device.recording import Recording, read_csv, through
     from pindrive.device.scanning import PinScan, PinState, Scan, scan
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "PinScan",
     "PinState",
     "Reading",
+    "Recording",
     "Scan",
     "Scene",
     "lines",
@@ -58,12 +60,13 @@ __getattr__, __dir__ = attach(
         "PinScan": "pindrive.device.scanning",
         "PinState": "pindrive.device.scanning",
         "Reading": "pindrive.device.reading",
+        "Recording": "pindrive.device.recording",
         "Scan": "pindrive.device.scanning",
         "Scene": "pindrive.device.page",
         "lines": "pindrive.device.hand",
-        "read_csv": "pindrive.device.hand",
+        "read_csv": "pindrive.device.recording",
         "scan": "pindrive.device.scanning",
         "strokes": "pindrive.device.hand",
-        "through": "pindrive.device.hand",
+        "through": "pindrive.device.recording",
     },
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import pi
 from typing import Final
 
@@ -14,7 +14,7 @@ COPPER: Final = 1 / 58e6
 """Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class Coil:
     """An electromagnet with two poles on a steel plate, by how it is made.
 
@@ -46,15 +46,37 @@ class Coil:
     wire_diameter: float
     turn_length: float
     supply_voltage: float
-    release_resistance: float = 0.0
-    saturation_field: float = 1.6
-    thermal_resistance: float = 430.0
-    temperature_rise: float = 20.0
+    release_resistance: float
+    saturation_field: float
+    thermal_resistance: float
+    temperature_rise: float
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        turns: float | str,
+        pole_area: float | str,
+        gap: float | str,
+        wire_diameter: float | str,
+        turn_length: float | str,
+        supply_voltage: float | str,
+        release_resistance: float | str = 0.0,
+        saturation_field: float | str = 1.6,
+        thermal_resistance: float | str = 430.0,
+        temperature_rise: float | str = 20.0,
+    ) -> None:
         """Validate, and keep plain floats."""
-        for field in fields(self):
-            object.__setattr__(self, field.name, check(field.name, getattr(self, field.name)))
+        put = object.__setattr__
+        put(self, "turns", check("turns", turns))
+        put(self, "pole_area", check("pole_area", pole_area))
+        put(self, "gap", check("gap", gap))
+        put(self, "wire_diameter", check("wire_diameter", wire_diameter))
+        put(self, "turn_length", check("turn_length", turn_length))
+        put(self, "supply_voltage", check("supply_voltage", supply_voltage))
+        put(self, "release_resistance", check("release_resistance", release_resistance))
+        put(self, "saturation_field", check("saturation_field", saturation_field))
+        put(self, "thermal_resistance", check("thermal_resistance", thermal_resistance))
+        put(self, "temperature_rise", check("temperature_rise", temperature_rise))
         for name in ("resistance", "inductance", "current", "field", "power"):
             check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
 

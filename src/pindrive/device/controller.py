@@ -49,7 +49,7 @@ class Decision:
     """When it will be switched by what is decided already, s."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class ControlBlock:
     """A threshold with hysteresis, at a sample rate, with latency.
 
@@ -66,15 +66,25 @@ class ControlBlock:
         ValueError: a value is no number or out of its range.
     """
 
-    sample_rate: float = 1000.0
-    latency: float = 0.005
-    threshold: float = 0.5
-    hysteresis: float = 0.1
+    sample_rate: float
+    latency: float
+    threshold: float
+    hysteresis: float
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        sample_rate: float | str = 1000.0,
+        latency: float | str = 0.005,
+        threshold: float | str = 0.5,
+        hysteresis: float | str = 0.1,
+    ) -> None:
         """Validate, and keep plain floats."""
-        for name in ("sample_rate", "latency", "threshold", "hysteresis"):
-            object.__setattr__(self, name, check(name, getattr(self, name)))
+        put = object.__setattr__
+        put(self, "sample_rate", check("sample_rate", sample_rate))
+        put(self, "latency", check("latency", latency))
+        put(self, "threshold", check("threshold", threshold))
+        put(self, "hysteresis", check("hysteresis", hysteresis))
         check_band(self.threshold, self.hysteresis)
 
     def looks(self, begin: float, end: float) -> NDArray[np.float64]:

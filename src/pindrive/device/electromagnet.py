@@ -8,7 +8,7 @@ h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from math import exp, log, sqrt
 from typing import TYPE_CHECKING, Final, overload
@@ -30,9 +30,11 @@ AT_ONCE: Final = 0.01
 part of its deviation."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, init=False)
 class Electromagnet:
     """What an electromagnet does to the plate.
+
+    Every number may also be text with a unit, such as "5 ms"; a bare number is SI.
 
     Args:
         hold_force: P_h, pull at full current, N, greater than 0.
@@ -48,34 +50,50 @@ class Electromagnet:
         ValueError: a value is no number or out of its range.
     """
 
-    hold_force: float = 1.0
-    rise_constant: float = 0.001
-    fall_constant: float = 0.004
-    saturation: float = 1.0
-    residual: float = 0.0
-    pressing: float | None = None
-    deviation: float = 1e-4
-    coil: Coil | None = None
+    hold_force: float
+    rise_constant: float
+    fall_constant: float
+    saturation: float
+    residual: float
+    pressing: float | None
+    deviation: float
+    coil: Coil | None
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        hold_force: float | str = 1.0,
+        rise_constant: float | str = 0.001,
+        fall_constant: float | str = 0.004,
+        saturation: float | str = 1.0,
+        residual: float | str = 0.0,
+        pressing: float | str | None = None,
+        deviation: float | str = 1e-4,
+        coil: Coil | None = None,
+    ) -> None:
         """Validate, and keep plain floats."""
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name != "coil" and value is not None:
-                object.__setattr__(self, field.name, check(field.name, value))
+        put = object.__setattr__
+        put(self, "hold_force", check("hold_force", hold_force))
+        put(self, "rise_constant", check("rise_constant", rise_constant))
+        put(self, "fall_constant", check("fall_constant", fall_constant))
+        put(self, "saturation", check("saturation", saturation))
+        put(self, "residual", check("residual", residual))
+        put(self, "pressing", None if pressing is None else check("pressing", pressing))
+        put(self, "deviation", check("deviation", deviation))
+        put(self, "coil", coil)
         check_residual(self.residual, self.hold_force)
 
     @classmethod
     def from_times(
         cls,
         *,
-        hold_force: float = 1.0,
-        rise_time: float = 0.003,
-        fall_time: float = 0.005,
-        saturation: float = 1.0,
-        residual: float = 0.0,
-        pressing: float | None = None,
-        deviation: float = 1e-4,
+        hold_force: float | str = 1.0,
+        rise_time: float | str = 0.003,
+        fall_time: float | str = 0.005,
+        saturation: float | str = 1.0,
+        residual: float | str = 0.0,
+        pressing: float | str | None = None,
+        deviation: float | str = 1e-4,
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -108,9 +126,9 @@ class Electromagnet:
         cls,
         coil: Coil,
         *,
-        residual: float = 0.0,
-        pressing: float | None = None,
-        deviation: float = 1e-4,
+        residual: float | str = 0.0,
+        pressing: float | str | None = None,
+        deviation: float | str = 1e-4,
     ) -> Electromagnet:
         """An electromagnet by how it is made.
 

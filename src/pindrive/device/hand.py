@@ -1,14 +1,10 @@
-"""The hand's path over the page: strokes of minimum jerk, or a recorded CSV."""
+"""The hand's path over the page, and strokes of minimum jerk."""
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, cos, hypot, sin, sqrt
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -16,7 +12,6 @@ import numpy as np
 from pindrive.motion.drive import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, refusal
-from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,12 +26,13 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HandPath:
-    """Where the hand is over time. Made by `through`, `strokes`, `lines` or `read_csv`.
+    """Where the hand is over time. Made by `strokes`, `lines`, `through` or `read_csv`.
 
     Args:
         times: s, shape (n,), n >= 2, increasing.
         vx, vy: velocity on the page at these times, m/s, shape (n,); linear between them.
         start: place on the page at the first, m.
+        about: how it was recorded, for reports.
 
     Raises:
         ValueError: times do not increase, shapes differ, or a number is not finite.
@@ -47,9 +43,13 @@ class HandPath:
     vy: NDArray[np.float64]
     x: NDArray[np.float64]
     y: NDArray[np.float64]
+    about: str
 
-    def __init__(self, times: ArrayLike, vx: ArrayLike, vy: ArrayLike, start: Point) -> None:
+    def __init__(
+        self, times: ArrayLike, vx: ArrayLike, vy: ArrayLike, start: Point, about: str = ""
+    ) -> None:
         """Validate, and integrate."""
+        object.__setattr__(self, "about", about)
         columns = {
             name: np.array(column, np.float64)
             for name, column in (("times", times), ("vx", vx), ("vy", vy))
@@ -61,7 +61,7 @@ class HandPath:
                 raise ValueError(refusal(name, required, f"shape {column.shape}"))
             if not np.isfinite(column).all():
                 raise ValueError(refusal(name, "finite", f"{column[~np.isfinite(column)][0]!r}"))
-        _check_increasing(t)
+        check_increasing(t)
         x0, y0 = (check("hand.place", place, label="start") for place in start)
         lasts = np.diff(t)
         for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
@@ -152,18 +152,18 @@ class HandPath:
         times = np.concatenate([[begin], inner, [end]])
         vx, vy = self.velocity(times)
         x, y = self.position(begin)
-        return HandPath(times, vx, vy, (float(x), float(y)))
+        return HandPath(times, vx, vy, (float(x), float(y)), self.about)
 
 
 # ---- strokes -------------------------------------------------------------------------------------
 
 
 def strokes(
-    stops: Sequence[Point],
-    speeds: float | Sequence[float],
+    stops: Sequence[tuple[float | str, float | str]],
+    speeds: float | str | Sequence[float | str],
     *,
-    pause: float = 0.0,
-    deviation: float = 1e-4,
+    pause: float | str = 0.0,
+    deviation: float | str = 1e-4,
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -182,7 +182,7 @@ def strokes(
     """
     if len(stops) < 2:
         raise ValueError(refusal("stops", "at least two places", str(len(stops))))
-    peaks = [speeds] * (len(stops) - 1) if isinstance(speeds, (int, float)) else list(speeds)
+    peaks = [speeds] * (len(stops) - 1) if isinstance(speeds, (int, float, str)) else list(speeds)
     if len(peaks) != len(stops) - 1:
         raise ValueError(refusal("speeds", f"one or {len(stops) - 1}", str(len(peaks))))
     rest = check("pause", pause)
@@ -193,7 +193,8 @@ def strokes(
     shape = (s * s[::-1]) ** 2  # alike both ways, to the bit
     shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
     times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
-    for (x0, y0), (x1, y1), speed in zip(stops[:-1], stops[1:], peaks, strict=True):
+    places = [tuple(check("hand.place", at, label="stops") for at in stop) for stop in stops]
+    for (x0, y0), (x1, y1), speed in zip(places[:-1], places[1:], peaks, strict=True):
         dx, dy = (check("hand.place", way, label="stroke") for way in (x1 - x0, y1 - y0))
         length = check("stroke.length", hypot(dx, dy))
         lasts = PEAK * length / check("hand_speed", speed, label="speeds")
@@ -205,18 +206,20 @@ def strokes(
             times.append(np.array([begin + lasts + rest]))
             vx.append(np.zeros(1))
             vy.append(np.zeros(1))
-    return HandPath(np.concatenate(times), np.concatenate(vx), np.concatenate(vy), stops[0])
+    return HandPath(
+        np.concatenate(times), np.concatenate(vx), np.concatenate(vy), (places[0][0], places[0][1])
+    )
 
 
 def lines(
-    rows: Sequence[float],
-    left: float,
-    right: float,
+    rows: Sequence[float | str],
+    left: float | str,
+    right: float | str,
     *,
-    speed: float,
-    return_speed: float,
-    pause: float = 0.0,
-    deviation: float = 1e-4,
+    speed: float | str,
+    return_speed: float | str,
+    pause: float | str = 0.0,
+    deviation: float | str = 1e-4,
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 
@@ -239,74 +242,7 @@ def lines(
     return strokes(stops, speeds, pause=pause, deviation=deviation)
 
 
-# ---- recorded ------------------------------------------------------------------------------------
-
-
-def through(
-    t: ArrayLike,
-    x: ArrayLike,
-    y: ArrayLike,
-    *,
-    acceleration: float = 30.0,
-    where: str = "",
-    rows: Sequence[int] | None = None,
-) -> HandPath:
-    """A path along recorded places, with a velocity that does not jump.
-
-    Half-way in time between two places the hand has their mean velocity and is half-way between
-    them, exactly; at a place its velocity is the mean over both its neighbours. So it follows the
-    record without drift, and rounds its corners.
-
-    Args:
-        t: s, shape (n,), n >= 2, increasing.
-        x: m, shape (n,).
-        y: m, shape (n,).
-        acceleration: of the hand, m/s²; more is taken for a jump of its speed, and refused.
-        where: what the message names, a file.
-        rows: number of each row in that file.
-
-    Raises:
-        ValueError: too few places, times that do not increase, or a speed that jumps.
-    """
-    time, px, py = (np.array(column, np.float64) for column in (t, x, y))
-    if time.ndim != 1 or len(time) < 2 or not time.shape == px.shape == py.shape:
-        required = "columns of one length, at least 2"
-        given = f"{time.shape}, {px.shape} and {py.shape}"
-        raise ValueError(refusal("t, x and y", required, given, where))
-    at = [f"t[{i}]" for i in range(len(time))] if rows is None else [f"row {i}: t" for i in rows]
-    _check_increasing(time, at, where)
-    lasts = np.diff(time)
-    middles = time[:-1] + 0.5 * lasts
-    speeds = [np.diff(place) / lasts for place in (px, py)]
-    jump = np.hypot(*(np.diff(v) for v in speeds)) / np.diff(middles)
-    most = check("hand_acceleration", acceleration, label="acceleration")
-    if (jump > most).any():
-        i = int(np.argmax(jump))
-        before, after = (float(np.hypot(*(v[j] for v in speeds))) for j in (i, i + 1))
-        raise ValueError(
-            refusal(
-                at[i + 1].removesuffix(": t"),
-                f"without a jump of the hand's speed, a change of at most {most:g} m/s^2",
-                f"{jump[i]:.4g} m/s^2 at {time[i + 1]:g} s, where it moves at {1e3 * before:.4g} "
-                f"mm/s before and {1e3 * after:.4g} mm/s after",
-                where,
-            )
-        )
-    nodes = np.empty(2 * len(time) - 1)
-    nodes[::2], nodes[1::2] = time, middles
-    columns = []
-    for v in speeds:
-        column = np.empty_like(nodes)
-        column[1::2] = v
-        column[0], column[-1] = v[0], v[-1]
-        column[2:-1:2] = (lasts[:-1] * v[:-1] + lasts[1:] * v[1:]) / (lasts[:-1] + lasts[1:])
-        columns.append(column)
-    keep = np.append(True, np.diff(nodes) > 0.0)  # places too close in time for one between them
-    start = float(px[0]), float(py[0])
-    return HandPath(nodes[keep], columns[0][keep], columns[1][keep], start)
-
-
-def _check_increasing(
+def check_increasing(
     times: NDArray[np.float64], labels: Sequence[str] | None = None, where: str = ""
 ) -> None:
     """Refuse times that are not finite and increasing."""
@@ -318,94 +254,3 @@ def _check_increasing(
     label = f"times[{i}]" if labels is None else labels[i]
     required = f"greater than the one before, {float(times[i - 1])!r} s" if i else "finite"
     raise ValueError(refusal(label, required, f"{float(times[i])!r} s", where))
-
-
-COLUMNS: Final = {"t": ("hand.time", "s"), "x": ("hand.place", "m"), "y": ("hand.place", "m")}
-"""What a record holds, and the SI unit of it."""
-EXAMPLE: Final = "t [s], x [mm], y [mm]"
-
-_HEADING = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")
-
-
-def read_csv(path: str | PathLike[str], *, acceleration: float = 30.0) -> HandPath:
-    """A recorded path from a CSV whose header is like `t [s], x [mm], y [mm]`.
-
-    Args:
-        path: the file, UTF-8; columns apart by comma, semicolon or tab, in any order, others
-            ignored; empty lines and lines that begin with # are skipped.
-        acceleration: as for `through`.
-
-    Raises:
-        ValueError: the file cannot be read, the header lacks a column or a unit, a cell is no
-            number; or as for `through`. The message names file and row, as an editor counts them.
-    """
-    file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{file}: is not UTF-8 text, at byte {error.start}") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ValueError(f"{file}: cannot be read: {reason}") from None
-    written = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not written:
-        raise ValueError(f"{file}: is empty; a recorded path begins with {quoted(EXAMPLE)}")
-    head = written[0][1]
-    apart = max(",;\t", key=head.count)
-    scales = _scales(next(csv.reader([head], delimiter=apart)), str(file))
-    numbers: dict[str, list[float]] = {name: [] for name in COLUMNS}
-    for number, line in written[1:]:
-        cells = next(csv.reader([line], delimiter=apart))
-        for name, (index, scale) in scales.items():
-            cell = cells[index].strip() if index < len(cells) else ""
-            label, place = f"row {number}: {name}", str(file)
-            try:
-                value = float(cell) * scale
-            except ValueError:
-                raise ValueError(refusal(label, "a number", quoted(cell), place)) from None
-            quantity, _ = COLUMNS[name]
-            given = quoted(cell)
-            numbers[name].append(check(quantity, value, where=place, label=label, given=given))
-    if len(written) < 3:
-        raise ValueError(refusal("a recorded path", "at least 2 rows", len(written) - 1, str(file)))
-    return through(
-        numbers["t"],
-        numbers["x"],
-        numbers["y"],
-        acceleration=acceleration,
-        where=str(file),
-        rows=[number for number, _ in written[1:]],
-    )
-
-
-def _scales(headings: list[str], where: str) -> dict[str, tuple[int, float]]:
-    """Which column holds what, and how many SI units one of its numbers is."""
-    found: dict[str, tuple[int, float]] = {}
-    for index, heading in enumerate(headings):
-        match = _HEADING.fullmatch(heading)
-        name = (match["name"] if match else heading).strip().lower()
-        if name not in COLUMNS:
-            continue
-        _, unit = COLUMNS[name]
-        usual = next(part for part in EXAMPLE.split(", ") if part.startswith(name))
-        if name in found:
-            raise ValueError(refusal(f"column {name}", "given once", "it twice", where))
-        if match is None:
-            required = f"given with its unit, like {quoted(usual)}"
-            raise ValueError(refusal(f"column {name}", required, quoted(heading.strip()), where))
-        try:
-            found[name] = index, to_si(f"1 {match['unit']}", unit, f"1 {unit}")
-        except UnitError:
-            required = f"in {unit} or a unit alike, like {quoted(usual)}"
-            raise ValueError(
-                refusal(f"column {name}", required, quoted(heading.strip()), where)
-            ) from None
-    missing = [name for name in COLUMNS if name not in found]
-    if missing:
-        given = quoted(", ".join(heading.strip() for heading in headings))
-        raise ValueError(refusal("the header", f"like {quoted(EXAMPLE)}", given, where))
-    return found

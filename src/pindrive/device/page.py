@@ -100,14 +100,14 @@ class Scene:
         below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
         return np.where(inside, above * (1.0 - w) + below * w, 1.0)
 
-    def dark(self, threshold: float = 0.5) -> NDArray[np.bool_]:
+    def dark(self, threshold: float | str = 0.5) -> NDArray[np.bool_]:
         """Which pixels hold information: darker than the threshold, in [0, 1]."""
         return self.luminance < check("threshold", threshold)
 
     # ---- where scenes come from ------------------------------------------------------------------
 
     @classmethod
-    def from_image(cls, path: str | PathLike[str], pixel: float | None = None) -> Scene:
+    def from_image(cls, path: str | PathLike[str], pixel: float | str | None = None) -> Scene:
         """An image file of any kind that Pillow reads, turned as its EXIF data says.
 
         Args:
@@ -134,17 +134,17 @@ class Scene:
             raise ValueError(f"{file}: cannot be read: {error}") from None
         if pixel is None:
             pixel = _pixel_of(resolution, file)
-        return cls(values, pixel, title=file)
+        return cls(values, check("pixel", pixel), title=file)
 
     @classmethod
     def from_text(
         cls,
         text: str,
         *,
-        height: float = 0.010,
-        pixel: float = 1e-4,
-        margin: float = 0.005,
-        line_pitch: float | None = None,
+        height: float | str = 0.010,
+        pixel: float | str = 1e-4,
+        margin: float | str = 0.005,
+        line_pitch: float | str | None = None,
         font: str | PathLike[str] | None = None,
     ) -> Scene:
         """Text, black on white.
@@ -163,19 +163,20 @@ class Scene:
         """
         size, step = check("text_height", height), check("pixel", pixel)
         pitch = 2.0 * size if line_pitch is None else check("line_pitch", line_pitch)
-        values, middles = draw(text, size / step, pitch / step, margin / step, font)
+        white = check("margin", margin)
+        values, middles = draw(text, size / step, pitch / step, white / step, font)
         lines = tuple(middle * step for middle in middles)
         return cls(values, step, (0.0, 0.0), lines, title=in_words(text))
 
     @classmethod
     def from_grating(
         cls,
-        pitches: Iterable[float],
+        pitches: Iterable[float | str],
         *,
         count: int = 4,
-        height: float = 0.010,
-        pixel: float = 1e-4,
-        margin: float = 0.005,
+        height: float | str = 0.010,
+        pixel: float | str = 1e-4,
+        margin: float | str = 0.005,
     ) -> Scene:
         """Groups of upright black lines, each half as wide as its pitch.
 
@@ -193,18 +194,19 @@ class Scene:
         if not steps:
             raise ValueError(refusal("pitches", "at least one", "none"))
         size, count = check("pixel", pixel), check_whole(count, "count")
-        begins, ends, x = [], [], margin
+        white = check("margin", margin)
+        begins, ends, x = [], [], white
         for pitch in steps:
             begins += [x + i * pitch for i in range(count)]
             ends += [x + (i + 0.5) * pitch for i in range(count)]
-            x = ends[-1] + margin
-        across, down = x / size, (check("text_height", height) + 2.0 * margin) / size
+            x = ends[-1] + white
+        across, down = x / size, (check("text_height", height) + 2.0 * white) / size
         _check_size(across, down)
         columns, rows = max(1, round(across)), max(1, round(down))
         covered = _covered(size * np.arange(columns + 1), begins, ends)
         row = 1.0 - np.clip(covered / size, 0.0, 1.0)
         page = np.ones((rows, columns))
-        top = round(margin / size)
+        top = round(white / size)
         page[top : rows - top] = row
         page.flags.writeable = False
         words = ", ".join(f"{1e3 * pitch:g}" for pitch in steps)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Places = tuple[tuple[float, float], ...]
+    Place = tuple[float | str, float | str]
     Row = list[tuple[float, int]]
 
 PIN_DIAMETER: Final = QUANTITIES["pin_diameter"].default or 0.0
@@ -61,10 +62,10 @@ class PinArray:
 
     def __init__(
         self,
-        places: Iterable[tuple[float, float]] = ((0.0, 0.0),),
-        spots: Iterable[tuple[float, float]] | None = None,
-        axis: float = 0.0,
-        pin_diameter: float = PIN_DIAMETER,
+        places: Iterable[Place] = ((0.0, 0.0),),
+        spots: Iterable[Place] | None = None,
+        axis: float | str = 0.0,
+        pin_diameter: float | str = PIN_DIAMETER,
     ) -> None:
         """Validate, and keep tuples of plain floats."""
         stands = _pairs(places, "places")
@@ -84,11 +85,11 @@ class PinArray:
         cls,
         columns: float = 1,
         rows: float = 1,
-        pitch: float = 0.005,
+        pitch: float | str = 0.005,
         *,
-        spot_scale: float = 1.0,
-        axis: float = 0.0,
-        pin_diameter: float = PIN_DIAMETER,
+        spot_scale: float | str = 1.0,
+        axis: float | str = 0.0,
+        pin_diameter: float | str = PIN_DIAMETER,
     ) -> PinArray:
         """Pins in columns along the drive axis and rows across it, about the middle, row by row.
 
@@ -116,11 +117,11 @@ class PinArray:
     @classmethod
     def at(
         cls,
-        places: Iterable[tuple[float, float]],
+        places: Iterable[Place],
         *,
-        spot_scale: float = 1.0,
-        axis: float = 0.0,
-        pin_diameter: float = PIN_DIAMETER,
+        spot_scale: float | str = 1.0,
+        axis: float | str = 0.0,
+        pin_diameter: float | str = PIN_DIAMETER,
     ) -> PinArray:
         """Pins at given places (m), their spots likewise, `spot_scale` times as far apart."""
         stands = _pairs(places, "places")
@@ -213,7 +214,7 @@ def check_apart(places: Places, *, where: str = "", label: str = "places") -> No
         seen[place] = i
 
 
-def _pairs(places: Iterable[tuple[float, float]], label: str) -> Places:
+def _pairs(places: Iterable[Place], label: str) -> Places:
     try:
         pairs = [(x, y) for x, y in places]
     except (TypeError, ValueError):
@@ -227,6 +228,6 @@ def _pairs(places: Iterable[tuple[float, float]], label: str) -> Places:
     )
 
 
-def _scaled(places: Iterable[tuple[float, float]], scale: float) -> Places:
+def _scaled(places: Iterable[tuple[float, float]], scale: float | str) -> Places:
     factor = check("spot_scale", scale)
     return tuple((factor * x, factor * y) for x, y in places)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.hand import HandPath, lines, read_csv
+from pindrive.device.hand import HandPath, lines
 from pindrive.device.page import Scene, in_words
+from pindrive.device.recording import CUTOFF, RESOLUTION, read_csv
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, refusal
 
@@ -41,6 +42,8 @@ class Reading:
         pixel: of the scene, m; None: of an image its own, of text and lines 0.1 mm.
         max_angle: between motion and drive axis before a warning, rad, from 0 to a right angle.
         hand_acceleration: m/s²; more in a record is a jump of its speed.
+        mouse_resolution: of a record in counts of a mouse, counts per m.
+        smoothing_cutoff: with which a raw record is smoothed, Hz.
         path_deviation: of the strokes' piecewise-linear speed, a part of its peak, in (0, 0.1].
 
     Raises:
@@ -55,6 +58,8 @@ class Reading:
     pixel: float | None = None
     max_angle: float = radians(20.0)
     hand_acceleration: float = 30.0
+    mouse_resolution: float = RESOLUTION
+    smoothing_cutoff: float = CUTOFF
     path_deviation: float = 1e-4
 
     def __post_init__(self) -> None:
@@ -90,7 +95,12 @@ class Reading:
 
     def record(self, file: str | PathLike[str]) -> HandPath:
         """A recorded path; errors as for `read_csv`."""
-        return read_csv(file, acceleration=self.hand_acceleration)
+        return read_csv(
+            file,
+            acceleration=self.hand_acceleration,
+            resolution=self.mouse_resolution,
+            cutoff=self.smoothing_cutoff,
+        )
 
     def strokes(self, scene: Scene, array: PinArray) -> HandPath:
         """Line by line over a scene, as far as every spot stays on it.
@@ -167,7 +177,7 @@ class Page:
         *,
         text: str | None = None,
         image: str | PathLike[str] | None = None,
-        grating: Iterable[float] | None = None,
+        grating: Iterable[float | str] | None = None,
         font: str | PathLike[str] | None = None,
         path: str | PathLike[str] | None = None,
     ) -> None:

@@ -35,6 +35,7 @@ from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ class PinScan:
         """The pin's motion, over the time since `begin`.
 
         Raises:
-            ValueError: the simulation had to be given up.
+            SimulationError: it had to be given up.
         """
         kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
         if "_motion" not in kept:
@@ -127,8 +128,8 @@ class PinScan:
 
     def _followed(self) -> Motion:
         motion = simulated(self.drive, self.release, duration=self.end - self.begin)
-        if motion.status != "ok":
-            raise ValueError(f"pin {self.number}: the simulation {motion.status}")
+        if motion.status != Status.ok:
+            raise SimulationError(f"pin {self.number}", motion.status)
         return motion
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
@@ -206,12 +207,7 @@ class Scan:
     def __repr__(self) -> str:
         """What was scanned, for how long, by how many pins, in a line."""
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
-        return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status}>"
-
-    @property
-    def status(self) -> str:
-        """Whether the simulation of every pin came to its end: "ok", as `scan` raises otherwise."""
-        return next((pin.motion.status for pin in self.pins if pin.motion.status != "ok"), "ok")
+        return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
 
     def evaluate(self, criteria: object = None) -> Any:
         """What the finger was shown against what is printed, line by line.
@@ -249,6 +245,11 @@ class Scan:
         return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
 
     @property
+    def status(self) -> Status:
+        """Whether all pins were followed to the scan's end: the largest of their codes."""
+        return max(pin.motion.status for pin in self.pins)
+
+    @property
     def smallest_gap(self) -> Gap | None:
         """The smallest of its gaps; None where no pin stands ahead of another."""
         return min(self.gaps, key=lambda gap: gap.size, default=None)
@@ -284,7 +285,7 @@ def scan(
     hand: HandPath | Reading | str | PathLike[str] | None = None,
     *,
     start: Sequence[PinState] | None = None,
-    max_angle: float | None = None,
+    max_angle: float | str | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Scan:
@@ -308,13 +309,13 @@ def scan(
 
     Raises:
         ValueError: the page or the recording cannot be read, a state is missing or cannot be,
-            `threads` is no count, there is more to do than `pindrive.quantities.budgets` allow, or
-            a simulation had to be given up.
+            `threads` is no count, or there is more to do than `pindrive.quantities.budgets` allow.
+        SimulationError: the simulation of a pin had to be given up.
 
     Examples:
         >>> import pindrive as pd
         >>> device = pd.load_device("tactile-reader.toml")
-        >>> scan = pd.scan(device, pd.Page(grating=[0.004]))
+        >>> scan = pd.scan(device, pd.Page(grating=["4 mm"]))
         >>> scan
         <Scan of lines every 4 mm by 16 pins in 1.18438 s, ok>
         >>> scan.evaluate().counts["judged.shown"]

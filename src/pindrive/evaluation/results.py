@@ -11,6 +11,7 @@ import numpy as np
 from pindrive import lazy
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
@@ -158,7 +159,7 @@ class Judgement:
         return f"<Judgement of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
 
     @property
-    def status(self) -> str:
+    def status(self) -> Status:
         """That of the scan."""
         return self.scan.status
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from pindrive.files.ratios import keep_ratios
 from pindrive.files.ratios import written as as_text
+from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
     Value,
@@ -123,6 +124,16 @@ class DeviceFile:
         """What counts as felt."""
         return self._whole.criteria()
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return self.path, *files_named(self.tables, self.path.parent).values()
+
+    @property
+    def recording_words(self) -> str:
+        """What the recording is that gives the mouse velocity, and its smoothing; empty: none."""
+        return recording_words(self.tables, self.path.parent)
+
     def with_whole(self) -> DeviceFile:
         """The same with `whole`, also of a file without a table of it."""
         return device_of(self.path, self.tables, whole=True)
@@ -166,7 +177,8 @@ def load_device(
         path: a TOML file; `pindrive init FILE` writes one.
         overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
             text has a unit. A key is given in full (plate.kinetic=30 mN) or by its last part where
-            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]).
+            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]) or a
+            CSV of them (mouse_velocity=speed.csv); a path is relative to the current folder.
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
             a value that is set keeps its ratio to it unless it is set too: static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
@@ -222,7 +234,9 @@ def device_of(
     hand = whole and "mouse_velocity" not in tables["motion"]
     left_out = {"motion.mouse_velocity"} if hand else set()
     names = TABLES if whole else ALONE
-    values, found = read_values(tables, names, place, meant | left_out)
+    read, unread = with_files_read(_copied(tables), file.parent, place)
+    values, found = read_values(read, names, place, meant | left_out)
+    found = [*unread, *found]
     if hand:  # a single release is at the hand's speed then
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
     found += contact_problems(values, place)
@@ -344,7 +358,9 @@ def settings_of(
             problems.append(f"--set {quoted(override)}: must be key=value")
             continue
         keys = keys_meant(given)
-        if len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
+        if len(keys) == 1 and is_file(keys[0], text):
+            value = str(Path(text).absolute())
+        elif len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
             try:
                 value = _rows_as_toml(text)
             except (ValueError, RecursionError) as error:
@@ -359,6 +375,8 @@ def _setting(given: str, value: object) -> Setting:
     keys = keys_meant(given)
     if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
         value = as_text(keys[0], float(value))
+    elif len(keys) == 1 and is_file(keys[0], value):
+        value = str(Path(str(value)).absolute())
     return Setting(given, value, f"overrides[{quoted(given)}]")
 
 

@@ -70,7 +70,7 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
             "description": device.description,
         },
         "config": device.values(),
-        "status": motion.status,
+        "status": motion.status.name,
         "inputs": inputs,
         "ending": {"kind": motion.ending.kind, "cycle": motion.ending.cycle},
         "numbers": numbers,

@@ -48,7 +48,7 @@ class Problems(list[str]):
         try:
             check(*values, where=self._place(*keys), label=keys[0])
         except ValueError as error:
-            self.append(str(error))
+            self.append(error.args[0])
 
 
 def read_values(
@@ -75,7 +75,7 @@ def read_values(
             try:
                 values[key] = read_value(tables[table][name], key, place(key))
             except ValueError as error:
-                problems.append(str(error))
+                problems.append(error.args[0])
         elif not quantity.mandatory or quantity.alternative.partition(".")[2] in tables[table]:
             values[key] = quantity.absent
         elif key not in meant and quantity.alternative not in meant:
@@ -90,7 +90,7 @@ def read_value(value: object, key: str, place: str) -> float | Rows:
         ValueError: it is malformed or out of the key's bounds.
     """
     quantity = NUMBERS[key]
-    if quantity.rows and (isinstance(value, list) or not quantity.may_be_constant):
+    if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
         return _rows(value, quantity, key, place)
     return number(value, quantity, usual(quantity), key, place)
 
@@ -108,6 +108,8 @@ def number(value: object, quantity: Quantity, example: str, label: str, place: s
 
 def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     """Rows in SI, each checked and in order; a mistake is said with its row, counted from 0."""
+    if isinstance(value, tuple):  # read from a file of their own, and checked there
+        return value
     across, along = (QUANTITIES[name] for name in COLUMNS[quantity.rows_of])
     words = [column.name.rpartition(".")[2] for column in (across, along)]
     examples = across.written(quantity.rows[-1][0]), quantity.written(quantity.rows[-1][1])

@@ -14,6 +14,7 @@ from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
+from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
 
 if TYPE_CHECKING:
@@ -60,14 +61,7 @@ _LEFT_OUT: Final = {"settling_band": _core.settling_band, "plate_load": 1.0} | d
     _INFINITE, inf
 )
 
-# In the order of `Status` and `End` in model.hpp.
-_FAILURES: Final = ("too_many_events", "standstill")
-_ENDINGS: Final = ("moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle")
-_BAD: Final = tuple(f"bad_{name}" for name in (*_ARGUMENTS, "damping_ratio", "phase"))
-_FLAGS: Final = {
-    "status": {meaning: flag for flag, meaning in enumerate(("ok", *_FAILURES, *_BAD))},
-    "ending": {meaning: flag for flag, meaning in enumerate(("unknown", *_ENDINGS), start=-1)},
-}
+_CODES: Final[dict[str, type[Status | End]]] = {"status": Status, "ending": End}
 
 
 def simulate_batch(
@@ -297,7 +291,7 @@ def _status(a: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]) -> NDA
 
     def mark(name: str, bad: NDArray[np.bool_]) -> None:
         if bad.any():
-            status[bad & (status == 0)] = _FLAGS["status"][f"bad_{name}"]
+            status[bad & (status == 0)] = Status[f"bad_{name}"]
 
     for name, quantity in _ARGUMENTS.items():
         bounds = POSITIVE_OR_RIGID if name in _INFINITE else quantity.bounds
@@ -326,13 +320,8 @@ def _attributes(name: str) -> dict[str, Any]:
     """Unit and meaning of an argument or a number, or the values and meanings of a flag."""
     if name == "events":
         return {"long_name": "changes at a contact; of a cycle, those of one round"}
-    if name in _FLAGS:
-        meanings = _FLAGS[name]
-        return {
-            "long_name": {"status": "what was wrong", "ending": "how the motion ends"}[name],
-            "flag_values": np.array([*meanings.values()], np.int8),
-            "flag_meanings": " ".join(meanings),
-        }
+    if name in _CODES:
+        return flag_attributes(_CODES[name])
     quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[name]
     attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
     return attributes | ({"units": quantity.unit} if quantity.unit else {})

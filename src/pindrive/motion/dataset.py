@@ -9,6 +9,7 @@ import numpy as np
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
@@ -73,12 +74,11 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
             value,
             {**attributes, "units": quantity.unit} if quantity.unit else attributes,
         )
+    data["status"] = ((), np.int8(motion.status), flag_attributes(Status))
+    data["ending"] = ((), np.int8(motion.ending.end), flag_attributes(End))
     origin: dict[str, Any] = {
         "title": "Motion of a tactile device's pin after release",
         "source": f"pindrive {__version__}",
-        "status": motion.status,
-        "ending": motion.ending.kind,
-        "cycle": motion.ending.cycle or "none",
         **_attributes(motion),
     }
     time = ("time", t, {"units": "s", "long_name": "time since the release"})

@@ -30,6 +30,7 @@ from pindrive.motion.results import (
     segments_of,
 )
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
@@ -194,20 +195,10 @@ class Motion:
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
         return segments_of(self._table)
 
-    @cached_property
-    def status(self) -> str:
-        """Either "ok", or what stopped the simulation and what to do about it."""
-        if self._core.status == 0:
-            return "ok"
-        if self._core.status == 2:
-            return (
-                f"stopped at t = {self._core.until:.6g} s: events pile up at one instant; change a "
-                "parameter by a little, and please report the drive"
-            )
-        return (
-            f"stopped after {_core.event_limit} events at t = {self._core.until:.6g} s: friction "
-            "and damping are too weak to end the motion; give a shorter duration"
-        )
+    @property
+    def status(self) -> Status:
+        """Whether the motion was followed to its end; `Status.explanation` says why not."""
+        return Status(self._core.status)
 
     # ---- the numbers -----------------------------------------------------------------------------
 
@@ -334,7 +325,7 @@ class Motion:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
         groups = {
             "transient": {**asdict(self.transient), "settled": self.transient.settled},
-            "ending": {k: v for k, v in asdict(self.ending).items() if k not in ("kind", "cycle")},
+            "ending": {k: v for k, v in asdict(self.ending).items() if k != "end"},
             "energy": asdict(self.energy),
         }
         return dict(flattened(groups))

@@ -8,6 +8,7 @@ from math import isnan
 from typing import TYPE_CHECKING, Any, Literal
 
 from pindrive import _core
+from pindrive.quantities.status import End
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -132,16 +133,17 @@ def _mode(plate: int, finger: int, still: bool) -> ModeName:
 EndKind = Literal["moving", "resting", "decaying", "steady"]
 Cycle = Literal["free", "grazing", "stick-slip", "limit cycle"]
 
-_ENDS: tuple[tuple[EndKind, Cycle | None], ...] = (
-    ("moving", None),
-    ("resting", None),
-    ("decaying", None),
-    ("steady", "free"),
-    ("steady", "grazing"),
-    ("steady", "stick-slip"),
-    ("steady", "limit cycle"),
-)
-"""In the order of `End` in model.hpp."""
+_KIND: dict[End, EndKind] = {
+    End.moving: "moving",
+    End.resting: "resting",
+    End.decaying: "decaying",
+}
+_CYCLE: dict[End, Cycle] = {
+    End.free: "free",
+    End.grazing: "grazing",
+    End.stick_slip: "stick-slip",
+    End.limit_cycle: "limit cycle",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,12 +208,8 @@ class Transient:
 class Ending:
     """How a motion ends."""
 
-    kind: EndKind
-    """`resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
-    oscillation or creep towards `position` without another event; `moving`: not known yet."""
-    cycle: Cycle | None
-    """Of a steady oscillation: `free` of any event, `grazing` the plate's velocity once a period,
-    `stick-slip`, or a `limit cycle` that falling friction sustains without a carried phase."""
+    end: End
+    """Which of all endings it is; `kind` and `cycle` follow from it."""
     position: float
     """Resting place, or middle of the final oscillation, m."""
     steady_since: float
@@ -221,13 +219,29 @@ class Ending:
     period: float
     """Of a steady oscillation, s."""
 
+    @property
+    def kind(self) -> EndKind:
+        """In which way it ends.
+
+        `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
+        oscillation or creep towards `position` without another event; `moving`: not known yet.
+        """
+        return _KIND.get(self.end, "steady")
+
+    @property
+    def cycle(self) -> Cycle | None:
+        """Of a steady oscillation, which it is.
+
+        `free` of any event, `grazing` the plate's velocity once a period, `stick-slip`, or a `limit
+        cycle` that falling friction sustains without a carried phase.
+        """
+        return _CYCLE.get(self.end)
+
     @classmethod
     def of(cls, core: _core.Motion, numbers: dict[str, float]) -> Ending:
         """The ending that the core found, with the numbers measured on the segments."""
-        kind, cycle = _ENDS[core.end]
         return cls(
-            kind,
-            cycle,
+            End(core.end),
             numbers["end_position"],
             core.steady_since,
             numbers["amplitude"],

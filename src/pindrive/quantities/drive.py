@@ -204,7 +204,8 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
         "motion",
-        remark="its sign is the direction; one value, or rows over time",
+        remark="its sign is the direction; one value, rows over time, or a CSV of them or of a "
+        "recorded hand",
         rows_of="profile",
         rows=((0.0, 0.060), (0.1, 0.0)),
         seen=_seen(0.0, 5.0),
@@ -221,7 +222,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "assumed: a magnet that held the pin with four times its weight releases it in 5 ms",
         "motion",
         absent=1.0,
-        remark="one value, or rows over time",
+        remark="one value, rows over time, or a CSV of them",
         example=1.0,
         rows_of="profile",
         rows=((0.0, 5.0), (0.005, 1.0)),

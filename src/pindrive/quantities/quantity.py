@@ -21,6 +21,7 @@ DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "rad": ("deg", degrees(1.0)),
     "A": ("mA", 1e3),
     "H": ("mH", 1e3),
+    "1/m": ("dpi", 0.0254),
 }
 """The unit in which a person reads each SI unit, and how many of it make one; others as is."""
 

@@ -26,9 +26,33 @@ DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
 
 
-def refusal(label: str, required: str, given: object, where: str = "") -> str:
+class Refusal(str):
+    """The words of a refused value, which know the quantity that they refuse."""
+
+    label: str
+    """What the message calls the quantity."""
+    said: str
+    """The words without the place where the value was written."""
+
+
+def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
-    return f"{where}: {label} must be {required}, got {given}".removeprefix(": ")
+    said = f"{label} must be {required}, got {given}"
+    words = Refusal(f"{where}: {said}" if where else said)
+    words.label, words.said = label, said
+    return words
+
+
+def told_by(error: Exception) -> Refusal | str:
+    """The first thing that an error tells, as it was made."""
+    told = getattr(error, "problems", error.args)
+    return told[0] if told and isinstance(told[0], str) else str(error)
+
+
+def refused_by(error: Exception) -> str:
+    """What an error refuses: the label of the quantity, or the kind of an error that has none."""
+    told = told_by(error)
+    return told.label if isinstance(told, Refusal) else type(error).__name__
 
 
 def check(

@@ -21,6 +21,7 @@ micro- = 1e-6 = µ- = μ- = u-
 nano- = 1e-9 = n-
 meter = [length] = m = metre
 inch = 0.0254 * meter = in
+dots_per_inch = 1 / inch = dpi
 gram = [mass] = g
 pound = 453.59237 * gram = lb
 second = [time] = s

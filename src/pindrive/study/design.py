@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
-from functools import cache
 from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,9 +12,6 @@ import numpy as np
 from pindrive.files.device import Setting, device_of
 from pindrive.files.ratios import written
 from pindrive.files.template import DRIVE, NUMBERS
-from pindrive.motion.batch import batched
-from pindrive.motion.drive import Contact, Drive
-from pindrive.motion.release import Release
 from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
 
 if TYPE_CHECKING:
@@ -98,7 +94,7 @@ class Plan:
     def inputs(self) -> tuple[Path, ...]:
         """The files that it was read from, or reads when it is computed."""
         page = self.page.page.files.values() if self.page else ()
-        return (self.path, self.device.path, *page)
+        return (self.path, *self.device.inputs, *page)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -179,12 +175,3 @@ def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
     """
     given = [Setting(key, written(key, value), "") for key, value in at.items()]
     return device_of(plan.device.path, plan.device.tables, given, whole=plan.page is not None)
-
-
-@cache
-def flags(name: str) -> tuple[str, ...]:
-    """What the values of `status`, from 0 on, and of `ending`, from -1 on, mean."""
-    drive = Drive(mass=1.0, stiffness=1.0, damping=1.0, plate=Contact(1.0), finger=Contact(1.0))
-    one = batched(drive, Release(1.0), {})
-    refused = ("refused",) if name == "status" else ()
-    return (*one[name].attrs["flag_meanings"].split(), *refused)

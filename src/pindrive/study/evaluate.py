@@ -14,7 +14,9 @@ from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
-from pindrive.study.design import flags, variable
+from pindrive.quantities.status import End, Status
+from pindrive.quantities.table import refused_by
+from pindrive.study.design import variable
 from pindrive.study.outputs import LEDGER, MEASURED
 
 if TYPE_CHECKING:
@@ -49,8 +51,8 @@ def evaluate(
         plan: whose device.
         columns: by the keys of device files, each of shape (count,), SI.
         count: how many points.
-        outputs: names of variables; `reason` among them is text: why a point cannot exist, or in
-            short which argument is bad, and empty where it exists.
+        outputs: names of variables; `reason` among them is text: what is refused of a point that
+            cannot exist, the same for points that are refused alike, and empty where it exists.
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
@@ -71,7 +73,7 @@ def evaluate(
         found = batched(device.drive, device.release, varied, energy=energy, threads=threads)
         table = {name: found[name].values for name in outputs if name != "reason"}
         if "reason" in outputs:
-            table["reason"] = _bad_arguments(found["status"].values)
+            table["reason"] = _refused(found["status"].values)
     return {name: table[name] for name in outputs}
 
 
@@ -111,9 +113,11 @@ def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     return given
 
 
-def _bad_arguments(status: NDArray[np.int8]) -> NDArray[Any]:
-    """Of each point which argument is bad, by its flag; empty where none is."""
-    names = np.array([name if name.startswith("bad_") else "" for name in flags("status")], object)
+def _refused(status: NDArray[np.int8]) -> NDArray[Any]:
+    """Of each point which argument is refused, by its status; empty where none is."""
+    names = np.full(max(Status) + 1, "", object)
+    for code in Status:
+        names[code] = "" if code.exists else code.name
     return names[status]
 
 
@@ -141,15 +145,12 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
     try:
         motion = _motion(given)
     except ValueError as error:
-        refused = {"status": flags("status").index("refused"), "ending": -1, "events": 0}
-        unsettled = {"transient_settled": False, "reason": str(error)}
+        refused = {"status": Status.refused, "ending": End.unknown, "events": 0}
+        unsettled = {"transient_settled": False, "reason": refused_by(error)}
         return dict.fromkeys(MEASURED, nan) | refused | unsettled
-    end = motion.ending
-    failures = {"ok": 0, "stopped after": 1, "stopped at": 2}
     return {name.replace(".", "_"): value for name, value in motion.numbers().items()} | {
-        "status": next(flag for text, flag in failures.items() if motion.status.startswith(text)),
-        "ending": flags("ending").index((end.cycle or end.kind).replace("-", "_").replace(" ", "_"))
-        - 1,
+        "status": motion.status,
+        "ending": motion.ending.end,
         "events": len(motion.events),
         "reason": "",
     }

@@ -12,6 +12,7 @@ from pindrive import lazy
 from pindrive.files.device import motion_of
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.study.design import variable
 from pindrive.study.distributions import base_value, exponents
 
@@ -40,18 +41,15 @@ class Elasticities:
     """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
     """Why, for each key with numbers that have no derivative."""
+    status: Status
+    """Of the motion of which they are the derivatives."""
     name: str = ""
     """Of the study."""
 
     def __repr__(self) -> str:
         """Of how many numbers and keys, in a line."""
         numbers, keys = counted(len(self.table), "number"), counted(len(self.keys), "key")
-        return f"<Elasticities of {numbers} to {keys}, {self.status}>"
-
-    @property
-    def status(self) -> str:
-        """Either "ok", or which keys have no derivatives and why."""
-        return "; ".join(f"{key}: {reason}" for key, reason in self.gaps.items()) or "ok"
+        return f"<Elasticities of {numbers} to {keys}, {self.status.name}>"
 
     def plot(self) -> Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
@@ -72,7 +70,7 @@ class Elasticities:
             "value": ("number", np.array([self.values[number] for number in numbers])),
         }
         coords = {"number": numbers, "key": [*self.keys]}
-        attributes = {"status": self.status, "duration": self.duration}
+        attributes = {"status": self.status.name, "duration": self.duration}
         return xr.Dataset(data, coords=coords, attrs=attributes)
 
 
@@ -118,7 +116,9 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, plan.name)
+    return Elasticities(
+        tuple(keys), numbers, table, motion.duration, gaps, motion.status, plan.name
+    )
 
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:

@@ -74,7 +74,12 @@ class StudyPage:
     def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
         """How the hand moves over it; errors as for `Page`."""
         if self.page.path:
-            return _recorded(self, self.page.path, reading.hand_acceleration)
+            hand = Reading(
+                hand_acceleration=reading.hand_acceleration,
+                mouse_resolution=reading.mouse_resolution,
+                smoothing_cutoff=reading.smoothing_cutoff,
+            )
+            return _recorded(self, self.page.path, hand)
         return self.page.hand(reading, scene, array)
 
 
@@ -128,5 +133,5 @@ def _scene(given: StudyPage, reading: Reading, array: PinArray) -> Scene:
 
 
 @lru_cache(maxsize=_KEPT)
-def _recorded(given: StudyPage, path: Path, acceleration: float) -> HandPath:
-    return Reading(hand_acceleration=acceleration).record(path)
+def _recorded(given: StudyPage, path: Path, reading: Reading) -> HandPath:
+    return reading.record(path)

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.files.device import motion_of
-from pindrive.study.design import device_at, flags
+from pindrive.quantities.status import Status
+from pindrive.quantities.table import Refusal, told_by
+from pindrive.study.design import device_at
 from pindrive.study.scans import judged_at
 
 if TYPE_CHECKING:
@@ -19,13 +21,11 @@ if TYPE_CHECKING:
 
     from pindrive.study.design import Columns, Plan
 
-_EXIST: Final = ("ok", "too_many_events", "standstill")
 _LONG_NUMBER: Final = re.compile(r"\d+\.\d{6,}(e[-+]?\d+)?")
-_NUMBER: Final = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
+class RefusedPoints:
     """Points that cannot exist for one reason."""
 
     count: int
@@ -35,25 +35,25 @@ class Refusal:
 
 def exist(status: NDArray[Any]) -> NDArray[np.bool_]:
     """Which points have a motion or a scan, by their `status`; it may have been stopped early."""
-    return np.isin(status, [flags("status").index(name) for name in _EXIST])
+    return np.asarray(status < Status.refused)
 
 
-def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[Refusal, ...]:
+def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[RefusedPoints, ...]:
     """The points that cannot exist, by reason, most first.
 
     Args:
         plan: the study.
         columns: the values of the varied keys at the points, SI.
-        reasons: of each point, as `evaluate` gives them; empty where it exists.
+        reasons: of each point what is refused, as `evaluate` gives it; empty where it exists.
     """
     alike: dict[str, list[int]] = {}
     for i in np.flatnonzero(reasons != ""):
-        alike.setdefault(_NUMBER.sub("", str(reasons[i])), []).append(int(i))
+        alike.setdefault(str(reasons[i]), []).append(int(i))
     found = []
-    for points in alike.values():
+    for reason, points in alike.items():
         first = points[0]
         at = {key: float(np.broadcast_to(x, reasons.shape)[first]) for key, x in columns.items()}
-        found.append(Refusal(len(points), why(plan, at) or str(reasons[first])))
+        found.append(RefusedPoints(len(points), why(plan, at) or reason))
     return tuple(sorted(found, key=lambda refusal: -refusal.count))
 
 
@@ -65,6 +65,7 @@ def why(plan: Plan, at: Mapping[str, float]) -> str:
         else:
             motion_of(device_at(plan, at))
     except (ValueError, ArithmeticError, MemoryError) as error:
-        said = str(error).splitlines()[0].removeprefix(f"{plan.device.path}: ")
+        told = told_by(error)
+        said = told.said if isinstance(told, Refusal) else told
         return _LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", said)
     return ""

@@ -12,10 +12,11 @@ from pindrive.files.device import motion_of
 from pindrive.lazy import optimize, stats, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate, follow
 from pindrive.study.outputs import attributes
-from pindrive.study.refusals import Refusal, exist, refusals
+from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sensitivity import Ranges, left_out, ranges_of
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ class Robustness:
     """Numbers of the design itself."""
     values: Mapping[str, NDArray[np.float64]]
     """Watched numbers of every design that exists; NaN where it has none."""
-    refusals: tuple[Refusal, ...]
+    refusals: tuple[RefusedPoints, ...]
     """Draws that cannot exist, as their values contradict each other: no designs."""
     stopped: int
     """Designs whose motion was stopped early, after too many events."""
@@ -113,12 +114,14 @@ class Robustness:
     def __repr__(self) -> str:
         """How many designs, and how many meet the specification, in a line."""
         met = f"{self.all_met.text} meet the specification" if self.all_met else "no specification"
-        return f"<Robustness of {counted(self.designs, 'design')}: {met}, {self.status}>"
+        return (
+            f"<Robustness of {counted(self.designs, 'design')}: {met}, {left_out(self.refusals)}>"
+        )
 
     @property
-    def status(self) -> str:
-        """Either "ok", or how many draws cannot exist and were left out."""
-        return left_out(self.refusals)
+    def status(self) -> Status:
+        """`refused` where draws cannot exist and were left out, as `refusals` says; else `ok`."""
+        return Status.refused if self.refusals else Status.ok
 
     def plot(self) -> Figure:
         """How the watched numbers spread, with the limits, as a figure that a notebook shows."""
@@ -146,7 +149,7 @@ class Robustness:
         ):
             data[name] = ("limit", np.array(parts, np.float64))
         coords = {"limit": [demand.text() for demand, _ in self.shares]}
-        found: dict[str, Any] = {"status": self.status, "draws": self.draws, "seed": self.seed}
+        found: dict[str, Any] = {"status": self.status.name, "draws": self.draws, "seed": self.seed}
         if self.all_met:
             found["yield"] = self.all_met.met / self.all_met.of
         return xr.Dataset(data, coords=coords, attrs=found)

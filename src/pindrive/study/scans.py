@@ -13,7 +13,9 @@ import numpy as np
 from pindrive.device.scanning import scan
 from pindrive.evaluation.perception import judge
 from pindrive.quantities.budgets import worker_count
-from pindrive.study.design import device_at, flags
+from pindrive.quantities.status import SimulationError, Status
+from pindrive.quantities.table import refused_by
+from pindrive.study.design import device_at
 from pindrive.study.outputs import SCANNED, scan_numbers, variables
 from pindrive.study.workers import standing
 
@@ -80,7 +82,7 @@ def _row(plan: Plan, point: Mapping[str, float]) -> Row:
     try:
         found = scan_numbers(judged_at(plan, point))
     except (ValueError, ArithmeticError, MemoryError) as error:
-        refused = flags("status").index("refused")
-        return dict.fromkeys(names, nan) | {"status": refused, "reason": str(error)}
+        status = error.status if isinstance(error, SimulationError) else Status.refused
+        return dict.fromkeys(names, nan) | {"status": status, "reason": refused_by(error)}
     given = {name: found[quantity.name] for name, quantity in names.items()}
-    return given | {"status": 0, "reason": ""}
+    return given | {"status": Status.ok, "reason": ""}

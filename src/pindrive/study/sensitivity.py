@@ -11,12 +11,13 @@ from pindrive import lazy
 from pindrive.lazy import xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.study.design import COUNTS
 from pindrive.study.distributions import Distribution, Linked, as_distribution, with_links
 from pindrive.study.evaluate import evaluate
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
-from pindrive.study.refusals import Refusal, exist, refusals
+from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sobol import Indices, sobol_indices
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class Influence:
     over: Mapping[str, Indices]
     rows: int
     points: int
-    refusals: tuple[Refusal, ...]
+    refusals: tuple[RefusedPoints, ...]
     """Points that cannot exist, as their values contradict each other; left out."""
     name: str = ""
     """Of the study."""
@@ -101,12 +102,12 @@ class Influence:
         """Of how many numbers and keys, from how many points, in a line."""
         numbers, keys = counted(len(self.over), "number"), counted(len(self.keys), "key")
         points = counted(self.points, "point")
-        return f"<Sobol' indices of {numbers} over {keys}, {points}, {self.status}>"
+        return f"<Sobol' indices of {numbers} over {keys}, {points}, {left_out(self.refusals)}>"
 
     @property
-    def status(self) -> str:
-        """Either "ok", or how many points cannot exist and were left out."""
-        return left_out(self.refusals)
+    def status(self) -> Status:
+        """`refused` where points cannot exist and were left out, as `refusals` says; else `ok`."""
+        return Status.refused if self.refusals else Status.ok
 
     def plot(self) -> Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
@@ -132,15 +133,13 @@ class Influence:
         data["kept"] = ("number", np.array([self.over[n].kept for n in numbers]), {"units": "1"})
         coords = {"number": numbers, "key": [*self.keys]}
         title = {"title": f"Sobol' indices of {self.name}"} if self.name else {}
-        return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status})
+        return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status.name})
 
 
-def left_out(refusals: Sequence[Refusal]) -> str:
-    """Either "ok", or how many points or draws cannot exist, and the commonest reason."""
-    if not refusals:
-        return "ok"
-    total = counted(sum(refusal.count for refusal in refusals), "point")
-    return f"{total} cannot exist and left out: {refusals[0].reason}"
+def left_out(refusals: Sequence[RefusedPoints]) -> str:
+    """How many points or draws cannot exist, for a line: "ok", or "3 points refused"."""
+    total = sum(refusal.count for refusal in refusals)
+    return f"{counted(total, 'point')} refused" if total else "ok"
 
 
 def askable(plan: Plan) -> tuple[str, ...]:
@@ -206,7 +205,7 @@ def sobol(
     each = (varied + 2) * (varied + len(outputs)) + 3 * (varied + 1) * len(outputs)
     of = f"{rows} rows of {each}, for {varied} keys and {len(outputs)} results"
     budgets.DESIGN_VALUES.check(rows * each, of)
-    refused: tuple[Refusal, ...] = ()
+    refused: tuple[RefusedPoints, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused

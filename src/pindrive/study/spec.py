@@ -16,9 +16,11 @@ from pindrive.files.device import (
     ConfigError,
     Setting,
     device_of,
+    keys_meant,
     read_tables,
     settings_of,
 )
+from pindrive.files.recording import is_file
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted
@@ -196,7 +198,13 @@ def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
     given = tables.get("set", {})
     if not isinstance(given, dict):
         raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
-    return [Setting(key, value, f"{file}: set") for key, value in written_axes(given)]
+    settings = []
+    for key, value in written_axes(given):
+        keys = keys_meant(key)
+        if len(keys) == 1 and is_file(keys[0], value):
+            value = str((file.parent / value).absolute())
+        settings.append(Setting(key, value, f"{file}: set"))
+    return settings
 
 
 class _Reader:

@@ -21,8 +21,9 @@ from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
+from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.study import outputs
-from pindrive.study.design import flags, variable
+from pindrive.study.design import variable
 from pindrive.study.evaluate import evaluate
 
 if TYPE_CHECKING:
@@ -228,12 +229,7 @@ def _key_attributes(key: str) -> dict[str, str]:
 def _number_attributes(name: str) -> dict[str, Any]:
     if name == "events":
         return {"long_name": "changes at a contact; of a cycle, those of one round"}
-    if name in ("status", "ending"):
-        meanings = flags(name)
-        first = 0 if name == "status" else -1
-        return {
-            "long_name": {"status": "what was wrong", "ending": "how the motion ends"}[name],
-            "flag_values": np.arange(first, first + len(meanings), dtype=np.int8),
-            "flag_meanings": " ".join(meanings),
-        }
+    codes: dict[str, type[Status | End]] = {"status": Status, "ending": End}
+    if name in codes:
+        return flag_attributes(codes[name])
     return outputs.attributes(name)

@@ -198,17 +198,17 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
     return (low, high) if high > low * (1.0 + 1e-9) else None
 
 
-def coefficient_words(plan: Plan, *, tolerances: bool = False) -> str | None:
-    """The same in a sentence, a warning where it leaves what handbooks say; None: no change."""
+def coefficient_words(plan: Plan, *, tolerances: bool = False) -> tuple[str, bool] | None:
+    """The same in a sentence, and whether it leaves what handbooks say; None: no change."""
     found = coefficient_range(plan, tolerances=tolerances)
     if found is None:
         return None
     low, high = found
     over = "the tolerances" if tolerances else "the study"
     known = all(within(value, KINETIC) for value in found)
-    warning = "" if known else "warning: "
     doubt = f"; steel on steel has {KINETIC[0]:.2f} to {KINETIC[1]:.2f} in handbooks"
-    return (
-        f"{warning}the plate's friction coefficient, plate.kinetic over what presses, goes from "
+    words = (
+        "the plate's friction coefficient, plate.kinetic over what presses, goes from "
         f"{low:.3g} to {high:.3g} over {over}{'' if known else doubt}"
     )
+    return words, not known

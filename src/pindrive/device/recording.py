@@ -1,0 +1,323 @@
+"""Recorded hand motion: what a recording is, how a raw one is smoothed, and the path through it.
+
+A mouse reports whole steps (counts), 1000 to the inch, about a thousand times a second. Between two
+reports a speed of 60 mm/s is 2 or 3 steps, so that differences of such places are no speed. A raw
+recording is therefore smoothed:
+
+- Its places are taken at even times, the median interval apart: linear between reports, and
+  unchanged while none came, as a mouse that rests reports nothing.
+- A low-pass follows, a Butterworth filter of second order forwards and backwards
+  (`scipy.signal.sosfiltfilt`), as is usual for recorded movements: no delay, and at the cut-off
+  1/sqrt(2) of an amplitude (-3 dB) is left. Its gain is 1 / (1 + 0.414 (f / f_c)^4).
+- It lowers the peak speed of a minimum-jerk stroke of duration T by the part 0.102 / (f_c T)^4: at
+  20 Hz, 0.13 % of a stroke of 0.15 s, and 1e-5 of one of half a second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sqrt
+from os import PathLike
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.hand import HandPath, check_increasing
+from pindrive.lazy import signal
+from pindrive.quantities import budgets
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.table import QUANTITIES, check, refusal
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+EXAMPLE: Final = "t [s], x [mm], y [mm]"
+_USUAL: Final = {"t": "t [s]", "x": "x [mm]", "y": "y [mm]", "dx": "dx [count]", "dy": "dy [count]"}
+COUNTS: Final = ("count", "counts")
+"""How a header calls the steps of a mouse."""
+INCH: Final = 0.0254
+TWO_PASSES: Final = (sqrt(2.0) - 1.0) ** 0.25
+"""Cut-off of both passes over that of one (Winter 2009, Biomechanics and Motor Control)."""
+PEAK_LOSS: Final = 384.0 * (sqrt(2.0) - 1.0) / (2.0 * pi) ** 4
+"""0.102: what of a minimum-jerk peak is lost, times (f_c T)^4; its fourth derivative over it."""
+LOST: Final = 0.01
+"""The part of a peak that a report calls lost."""
+ROUGH: Final = 0.2
+"""A step within one interval that is so much of the largest acceleration of a hand hides it."""
+SMALL_STEPS: Final = 20.5
+GRID: Final = 0.15
+"""So far from whole numbers of steps, of up to `SMALL_STEPS`, is no recording in steps."""
+HOLE: Final = 2.5
+"""Intervals without a report in which the mouse rested."""
+RESOLUTION: Final = QUANTITIES["mouse_resolution"].default or 0.0
+CUTOFF: Final = QUANTITIES["smoothing_cutoff"].default or 0.0
+ACCELERATION: Final = QUANTITIES["hand_acceleration"].default or 0.0
+
+
+def through(
+    t: ArrayLike,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    acceleration: float | str = ACCELERATION,
+    where: str = "",
+    rows: Sequence[int] | None = None,
+    about: str = "",
+) -> HandPath:
+    """A path along recorded places, with a velocity that does not jump.
+
+    Half-way in time between two places the hand has their mean velocity and is half-way between
+    them, exactly; at a place its velocity is the mean over both its neighbours. So it follows the
+    record without drift, and rounds its corners.
+
+    Args:
+        t: s, shape (n,), n >= 2, increasing.
+        x: m, shape (n,).
+        y: m, shape (n,).
+        acceleration: of the hand, m/s²; more is taken for a jump of its speed, and refused.
+        where: what the message names, a file.
+        rows: number of each row in that file.
+        about: what the recording was, for reports.
+
+    Raises:
+        ValueError: too few places, times that do not increase, or a speed that jumps.
+    """
+    time, px, py = (np.array(column, np.float64) for column in (t, x, y))
+    if time.ndim != 1 or len(time) < 2 or not time.shape == px.shape == py.shape:
+        required = "columns of one length, at least 2"
+        given = f"{time.shape}, {px.shape} and {py.shape}"
+        raise ValueError(refusal("t, x and y", required, given, where))
+    at = [f"t[{i}]" for i in range(len(time))] if rows is None else [f"row {i}: t" for i in rows]
+    check_increasing(time, at, where)
+    lasts = np.diff(time)
+    middles = time[:-1] + 0.5 * lasts
+    speeds = [np.diff(place) / lasts for place in (px, py)]
+    jump = np.hypot(*(np.diff(v) for v in speeds)) / np.diff(middles)
+    most = check("hand_acceleration", acceleration, label="acceleration")
+    if (jump > most).any():
+        i = int(np.argmax(jump))
+        before, after = (float(np.hypot(*(v[j] for v in speeds))) for j in (i, i + 1))
+        raise ValueError(
+            refusal(
+                at[i + 1].removesuffix(": t"),
+                f"without a jump of the hand's speed, a change of at most {most:g} m/s^2",
+                f"{jump[i]:.4g} m/s^2 at {time[i + 1]:g} s, where it moves at {1e3 * before:.4g} "
+                f"mm/s before and {1e3 * after:.4g} mm/s after",
+                where,
+            )
+        )
+    nodes = np.empty(2 * len(time) - 1)
+    nodes[::2], nodes[1::2] = time, middles
+    columns = []
+    for v in speeds:
+        column = np.empty_like(nodes)
+        column[1::2] = v
+        column[0], column[-1] = v[0], v[-1]
+        column[2:-1:2] = (lasts[:-1] * v[:-1] + lasts[1:] * v[1:]) / (lasts[:-1] + lasts[1:])
+        columns.append(column)
+    keep = np.append(True, np.diff(nodes) > 0.0)  # places too close in time for one between them
+    start = float(px[0]), float(py[0])
+    return HandPath(nodes[keep], columns[0][keep], columns[1][keep], start, about)
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Places of the hand at recorded times.
+
+    Args:
+        t: s, shape (n,), n >= 2, increasing.
+        x: m, shape (n,).
+        y: m, shape (n,).
+        step: of the mouse, m, where its places are whole numbers of steps; None: found in them.
+        where: the file, for messages.
+        rows: number of each row in that file.
+
+    Raises:
+        ValueError: too few places, or times that do not increase.
+    """
+
+    t: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    step: float | None = None
+    where: str = ""
+    rows: Sequence[int] | None = None
+
+    def __post_init__(self) -> None:
+        """Validate."""
+        if self.t.ndim != 1 or len(self.t) < 2 or not self.t.shape == self.x.shape == self.y.shape:
+            raise ValueError(refusal("t, x and y", "columns of one length, at least 2", "others"))
+        labels = self.rows or range(len(self.t))
+        check_increasing(self.t, [f"row {i}: t" for i in labels], self.where)
+
+    @classmethod
+    def read(cls, path: str | PathLike[str], resolution: float = RESOLUTION) -> Recording:
+        """A recording from a CSV, UTF-8, whose header is like `t [s], x [mm], y [mm]`.
+
+        Args:
+            path: the file; `dx` and `dy` instead are the ways since the row before. Places may be
+                in `count`, the steps of a mouse. See `CsvTable` for the rest.
+            resolution: of the mouse, counts per m, where places are in counts.
+
+        Raises:
+            ValueError: the file cannot be read, the header lacks a column or a unit, a cell is no
+                number or out of bounds; file and row are named.
+        """
+        table = CsvTable.read(path, "a recorded path", EXAMPLE)
+        relative = "dx" in table and "x" not in table
+        names = ("dx", "dy") if relative else ("x", "y")
+        table.check_header(("t", *names), EXAMPLE)
+        times = table.column("t", "hand.time", "s", _USUAL["t"])
+        step = 1.0 / resolution
+        counted = [table.unit(name) in COUNTS for name in names]
+        places = [
+            np.array(
+                table.column(name, "hand.place", "m", _USUAL[name], step if counts else None),
+                np.float64,
+            )
+            for name, counts in zip(names, counted, strict=True)
+        ]
+        table.check_rows("a recorded path", 2)
+        if relative:
+            places = [np.cumsum(place) for place in places]
+        own = step if all(counted) else None
+        return cls(np.array(times), places[0], places[1], own, table.file, table.numbers)
+
+    @cached_property
+    def interval(self) -> float:
+        """The median time between two rows, s."""
+        return float(np.median(np.diff(self.t)))
+
+    @property
+    def rate(self) -> float:
+        """Rows per second, from the median interval, Hz."""
+        return 1.0 / self.interval
+
+    @cached_property
+    def resolved(self) -> float | None:
+        """The step of which all places are whole numbers, m; None where there is none."""
+        if self.step is not None:
+            return self.step
+        ways = np.abs(np.concatenate([np.diff(self.x), np.diff(self.y)]))
+        ways = ways[ways > 1e-9]
+        if len(ways) < 3:
+            return None
+        step = float(ways.min())
+        few = ways[ways < 4.5 * step]
+        step = float(few.sum() / np.round(few / step).sum())  # the mean, of rounded text
+        counts = ways[ways < SMALL_STEPS * step] / step
+        whole = np.abs(counts - np.round(counts)) < GRID
+        return step if whole.all() and len(counts) > 0.5 * len(ways) else None
+
+    def raw(self, acceleration: float = ACCELERATION) -> bool:
+        """Whether it is in steps so coarse that differences of its places are no speed.
+
+        So it is where it is in counts; or where all places are whole numbers of one step, which
+        changes from row to row, and that step within an interval is a fifth of the acceleration of
+        a hand (m/s²) or more.
+        """
+        if self.step is not None:
+            return True
+        step = self.resolved
+        if step is None or step < ROUGH * acceleration * self.interval**2:
+            return False
+        ripple = max(
+            float(np.abs(np.diff(place, 2)).max(initial=0.0)) for place in (self.x, self.y)
+        )
+        return ripple > 0.5 * step
+
+    def peak_speed(self) -> float:
+        """The largest difference quotient of its places, m/s."""
+        way = np.hypot(np.diff(self.x), np.diff(self.y))
+        return float((way / np.diff(self.t)).max())
+
+    def smoothed(self, cutoff: float = CUTOFF) -> Recording:
+        """The same at even times, without what is faster than a cut-off (Hz), as stated above.
+
+        Raises:
+            ValueError: the cut-off is not below a fifth of the rate, or there are too many rows.
+        """
+        low = check("smoothing_cutoff", cutoff)
+        if not low <= 0.2 * self.rate:
+            required = f"at most a fifth of the recording's rate, {0.2 * self.rate:.4g} Hz"
+            raise ValueError(refusal("smoothing_cutoff", required, f"{low:g} Hz", self.where))
+        lasts = float(self.t[-1] - self.t[0])
+        count = max(2, round(lasts / self.interval) + 1)
+        of = f"{lasts:g} s of recording, a row each {1e3 * self.interval:.4g} ms"
+        budgets.INPUT_ROWS.check(lasts / self.interval + 1.0, of, where=self.where)
+        rested = np.flatnonzero(np.diff(self.t) > HOLE * self.interval)
+        held = self.t[rested + 1] - self.interval
+        times = np.insert(self.t, rested + 1, held)
+        even = np.linspace(self.t[0], self.t[-1], count)
+        sections = signal.butter(2, low / TWO_PASSES, fs=(count - 1) / lasts, output="sos")
+        pad = min(count - 1, round(2.0 * self.rate / low))
+        places = []
+        for place in (self.x, self.y):
+            reported = np.insert(place, rested + 1, place[rested])
+            taken = np.interp(even, times, reported)
+            places.append(np.asarray(signal.sosfiltfilt(sections, taken, padlen=pad), np.float64))
+        return Recording(even, places[0], places[1], None, self.where)
+
+    def path(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> HandPath:
+        """The hand's path: through its places or, of a raw recording, smoothed at `cutoff` (Hz).
+
+        Raises:
+            ValueError: as for `through` and `smoothed`.
+        """
+        if not self.raw(acceleration):
+            return through(
+                self.t,
+                self.x,
+                self.y,
+                acceleration=acceleration,
+                where=self.where,
+                rows=self.rows,
+                about=self.words(acceleration, cutoff),
+            )
+        smooth = self.smoothed(cutoff)
+        about = self.words(acceleration, cutoff)
+        at = dict(acceleration=acceleration, where=f"{self.where}, smoothed")
+        return through(smooth.t, smooth.x, smooth.y, about=about, **at)  # type: ignore[arg-type]
+
+    def words(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> str:
+        """What it is and what is made of it, in a sentence or two."""
+        step, speed = self.resolved, QUANTITIES["hand_speed"]
+        lasts = float(self.t[-1] - self.t[0])
+        said = f"The recording: {len(self.t)} rows over {lasts:.4g} s, {self.rate:.4g} Hz"
+        if step is not None:
+            said += f", in steps of {1e3 * step:.4g} mm ({INCH / step:.4g} dpi)"
+        said += f"; peak speed {speed.text(self.peak_speed())} from row to row"
+        if not self.raw(acceleration):
+            return f"{said}. It is followed as it is."
+        left = self.smoothed(cutoff).peak_speed()
+        shortest = (PEAK_LOSS / LOST) ** 0.25 / cutoff
+        return (
+            f"{said}, {speed.text(left)} smoothed. Smoothing: Butterworth of 2nd order forwards "
+            f"and backwards, -3 dB at {cutoff:g} Hz; it takes {LOST:.0%} off the peak speed of a "
+            f"minimum-jerk stroke of {1e3 * shortest:.3g} ms, less off longer ones."
+        )
+
+
+def read_csv(
+    path: str | PathLike[str],
+    *,
+    acceleration: float | str = ACCELERATION,
+    resolution: float | str = RESOLUTION,
+    cutoff: float | str = CUTOFF,
+) -> HandPath:
+    """A recorded path from a CSV; a raw recording of a mouse is smoothed.
+
+    Args:
+        path: the file, as for `Recording.read`.
+        acceleration: m/s²; more is taken for a jump of the hand's speed, and refused.
+        resolution: of a mouse whose places are in counts, 1/m.
+        cutoff: with which a raw recording is smoothed, Hz.
+
+    Raises:
+        ValueError: as for `Recording.read` and `Recording.path`.
+    """
+    recording = Recording.read(path, check("mouse_resolution", resolution, label="resolution"))
+    most = check("hand_acceleration", acceleration, label="acceleration")
+    return recording.path(most, check("smoothing_cutoff", cutoff))

@@ -1,0 +1,129 @@
+"""Inputs over time that stand in CSV files: rows of a profile, or a recording of the hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from pindrive.files.schema import number
+from pindrive.files.template import NUMBERS, usual
+from pindrive.motion.drive import check_slopes, check_times
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.quantity import Quantity, Rows
+from pindrive.quantities.table import refusal
+from pindrive.quantities.units import quoted
+
+if TYPE_CHECKING:
+    from pindrive.device.hand import HandPath
+
+SUFFIX: Final = ".csv"
+SPEED: Final = "motion.mouse_velocity"
+"""The input that a recording of the hand may give."""
+
+Tables = Mapping[str, Any]
+
+
+def is_file(key: str, value: object) -> bool:
+    """Whether a value of a device file names a CSV, where the key may change over time."""
+    over_time = key in NUMBERS and NUMBERS[key].rows_of == "profile"
+    return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
+
+
+def with_files_read(
+    tables: Tables, folder: Path, place: Callable[..., str]
+) -> tuple[dict[str, Any], list[str]]:
+    """The tables with the rows, SI, of each CSV that they name, and what is wrong with those.
+
+    Args:
+        tables: of a device file; their values as TOML has them.
+        folder: of that file, to which a path is relative.
+        place: where keys were written.
+    """
+    found = {name: dict(table) for name, table in tables.items()}
+    problems = []
+    for key, file in files_named(tables, folder).items():
+        table, _, name = key.partition(".")
+        try:
+            found[table][name] = _rows(file, key, tables)
+        except ValueError as error:
+            problems.append(f"{place(key)}: {key}: {error}")
+            found[table][name] = ((0.0, 0.0),)  # the rest of the file is read all the same
+    return found, problems
+
+
+def files_named(tables: Tables, folder: Path) -> dict[str, Path]:
+    """The CSV that each key names instead of a value or rows, by the key."""
+    found = {}
+    for key in NUMBERS:
+        table, _, name = key.partition(".")
+        value = tables.get(table, {}).get(name)
+        if is_file(key, value):
+            found[key] = folder / value.strip()
+    return found
+
+
+def recording_words(tables: Tables, folder: Path) -> str:
+    """What the recording is that gives the mouse velocity, and its smoothing; empty: none does.
+
+    The tables have been read without a problem.
+    """
+    file = files_named(tables, folder).get(SPEED)
+    if file is None or NUMBERS[SPEED].name in CsvTable.read(file, "rows", ""):
+        return ""
+    return _path(file, tables).about
+
+
+def profile_header(quantity: Quantity) -> str:
+    """The header of a CSV with the rows of a quantity: "t [s], mouse_velocity [mm/s]"."""
+    unit = f" [{quantity.display_unit}]" if quantity.display_unit else ""
+    return f"t [s], {quantity.name}{unit}"
+
+
+def _rows(file: Path, key: str, tables: Tables) -> Rows:
+    """The rows of a CSV that stands for a key, SI."""
+    quantity = NUMBERS[key]
+    name, example = quantity.name, profile_header(quantity)
+    table = CsvTable.read(file, f"a CSV of {name}", example)
+    if name not in table and key == SPEED and ("x" in table or "dx" in table):
+        return _path(file, tables).plate_velocity(_given(tables, "array.axis")).rows
+    if name not in table or "t" not in table:
+        from pindrive.device.recording import EXAMPLE
+
+        also = f", or {quoted(EXAMPLE)} of a recorded hand" if key == SPEED else ""
+        given = quoted(", ".join(table.headings))
+        raise ValueError(refusal("the header", f"like {quoted(example)}{also}", given, table.file))
+    times = table.column("t", "profile.time", "s", "t [s]")
+    values = table.column(name, name, quantity.unit, example.partition(", ")[2])
+    table.check_rows(f"a CSV of {name}", 1)
+    why = " (a jump would take an infinite force)" if key == SPEED else ""
+    for i, line in enumerate(table.numbers):
+        three = times[max(0, i - 2) : i + 1]  # those before are in order
+        check_times(three, where=table.file, label=f"row {line}: t", steps=not why, why=why)
+    rows = tuple(zip(times, values, strict=True))
+    check_slopes(rows, "profile.rate", where=table.file, label=name)
+    return rows
+
+
+def _path(file: Path, tables: Tables) -> HandPath:
+    """The path of a recorded hand, with what [scan] says of recordings."""
+    from pindrive.device.recording import read_csv
+
+    return read_csv(
+        file,
+        acceleration=_given(tables, "scan.hand_acceleration"),
+        resolution=_given(tables, "scan.mouse_resolution"),
+        cutoff=_given(tables, "scan.smoothing_cutoff"),
+    )
+
+
+def _given(tables: Tables, key: str) -> float:
+    """The value of a key, SI; the usual one where it is left out or malformed."""
+    table, _, name = key.partition(".")
+    quantity, value = NUMBERS[key], tables.get(table, {}).get(name)
+    try:
+        if value is not None:
+            return number(value, quantity, usual(quantity), key, "")
+    except ValueError:  # said where the tables are read
+        pass
+    return quantity.default or 0.0

@@ -1,0 +1,140 @@
+"""CSV files whose header names columns with their units: read as SI numbers, each checked."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Final
+
+from pindrive.quantities.table import check, refusal
+from pindrive.quantities.units import UnitError, quoted, to_si
+
+_HEADING: Final = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """A CSV file with a header; columns apart by comma, semicolon or tab, in any order.
+
+    Empty lines and lines that begin with # are skipped.
+    """
+
+    file: str
+    headings: tuple[str, ...]
+    numbers: tuple[int, ...]
+    """Of each row, as an editor counts lines."""
+    cells: tuple[tuple[str, ...], ...]
+    """Of each row."""
+
+    @classmethod
+    def read(cls, path: str | PathLike[str], what: str, example: str) -> CsvTable:
+        """The file at `path`, UTF-8.
+
+        Args:
+            path: the file.
+            what: what it is to hold, for messages: "a recorded path".
+            example: a header.
+
+        Raises:
+            ValueError: it cannot be read, is empty, or a column is there twice.
+        """
+        file = Path(path)
+        try:
+            text = file.read_text(encoding="utf-8-sig")
+        except UnicodeDecodeError as error:
+            raise ValueError(f"{file}: is not UTF-8 text, at byte {error.start}") from None
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise ValueError(f"{file}: cannot be read: {reason}") from None
+        lines = [
+            (number, line)
+            for number, line in enumerate(text.splitlines(), 1)
+            if line.strip() and not line.lstrip().startswith("#")
+        ]
+        if not lines:
+            raise ValueError(f"{file}: is empty; {what} begins with {quoted(example)}")
+        head = lines[0][1]
+        apart = max(",;\t", key=head.count)
+        rows = tuple(tuple(row) for row in csv.reader([line for _, line in lines], delimiter=apart))
+        if len(rows) != len(lines):
+            raise ValueError(f"{file}: a quoted cell continues over several lines")
+        headings = tuple(heading.strip() for heading in rows[0])
+        return cls(str(file), headings, tuple(number for number, _ in lines[1:]), rows[1:])
+
+    @cached_property
+    def _columns(self) -> dict[str, list[tuple[int, str | None]]]:
+        """The place and the unit of each column, by its name in small letters."""
+        found: dict[str, list[tuple[int, str | None]]] = {}
+        for index, heading in enumerate(self.headings):
+            match = _HEADING.fullmatch(heading)
+            name = (match["name"] if match else heading).strip().lower()
+            found.setdefault(name, []).append((index, match["unit"].strip() if match else None))
+        return found
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a column of that name."""
+        return name in self._columns
+
+    def unit(self, name: str) -> str | None:
+        """The unit in the heading of a column; None where it has none."""
+        return self._columns[name][0][1]
+
+    def check_header(self, names: tuple[str, ...], example: str) -> None:
+        """Refuse a header that lacks one of these columns."""
+        if not all(name in self for name in names):
+            given = quoted(", ".join(self.headings))
+            raise ValueError(refusal("the header", f"like {quoted(example)}", given, self.file))
+
+    def check_rows(self, what: str, least: int) -> None:
+        """Refuse fewer rows than `least`."""
+        if len(self.cells) < least:
+            required = f"at least {least} row{'s' if least > 1 else ''}"
+            raise ValueError(refusal(what, required, len(self.cells), self.file))
+
+    def column(
+        self, name: str, quantity: str, unit: str, usual: str, scale: float | None = None
+    ) -> list[float]:
+        """The numbers of a column, SI.
+
+        Args:
+            name: of the column, in small letters; it must be there.
+            quantity: whose bounds hold, a name of the table of quantities.
+            unit: SI unit, "1" for none.
+            usual: a heading, for messages.
+            scale: how many SI units one of its numbers is; as its heading says unless given.
+
+        Raises:
+            ValueError: it is there twice or has no unit or another one; a cell is no number or out
+                of bounds. The message names file and row.
+        """
+        if len(self._columns[name]) > 1:
+            raise ValueError(refusal(f"column {name}", "given once", "it twice", self.file))
+        index, written = self._columns[name][0]
+        factor = self._scale(name, written, unit, usual) if scale is None else scale
+        found = []
+        for number, row in zip(self.numbers, self.cells, strict=True):
+            cell = row[index].strip() if index < len(row) else ""
+            label = f"row {number}: {name}"
+            try:
+                value = float(cell) * factor
+            except ValueError:
+                raise ValueError(refusal(label, "a number", quoted(cell), self.file)) from None
+            given = quoted(cell)
+            found.append(check(quantity, value, where=self.file, label=label, given=given))
+        return found
+
+    def _scale(self, name: str, written: str | None, unit: str, usual: str) -> float:
+        heading = quoted(self.headings[self._columns[name][0][0]])
+        if written is None and unit != "1":
+            required = f"given with its unit, like {quoted(usual)}"
+            raise ValueError(refusal(f"column {name}", required, heading, self.file))
+        try:
+            return to_si(f"1 {written or ''}", unit, f"1 {unit}")
+        except UnitError:
+            kind = "a plain number" if unit == "1" else f"in {unit} or a unit alike"
+            required = f"{kind}, like {quoted(usual)}"
+            raise ValueError(refusal(f"column {name}", required, heading, self.file)) from None

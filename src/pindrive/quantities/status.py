@@ -1,0 +1,111 @@
+"""The codes of a motion: whether it was followed to its end, and how it ends.
+
+The numbers are the same in the core, in datasets and in the files of studies.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from pindrive.quantities.table import QUANTITIES
+
+__all__ = ["End", "SimulationError", "Status", "flag_attributes"]
+
+
+class Status(IntEnum):
+    """Whether a motion or a scan was followed to its end, and what stopped it or kept it away.
+
+    The values below `refused` are those of `Status` in model.hpp: there are numbers, up to where
+    the simulation stopped. From `refused` on there is no motion.
+    """
+
+    ok = 0
+    too_many_events = 1
+    standstill = 2
+    stopped = 3
+    refused = 15
+    bad_mass = 16
+    bad_stiffness = 17
+    bad_damping = 18
+    bad_plate_kinetic = 19
+    bad_plate_static = 20
+    bad_finger_kinetic = 21
+    bad_finger_static = 22
+    bad_finger_stiffness = 23
+    bad_mouse_velocity = 24
+    bad_displacement = 25
+    bad_velocity = 26
+    bad_duration = 27
+    bad_settling_band = 28
+    bad_damping_ratio = 29
+    bad_phase = 30
+    bad_plate_load = 31
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a motion, if only up to where it was stopped."""
+        return self < Status.refused
+
+    @property
+    def explanation(self) -> str:
+        """What it means and what to do about it, for a person."""
+        if self > Status.refused:
+            bad = self.name.removeprefix("bad_")
+            name = bad if bad in QUANTITIES else bad.replace("_", ".", 1)
+            return f"{name} is out of its range: {QUANTITIES[name].meaning}"
+        return _EXPLANATIONS[self]
+
+
+_EXPLANATIONS = {
+    Status.ok: "followed to the end",
+    Status.too_many_events: (
+        "stopped at the largest number of events: friction and damping are too weak to end the "
+        "motion; give a shorter duration"
+    ),
+    Status.standstill: (
+        "stopped where events pile up at one instant; change a parameter by a little, and please "
+        "report the drive"
+    ),
+    Status.stopped: "was interrupted; run it again",
+    Status.refused: "cannot exist: its values contradict each other",
+}
+
+
+class SimulationError(ValueError):
+    """A simulation that had to be given up; `status` says why."""
+
+    def __init__(self, what: str, status: Status) -> None:
+        self.what, self.status = what, status
+        super().__init__(f"{what}: the simulation {status.explanation}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as it was made: it comes from other processes too."""
+        return SimulationError, (self.what, self.status)
+
+
+class End(IntEnum):
+    """How a motion ends, as `End` in model.hpp has it; -1 where there is none."""
+
+    unknown = -1
+    moving = 0
+    resting = 1
+    decaying = 2
+    free = 3
+    grazing = 4
+    stick_slip = 5
+    limit_cycle = 6
+
+
+_MEANINGS = {Status: "whether the motion was followed to its end", End: "how the motion ends"}
+
+
+def flag_attributes(kind: type[Status | End]) -> dict[str, Any]:
+    """The attributes of a variable of such codes: meaning, and each value with its name."""
+    return {
+        "long_name": _MEANINGS[kind],
+        "flag_values": np.array([*kind], np.int8),
+        "flag_meanings": " ".join(code.name for code in kind),
+    }
