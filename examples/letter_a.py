@@ -8,9 +8,7 @@ python examples/letter_a.py [PICTURE]
 import sys
 from pathlib import Path
 
-from pindrive.device import scan
-from pindrive.evaluation import judge
-from pindrive.files.device import load_device
+import pindrive as pd
 from pindrive.plot.scan import plot_reliefs
 from pindrive.plot.style import save
 
@@ -20,10 +18,8 @@ COLUMN = ["array.columns=1", "array.rows=8", "array.spot_scale=0.25"]
 
 judgements = []
 for speed in SPEEDS:
-    file = load_device(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"], whole=True)
-    device, reading = file.whole.device(file.drive), file.whole.reading()
-    scene = reading.text("A", device.array)
-    judgements.append(judge(scan(device, scene, reading.strokes(scene, device.array))))
+    device = pd.load_device(DEVICE, [*COLUMN, f"hand_speed={speed} mm/s"])
+    judgements.append(pd.scan(device, "A").evaluate())
 
 picture = sys.argv[1] if len(sys.argv) > 1 else "letter-a.png"
 save(plot_reliefs(judgements), picture)

@@ -121,7 +121,11 @@ def init(
 
 
 @app.command()
-def check(file: DeviceArgument) -> None:
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or a recorded hand (CSV).")
+    ],
+) -> None:
     """Say what is wrong with a device file, or what it describes; or what a recording (CSV) is.
 
     Of a recording of the hand: its rate and resolution, and its peak speed before and after

@@ -37,7 +37,7 @@ def scan(
     ] = None,
     path: Annotated[
         str,
-        typer.Option(metavar="strokes|FILE", help="How the hand moves: a CSV of t [s], x, y [mm]."),
+        typer.Option(metavar="strokes|FILE", help="How the hand moves: a CSV of t [s], x, y."),
     ] = STROKES,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")

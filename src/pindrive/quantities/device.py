@@ -247,10 +247,10 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "1/m",
         "steps of the mouse per length, in which a recording may count",
         between(1e2, 1e8),
-        1e6 / 25.4,
+        1e5 / 2.54,
         "assumed: 1000 to the inch, as usual mice have",
         "scan",
-        absent=1e6 / 25.4,
+        absent=1e5 / 2.54,
     ),
     Quantity(
         "smoothing_cutoff",
