@@ -1,7 +1,7 @@
 """Imports at first use: the one place where this package postpones an import.
 
 Libraries that take long to load are names of this module, and are loaded when one of their own
-names is first asked for. A package hands out its public names by `attach`; a result reaches what is
+names is first used. A package exports its public names by `attach`; a result reaches what is
 built on it, such as its figure, by `call`, whose target is text: the graph of the import statements
 then has no circle. The package lazy_loader does the first two, but its modules have no types.
 """
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 else:
 
     class _Module:
-        """A module that is loaded when a name in it is first asked for."""
+        """A module that is loaded when a name in it is first used."""
 
         def __init__(self, name: str) -> None:
             self._name = name

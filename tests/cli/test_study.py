@@ -244,4 +244,4 @@ def test_ctrl_c_ends_at_once_and_leaves_nothing(command: str) -> None:
     kept = {"long.nc.partial", "long.nc.journal"} if command == "sweep" else set()
     assert left in (set(), kept)
     if left:
-        assert line == "stopped; finished chunks are kept, --resume goes on with them"
+        assert line == "stopped; finished chunks are kept, --resume continues with them"

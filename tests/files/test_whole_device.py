@@ -72,7 +72,7 @@ def test_what_is_left_out_is_what_the_table_says() -> None:
             quantity = QUANTITIES[name]
             stated = quantity.example if quantity.default is None else quantity.default
             assert argument.default == stated, name
-            said = quantity.remark.partition(" unless given")[0]
+            said = (quantity.unless_given or quantity.remark).partition(" unless given")[0]
             assert to_si(said, quantity.unit, "") == pytest.approx(stated, rel=1e-15), name
 
 
@@ -187,6 +187,17 @@ MISTAKES = {
 @pytest.mark.parametrize("more", MISTAKES)
 def test_a_mistake_is_one_line(write: Write, more: str) -> None:
     assert refused("check", write(f"\n{more}\n")).startswith(f"device.toml: {MISTAKES[more]}")
+
+
+def test_mistakes_in_the_drive_and_around_it_are_found_in_one_pass(write: Write) -> None:
+    path = write('\n[magnet]\nhold_force = "-1 N"\n[scan]\npause = 3\n')
+    path.write_text(
+        GOOD.replace('mass = "10 g"', 'mass = "10 s"', 1) + path.read_text()[len(GOOD) :]
+    )
+    with pytest.raises(ConfigError) as error:
+        load_device(path)
+    keys = [line.split()[1] for line in error.value.problems]
+    assert keys == ["drive.mass", "magnet.hold_force", "scan.pause"]
 
 
 def test_a_plate_must_let_a_magnet_hold(write: Write) -> None:

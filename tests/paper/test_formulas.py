@@ -1,6 +1,6 @@
 """The paper's analysis: derived by sympy, and held against the exact simulator.
 
-The derivations show that the mended forms are right and the printed ones are not; the random
+The derivations show that the corrected forms are right and the printed ones are not; the random
 releases show that the functions are those forms, and that they describe the motion while they hold.
 """
 
@@ -97,8 +97,8 @@ def test_10_lacks_a_square_of_the_frequency() -> None:
     b_, natural = sp.Symbol("b", positive=True), sp.sqrt(k / m)
     lead = (b_ / (2 * m)) / sp.sqrt(k / m - b_**2 / (4 * m**2))
     assert sp.simplify(lead**2 - b_**2 / (4 * m * k - b_**2)) == 0
-    mended = b_ * natural / sp.sqrt(4 * k**2 - b_**2 * natural**2)
-    assert sp.simplify(mended**2 - lead**2) == 0
+    corrected = b_ * natural / sp.sqrt(4 * k**2 - b_**2 * natural**2)
+    assert sp.simplify(corrected**2 - lead**2) == 0
     as_printed = b_ * natural / sp.sqrt(4 * k**2 - b_**2)
     wrong = sp.simplify(as_printed**2 - lead**2)
     assert sp.solve(wrong, m) == [k]  # right only where ω_0 is 1 rad/s
@@ -398,7 +398,7 @@ def test_the_printed_forms_fail_by_this_much() -> None:
     """Largest deviation of each from the exact simulator on 2000 releases, seed 298."""
     r = population.damped()
     size, w = paper.amplitude(r), paper.natural_frequency(r)
-    # The exact numbers are the mended functions: the tests above.
+    # The exact numbers are the corrected functions: the tests above.
     for name, scale, at_least in (
         ("peak_displacement", size, 0.5),  # (14)
         ("trough_displacement", size, 0.01),  # (16)

@@ -203,7 +203,7 @@ def test_progress_is_told_as_often_as_announced(
 # ---- what it says --------------------------------------------------------------------------------
 
 
-def test_the_mended_equations_are_exact_and_the_printed_ones_not(made: Report) -> None:
+def test_the_corrected_equations_are_exact_and_the_printed_ones_not(made: Report) -> None:
     for row in made.rows:
         assert row.off_right < 1e-13, row.number
         if row.right:
@@ -229,7 +229,7 @@ VERDICTS = {
     "and reducing the amplitude": "holds when x_0 − x_d > −ζ v_p / ω_0",
     "The initial pin displacement x_0": "holds when v_p <",
     "and their damping": "holds when damping means how long",
-    "The results of investigation": "holds when the equations are mended",
+    "The results of investigation": "holds when the equations are corrected",
     "For the case when the pin": "holds",
     "which would be stabilized": "does not hold",
     "If the friction between": "holds when x_d is F_f / k",

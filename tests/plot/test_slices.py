@@ -203,7 +203,7 @@ def test_the_command_draws(folder: Path, tmp_path: Path, ending: str) -> None:
 REFUSED = {
     "grid.nc -o map.gif": "--output map.gif: must end in .png, .svg, .pdf",
     "half.nc.partial -o map.png": "half.nc.partial: is not finished; `pindrive sweep --resume` "
-    "goes on",
+    "continues it",
     "none.nc -o map.png": "none.nc: cannot be read: No such file or directory",
     "grid.toml -o map.png": "grid.toml: cannot be read: ",
     "alien.nc -o map.png": "alien.nc: is no study; `pindrive sweep` writes one",

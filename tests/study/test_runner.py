@@ -161,13 +161,13 @@ def whole() -> bytes:
 
 
 def test_stopped_and_resumed_is_the_same_file(whole: bytes) -> None:
-    assert "--resume goes on" in run("study.toml", "--stop-after", "700").stdout
+    assert "--resume continues" in run("study.toml", "--stop-after", "700").stdout
     assert files() >= {"study.nc.partial", "study.nc.journal"}
     assert "study.nc" not in files()
     again = run("study.toml")
     assert (again.exit_code, again.stdout) == (2, "")
     assert again.stderr == (
-        "study.nc.journal: an unfinished run is there; --resume goes on with it, "
+        "study.nc.journal: an unfinished run is there; --resume continues it, "
         "--restart begins anew\n"
     )
     assert run("study.toml", "--resume").exit_code == 0

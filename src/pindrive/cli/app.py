@@ -157,7 +157,7 @@ def check(
 
     with refusing():
         device = load_device(file)
-        pressing = device.whole.magnet.magnet().pressing if device.whole else None
+        pressing = device.whole.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.friction import Coefficients
 

@@ -1,4 +1,4 @@
-"""A judgement as a person reads it, and its lines as CSV; how fast a hand may move, likewise."""
+"""A judgement as text, and its lines as CSV; how fast a hand may move, likewise."""
 
 from __future__ import annotations
 

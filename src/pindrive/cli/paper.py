@@ -1,4 +1,4 @@
-"""The command `pindrive paper`: the paper reproduced, mended and answered."""
+"""The command `pindrive paper`: the paper reproduced, corrected and answered."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def paper(
         Path | None, typer.Option(metavar="DIR", help="The report as Markdown, with pictures.")
     ] = None,
 ) -> None:
-    """Recompute the paper, mend it, and judge what it says."""
+    """Recompute the paper, correct it, and judge what it says."""
     from pindrive.files.output import REPORT, Output, check_folder, check_outputs, write_files
     from pindrive.quantities.quantity import counted
 

@@ -1,16 +1,20 @@
-"""A progress bar where somebody looks on."""
+"""Progress bars, shown where standard error is a terminal."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from pindrive.lazy import rich_console, rich_progress
 
+if TYPE_CHECKING:
+    from pindrive.device.scanning import Progress
+
 
 @contextmanager
-def bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
+def bar(what: str) -> Iterator[Progress | None]:
     """What to tell how many of how many are done; None where standard error is no terminal."""
     if not sys.stderr.isatty():
         yield None

@@ -23,11 +23,10 @@ from pindrive.lazy import rich_console, rich_progress
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
     from pindrive.study.robustness import Robustness
     from pindrive.study.sensitivity import Influence
-
-    Tell = Callable[[int, int], None]
 
 Found = TypeVar("Found")
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -45,7 +44,7 @@ def sweep(
         bool, typer.Option("--restart", help="Replace an earlier study, or a run cut short.")
     ] = False,
     stop_after: Annotated[
-        int | None, count_option("--stop-after", "Stop there; --resume goes on.", "POINTS")
+        int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
     threads: ThreadsOption = None,
     cluster: Annotated[
@@ -53,7 +52,7 @@ def sweep(
     ] = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Work out all points of a study into one NetCDF file.
+    """Compute all points of a study and write them into one NetCDF file.
 
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
@@ -90,7 +89,7 @@ def sweep(
                 )
         except KeyboardInterrupt:
             kept = target.with_name(f"{target.name}.journal").exists()
-            words = "finished chunks are kept, --resume goes on with them"
+            words = "finished chunks are kept, --resume continues with them"
             typer.echo(f"stopped; {words if kept else 'no chunk was finished yet'}", err=True)
             raise typer.Exit(INTERRUPTED) from None
     for line in sweep_report(plan, done):
@@ -99,8 +98,8 @@ def sweep(
 
 
 @contextmanager
-def _bar() -> Iterator[Callable[[int, int], None]]:
-    """A progress bar with points per second and time left, where somebody looks on."""
+def _bar() -> Iterator[Progress]:
+    """A progress bar with points per second and time left, shown in a terminal."""
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return
@@ -176,7 +175,7 @@ def sensitivity(
     ] = False,
     number: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A number that is asked for; all unless given."),
+        typer.Option(metavar="NAME", help="A number to analyse; all unless given."),
     ] = None,
     rows: Annotated[
         int | None,
@@ -196,7 +195,7 @@ def sensitivity(
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
 
-    def answer(plan: Plan, tell: Tell) -> Influence:
+    def answer(plan: Plan, tell: Progress) -> Influence:
         from pindrive.study.outputs import known_output
         from pindrive.study.sensitivity import askable, influence
 
@@ -238,14 +237,14 @@ def robustness(
     threads: ThreadsOption = None,
     overrides: OverridesOption = None,
 ) -> None:
-    """Say how a design fares within its tolerances: spread, yield, worst case.
+    """Analyse a design within its tolerances: spread, yield, worst case.
 
     Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch
     to the largest that it can have, unless they have a tolerance of their own. Draws that cannot
     exist all the same are counted apart, with the reason.
     """
 
-    def answer(plan: Plan, tell: Tell) -> Robustness:
+    def answer(plan: Plan, tell: Progress) -> Robustness:
         from pindrive.study.robustness import robustness
 
         return robustness(plan, count=draws, seed=seed, threads=threads, progress=tell)
@@ -278,7 +277,7 @@ def _say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
 def _answered(
     study: Path,
     overrides: list[str] | None,
-    answer: Callable[[Plan, Tell], Found],
+    answer: Callable[[Plan, Progress], Found],
     plot: Path | None,
     draw: Callable[[Found, str], Figure],
 ) -> tuple[Plan, Found]:

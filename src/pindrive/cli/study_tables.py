@@ -1,4 +1,4 @@
-"""Studies as a person reads them in a terminal."""
+"""Studies as tables and text for the terminal."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ _SLICE = 1 << 24
 
 
 def sweep_report(plan: Plan, done: Result) -> list[str]:
-    """What a sweep came to, in lines."""
+    """The result of a sweep, in lines."""
     points, size = counted(done.points, "point"), human_bytes(done.path.stat().st_size)
     if not done.complete:
         of = counted(plan.size, "point")
-        lines = [f"Stopped at {count(done.points)} of {of}; --resume goes on"]
+        lines = [f"Stopped at {count(done.points)} of {of}; --resume continues"]
     elif done.worked_out:
         speed = count(round(done.worked_out / done.seconds))
         resumed = (

@@ -246,7 +246,7 @@ def _phases(motion: Motion) -> Table:
         table.add_row(
             _TIME.digits(segment.begin),
             _TIME.digits(segment.end) if lasts else "",
-            _TIME.digits(segment.end - segment.begin) if lasts else "for ever",
+            _TIME.digits(segment.end - segment.begin) if lasts else "forever",
             segment.mode,
             _POSITION.digits(motion.position(segment.begin)),
             _VELOCITY.digits(motion.velocity(segment.begin)),

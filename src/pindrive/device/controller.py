@@ -39,7 +39,7 @@ class Commands:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What the control block has in mind for one coil."""
+    """The state of the control block for one coil."""
 
     on: bool = False
     """What it decided last."""

@@ -183,8 +183,8 @@ class Electromagnet:
         """The pull as rows (time in s, N) from the current's begin to `end`, or a row beyond.
 
         Linear between them it is nowhere further from the exact one than `deviation` of the hold
-        force. No row depends on what comes after it, so that a course that is cut goes on with the
-        same rows: a switching finds the pull on its line, and a moment later it is exact again.
+        force. No row depends on what comes after it, so that a course that is cut keeps the same
+        rows: a switching finds the pull on its line, and a moment later it is exact again.
 
         Args:
             current: the current.
@@ -224,7 +224,7 @@ class Electromagnet:
         """When rows are due after a switching at the current `start`, s, and the currents then.
 
         At the switching, whose current is left out; a moment later; as the current passes its
-        levels; and when it is as good as at its end, where it stays.
+        levels; and when it has reached its end within the deviation, where it stays.
         """
         constant, levels, final = (
             (self.rise_constant, self._rising, 1.0)

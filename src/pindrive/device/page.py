@@ -67,7 +67,7 @@ class Scene:
         """Validate, and keep an array that nobody writes to."""
         values = np.asarray(self.luminance, np.float64)
         if values.flags.writeable or values.base is not None:
-            values = values.copy()  # somebody else may write to it
+            values = values.copy()  # the caller may write to it
         if values.ndim != 2 or values.size == 0:
             raise ValueError(refusal("luminance", "rows and columns of pixels", values.shape))
         if not (values.min() >= 0.0 and values.max() <= 1.0):

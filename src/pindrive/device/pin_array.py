@@ -154,7 +154,7 @@ class PinArray:
 
     @property
     def abreast(self) -> tuple[tuple[int, int], ...]:
-        """The numbers of pins that stand abreast, across the drive axis, and overlap for good."""
+        """The numbers of pins that stand abreast, across the drive axis, and always overlap."""
         found = []
         for row, other, _ in self._rows_apart(0.0):
             at = dict(other)

@@ -1,6 +1,6 @@
 """A scan: the hand moves the device over a scene, and each pin's motion is followed exactly.
 
-Each pin is looked after from the scan's begin to its end in one motion: dragged a little while its
+Each pin is simulated from the scan's begin to its end in one motion: dragged a little while its
 magnet is off, carried while it is on, slipping where the spring overcomes the magnet, released,
 swinging, caught again in mid-swing.
 """
@@ -49,7 +49,7 @@ FINER: Final = 4.0
 """A scene is looked at for lines so many times in each pixel of the way."""
 
 Progress = Callable[[int, int], None]
-"""Told after each pin: how many are done, of how many."""
+"""Called after each part of a computation: how many are done, of how many."""
 
 
 class DescribedDevice(Protocol):

@@ -26,14 +26,13 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
     from pindrive.motion.results import Side
 
-HALVINGS: Final = 60
 PIECES: Final = 64
-"""A bracket is cut into so many at once, which is as good as six halvings."""
-_GRID: Final = np.arange(PIECES + 1) / PIECES
+"""Into so many pieces together, at least two each, brackets are cut at once: a call of what is
+searched costs as much as some hundred of its values."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
-class Values:
+class Signal:
     """A quantity of a pin over time, counted forward: monotone between the knots of its course.
 
     Args:
@@ -48,9 +47,9 @@ class Values:
         """It at times t (s, any shape); `side` is the limit taken where it jumps."""
         return self.sign * np.asarray(self.of(t, side))
 
-    def __neg__(self) -> Values:
+    def __neg__(self) -> Signal:
         """The same, counted backwards."""
-        return Values(self.of, -self.sign)
+        return Signal(self.of, -self.sign)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +75,13 @@ class Course:
         return np.concatenate([[begin], inner[inner < end], [end]])
 
     def pieces(
-        self, values: Values, begin: float, end: float
+        self, values: Signal, begin: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """The knots in between, and the values where each piece begins and where it ends."""
         t = self.within(begin, end)
         return t, values(t[:-1]), values(t[1:], "left")
 
-    def highest(self, values: Values, begin: float, end: float) -> tuple[float, float]:
+    def highest(self, values: Signal, begin: float, end: float) -> tuple[float, float]:
         """The time and the size of the largest value from `begin` to `end`."""
         t, starts, stops = self.pieces(values, begin, end)
         i, j = int(np.argmax(starts)), int(np.argmax(stops))
@@ -90,7 +89,7 @@ class Course:
             return float(t[i]), float(starts[i])
         return float(t[j + 1]), float(stops[j])
 
-    def first_at(self, values: Values, level: float, begin: float, end: float) -> float:
+    def first_at(self, values: Signal, level: float, begin: float, end: float) -> float:
         """The first time in [begin, end] at which the values are at `level` or above; or NaN."""
         t, starts, stops = self.pieces(values, begin, end)
         found = np.flatnonzero((starts >= level) | (stops >= level))
@@ -99,10 +98,10 @@ class Course:
         i = int(found[0])
         if starts[i] >= level:
             return float(t[i])
-        return crossing(lambda s: values(s, "left") - level, t[i], t[i + 1])
+        return root(lambda s: values(s, "left") - level, t[i], t[i + 1])
 
     def last_beyond(
-        self, values: Values, middle: float, band: float, begin: float, end: float
+        self, values: Signal, middle: float, band: float, begin: float, end: float
     ) -> float:
         """The last time in [begin, end] at which the values are `band` or more from `middle`.
 
@@ -115,14 +114,14 @@ class Course:
         i = int(out[-1])
         if i == len(t) - 1:
             return end
-        return crossing(lambda s: band - np.abs(values(s) - middle), t[i], t[i + 1])
+        return root(lambda s: band - np.abs(values(s) - middle), t[i], t[i + 1])
 
-    def climbs(self, values: Values, height: float, begin: float, end: float) -> bool:
+    def climbs(self, values: Signal, height: float, begin: float, end: float) -> bool:
         """Whether the values ever come to be `height` above their lowest since `begin`."""
         y = values(self.within(begin, end))
         return bool((y - np.minimum.accumulate(y) >= height).any())
 
-    def climb(self, values: Values, height: float, begin: float, end: float) -> tuple[float, float]:
+    def climb(self, values: Signal, height: float, begin: float, end: float) -> tuple[float, float]:
         """When values that do not jump are first `height` above their lowest since `begin`.
 
         Returns:
@@ -136,9 +135,9 @@ class Course:
         i = int(found[0])
         dip = int(np.argmin(y[: i + 1]))
         base = float(y[dip])
-        return crossing(lambda s: values(s) - base - height, t[i - 1], t[i]), float(t[dip])
+        return root(lambda s: values(s) - base - height, t[i - 1], t[i]), float(t[dip])
 
-    def swings(self, values: Values, begin: float, end: float) -> list[tuple[float, float]]:
+    def swings(self, values: Signal, begin: float, end: float) -> list[tuple[float, float]]:
         """From when to when values that do not jump climb, from each lowest to the next highest."""
         t = self.within(begin, end)
         up = np.diff(values(t)) > 0.0
@@ -181,38 +180,39 @@ def check_vibration(drive: Drive, duration: float, pins: int = 1) -> None:
     budgets.TURNS.check(pins * (2.0 * duration * frequency + 1.0), words if skin else of)
 
 
-def halved(
-    f: Callable[[Any], NDArray[np.float64]], low: NDArray[np.float64], high: NDArray[np.float64]
+def roots(
+    f: Callable[[Any], NDArray[np.float64]],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    sign: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """The zeros of f, by halving brackets; where it jumps, just after the jump.
+    """The first times at which f no longer has its sign, shape (n,), by cutting brackets.
+
+    SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
 
     Args:
         f: of times of any shape.
         low: where the brackets begin, s, shape (n,); f changes its sign once in each.
-        high: where they end.
+        high: where they end, shape (n,).
+        sign: of f where they begin, 1 or -1, shape (n,).
     """
-    low, high = low.copy(), high.copy()
     if not low.size:
         return high
-    sign = np.sign(f(low))
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if ((middle == low) | (middle == high)).all():
-            break  # nothing is between them
-        before = sign * f(middle) > 0.0
-        low[before], high[~before] = middle[before], middle[~before]
-    return high
-
-
-def crossing(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:
-    """Where a monotone f, negative at `low`, reaches 0 on the way to `high`."""
+    pieces = max(2, PIECES // low.size)
+    grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
     while True:
-        t = low + (high - low) * _GRID
-        t[-1] = high
-        i = int(np.argmax(f(t[1:]) >= 0.0)) + 1
-        if not (low < t[i - 1] or t[i] < high):
-            return float(high)
-        low, high = t[i - 1], t[i]
+        t = low[:, None] + (high - low)[:, None] * grid
+        t[:, -1] = high
+        first = np.argmax(sign[:, None] * f(t[:, 1:]) <= 0.0, axis=1) + 1
+        before, after = t[row, first - 1], t[row, first]
+        if not ((low < before) | (after < high)).any():
+            return high
+        low, high = before, after
+
+
+def root(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:
+    """The first time at which f, negative at `low`, is so no longer; it is at least 0 at `high`."""
+    return float(roots(f, np.array([low]), np.array([high]), np.array([-1.0]))[0])
 
 
 # ---- along the page ------------------------------------------------------------------------------

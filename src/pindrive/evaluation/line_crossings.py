@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.device.scanning import AT_ONCE, FINER
-from pindrive.device.trajectory import Way, halved
+from pindrive.device.trajectory import Way, roots
 from pindrive.quantities import budgets
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ def printed(scan: Scan) -> list[list[Printed]]:
     """The lines along the way of each pin: where the luminance is below the threshold.
 
     The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
-    bisection. A line on which the hand turns back is not whole, nor is one under the spot at the
-    path's begin or end.
+    cutting brackets. A line on which the hand turns back is not whole, nor is one under the spot at
+    the path's begin or end.
 
     Raises:
         ValueError: too many lines.
@@ -97,7 +97,7 @@ def _edges(
         lightness: luminance above the threshold at times, s.
         looks: times that find each change, in order, some at a time.
     """
-    low, high = [np.zeros(0)], [np.zeros(0)]
+    low, high, sign = [np.zeros(0)], [np.zeros(0)], [np.zeros(0)]
     first, before, was = False, np.zeros(0), np.zeros(0, bool)
     for some in looks:
         t = np.concatenate([before, some])
@@ -106,9 +106,11 @@ def _edges(
         budgets.LINES.check(0.5 * sum(map(len, low)) + 0.5 * len(changes))
         low.append(t[changes])
         high.append(t[changes + 1])
+        sign.append(np.where(dark[changes], -1.0, 1.0))
         first = first if before.size else bool(dark[0])
         before, was = t[-1:], dark[-1:]
-    return halved(lightness, np.concatenate(low), np.concatenate(high)), first, bool(was[0])
+    edges = roots(lightness, *(np.concatenate(parts) for parts in (low, high, sign)))
+    return edges, first, bool(was[0])
 
 
 def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.float64]]:
@@ -126,7 +128,7 @@ def turnings(scan: Scan) -> NDArray[np.float64]:
     """When the hand comes to a stop or turns back along the drive axis, s, increasing."""
     axis, path = scan.device.array.axis, scan.path
     along = path.vx * cos(axis) + path.vy * sin(axis)
-    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis but for rounding
+    along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis except for rounding
     still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]
     through = np.flatnonzero(along[1:] * along[:-1] < 0.0)
     part = along[through] / (along[through] - along[through + 1])

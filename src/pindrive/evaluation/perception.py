@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive._core import settling_band
-from pindrive.device.trajectory import Course, Values, Way
+from pindrive.device.trajectory import Course, Signal, Way
 from pindrive.evaluation.line_crossings import Printed, printed, turnings
 from pindrive.evaluation.results import CUES, Criteria, Cue, Echo, Edge, Fate, Judgement, Line
 
@@ -75,7 +75,7 @@ class _Pull:
     dip: float
     """When it was lowest before that."""
     release: float
-    """When the plate let go of it."""
+    """When it broke away from the plate."""
     sign: float
     """Of the plate's velocity."""
 
@@ -120,7 +120,7 @@ class JudgedPin:
         pulls = []
         for (on, off), (limit, _) in zip(spans, [*spans[1:], (self.end, nan)], strict=False):
             sign = self._sign(max(0.0, on - self.latency))
-            x = Values(self.pin.motion.position, sign)
+            x = Signal(self.pin.motion.position, sign)
             stop = min(limit, self._stop(off))
             begin, dip = self.course.climb(x, self.criteria.felt, on, stop)
             release = next((end for start, end in self.held if start <= off < end), off)
@@ -169,7 +169,7 @@ class JudgedPin:
     def _line(self, line: Printed, first: int | None, last: int | None, seen: bool) -> Line:
         """A printed line, for which pull `first` began and pull `last` ended."""
         sign = self._sign(line.begin)
-        x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
+        x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
         fate: Fate = "shown"
         stroke = height = returned = release = settled = overshoot = contrast = nan
         on = off = (nan, nan, nan)  # command, response, motion of the skin
@@ -241,17 +241,17 @@ class JudgedPin:
         if k == 0 or before.sign != pull.sign or before.begin != before.begin:
             return False  # nothing before it, or nothing that had moved the pin
         until = pull.begin if pull.begin == pull.begin else self._until(k)
-        back = -Values(self.pin.motion.position, pull.sign)
+        back = -Signal(self.pin.motion.position, pull.sign)
         return not self.course.climbs(back, self.criteria.felt, before.off, until)
 
     # ---- numbers -----------------------------------------------------------------------------
 
-    def _skin(self, sign: float) -> Values:
+    def _skin(self, sign: float) -> Signal:
         """How far the skin is moved; of a rigid finger, the pin."""
         motion = self.pin.motion
-        return Values(motion.position if motion.drive.finger.rigid else motion.stretch, sign)
+        return Signal(motion.position if motion.drive.finger.rigid else motion.stretch, sign)
 
-    def _moved(self, skin: Values, begin: float, end: float) -> tuple[float, Cue]:
+    def _moved(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
         """How far the skin moves forward between two times, and what the finger makes of it."""
         limits = self.criteria
         base = float(skin(begin, "left"))
@@ -266,7 +266,7 @@ class JudgedPin:
         return way, "direction" if way >= limits.direction else "felt"
 
     def _settling(
-        self, x: Values, release: float, peak: float, low: float, limit: float
+        self, x: Signal, release: float, peak: float, low: float, limit: float
     ) -> tuple[float, float]:
         """When the pin has settled after a release, and how far it swings over."""
         if not limit > release:
@@ -300,7 +300,7 @@ class JudgedPin:
     def _echoes(self, begin: float, end: float) -> list[Echo]:
         """Those of one stroke of the hand."""
         sign = self._sign(0.5 * (begin + end))
-        x, skin = Values(self.pin.motion.position, sign), self._skin(sign)
+        x, skin = Signal(self.pin.motion.position, sign), self._skin(sign)
         swings = [
             (low, high, float(x(high) - x(low)), self._puller(low, high))
             for low, high in self.course.swings(x, begin, end)

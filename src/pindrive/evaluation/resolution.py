@@ -31,7 +31,7 @@ from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
-from pindrive.device.scanning import PinState, scan
+from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, check_vibration
 from pindrive.evaluation.line_crossings import Printed
 from pindrive.evaluation.perception import JudgedPin
@@ -58,8 +58,6 @@ LONGEST: Final = 200.0
 """A transient is followed for so many radians of its natural frequency at most."""
 
 Band = tuple[float, float]
-Progress = Callable[[int, int], None]
-"""Told after each pitch: how many are done, of how many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -326,7 +324,7 @@ def _pass(
 
 
 def _clear(device: Device) -> float:
-    """From a line's end until its magnet is as good as off, s."""
+    """From a line's end until the pull of its magnet has decayed, s."""
     return device.control.latency + 8.0 * device.magnet.fall_constant
 
 

@@ -102,7 +102,7 @@ class Line:
     returned: float
     """How far the pin came back from there, before the next line or the hand's stop, m."""
     release: float
-    """When the plate let go of the pin, s."""
+    """When the pin broke away from the plate, s."""
     settled: float
     """When the pin had settled after it, s; NaN: it did not."""
     smear: float

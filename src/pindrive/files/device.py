@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Container, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from collections.abc import Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from math import inf
 from numbers import Real
@@ -16,13 +16,20 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from pydantic import ValidationError
-
 from pindrive.files.ratios import keep_ratios
 from pindrive.files.ratios import written as as_text
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
-from pindrive.files.schema import Place, Schema, over_time
-from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual
+from pindrive.files.schema import (
+    Place,
+    Value,
+    contact_problems,
+    drive_of,
+    drive_problems,
+    read_values,
+    release_of,
+    table_of,
+)
+from pindrive.files.template import DRIVE, NUMBERS, WHOLE
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Rows, counted
@@ -33,7 +40,7 @@ if TYPE_CHECKING:
     from pindrive.device.device import Device
     from pindrive.device.reading import Reading
     from pindrive.evaluation.results import Criteria
-    from pindrive.files.schema_device import Whole
+    from pindrive.files.whole_device import Whole
     from pindrive.motion.motion import Motion
 
 STUDY_KEYS: Final = (
@@ -43,7 +50,8 @@ STUDY_KEYS: Final = (
 """What stands at the top of a study file beside the tables of a device and the name."""
 KEYS: Final = ("device.name", "device.description", *NUMBERS)
 AROUND: Final = ("magnet", "control", "array", "scan", "judge")
-TABLES: Final = ("device", "drive", "plate", "finger", "motion", *AROUND)
+ALONE: Final = ("device", "drive", "plate", "finger", "motion")
+TABLES: Final = (*ALONE, *AROUND)
 
 
 class Setting(NamedTuple):
@@ -69,8 +77,8 @@ class ConfigError(ValueError):
 class DeviceFile:
     """What a device file says, in SI: the drive and the start of its motion (see `simulate`).
 
-    Where it has a table of the whole device, or is asked for it, `whole` is that device, and how a
-    hand reads with it (see `pindrive.device.scan`).
+    Where it has a table of the whole device, or that is requested, `whole` is that device, and how
+    a hand reads with it (see `pindrive.device.scan`).
     """
 
     path: Path
@@ -93,7 +101,7 @@ class DeviceFile:
 
     def __repr__(self) -> str:
         """Which file, and what it describes, in a line."""
-        pins = f", {counted(len(self.whole.array.array()), 'pin')}" if self.whole else ""
+        pins = f", {counted(len(self.whole.array()), 'pin')}" if self.whole else ""
         name = f" {quoted(self.name)}" if self.name else ""
         return f"<DeviceFile {self.path}{name}: {self.drive.mass:g} kg{pins}>"
 
@@ -175,7 +183,7 @@ def load_device(
             a value that is set keeps its ratio to it unless it is set too: static friction and the
             friction curve to kinetic friction, the skin's stretch to the largest that it can have.
         whole: the whole device is wanted at once, also of a file without a table of it; otherwise
-            what such a file leaves out has its usual value where it is asked for.
+            what such a file leaves out has its usual value where it is requested.
 
     Returns:
         The drive and its release in SI; `device`, `reading` and `criteria` are the whole device,
@@ -213,36 +221,52 @@ def device_of(
     tables = _with_all_tables(file, given)
     places, found = _set(tables, settings)
     problems = [*problems, *found]
-    as_written = _copied(tables)
 
     def place(*keys: str) -> str:
         return next((places[key] for key in keys if key in places), str(file))
 
     whole = whole or any(tables[name] for name in AROUND)
-    hand = whole and "mouse_velocity" not in tables["motion"]
-    if hand:  # a single release is at the hand's speed then
-        tables["motion"]["mouse_velocity"] = usual(NUMBERS["scan.hand_speed"])
     unknown = _unknown_keys(tables)
     meant = {nearest(key) for key in unknown}
     problems += [f"{file}: {not_known(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
-    read, found = with_files_read(tables, file.parent, place)
-    problems += found
+    problems += _text_problems(tables["device"], place)
+    hand = whole and "mouse_velocity" not in tables["motion"]
+    left_out = {"motion.mouse_velocity"} if hand else set()
+    names = TABLES if whole else ALONE
+    read, unread = with_files_read(_copied(tables), file.parent, place)
+    values, found = read_values(read, names, place, meant | left_out)
+    found = [*unread, *found]
+    if hand:  # a single release is at the hand's speed then
+        values["motion.mouse_velocity"] = values.get("scan.hand_speed")
+    found += contact_problems(values, place)
+    complete = all(key in values for key in NUMBERS if key.partition(".")[0] in names)
+    around = _around(values) if whole and complete and not found else None
+    if complete and not found:
+        found += drive_problems(values, place)
+    if around:
+        found += around.problems(tables, place)
+    if problems := [*problems, *found]:
+        raise ConfigError(problems)
     try:
-        schema = Schema.model_validate(read, context=place)
-        problems += schema.conflicts(place)
-        around = _around(read, place) if whole else None
-        if around:
-            problems += around.conflicts(schema, tables, place)
-        if not problems:
-            device = replace(_device(file, schema, around, hand, as_written), settings=settings)
-            _warn(device, place)
-            return device
-    except ValidationError as error:
-        problems += _value_problems(error, meant, place)
+        drive = drive_of(values)
     except ValueError as error:  # each value in range, but not all together
-        problems.append(f"{file}: {error}")
-    raise ConfigError(problems)
+        raise ConfigError([f"{file}: {error}"]) from None
+    motion = table_of(values, "motion")
+    device = DeviceFile(
+        path=file,
+        name=tables["device"].get("name", ""),
+        description=tables["device"].get("description", ""),
+        drive=drive,
+        release=release_of(values),
+        duration=motion["duration"],
+        settling_band=motion["settling_band"],
+        tables=tables,
+        settings=settings,
+        whole=around,
+    )
+    _warn(device, place)
+    return device
 
 
 def motion_of(device: DeviceFile) -> Motion:
@@ -446,20 +470,14 @@ def _damping_problems(
     return [f"{place(*keys)}: give exactly one of {' and '.join(keys)}, got {found}"]
 
 
-def _value_problems(error: ValidationError, meant: Set[str | None], place: Place) -> list[str]:
-    problems = []
-    for problem in error.errors():
-        key = ".".join(str(part) for part in problem["loc"])
-        if problem["type"] == "value_error":
-            problems.append(problem["ctx"]["error"].args[0])
-        elif problem["type"] == "missing" and not {key, f"{key.partition('.')[0]}.curve"} & meant:
-            table, written = key.partition(".")[0], line(NUMBERS[key])
-            problems.append(f"{place(key)}: {key} is missing; write {written} in [{table}]")
-        elif problem["type"] == "string_type":
-            problems.append(
-                f"{place(key)}: {refusal(key, 'text in quotes', quoted(problem['input']))}"
-            )
-    return problems
+def _text_problems(given: Mapping[str, Any], place: Place) -> list[str]:
+    """What of [device] is no text."""
+    keys = {f"device.{name}": given.get(name, "") for name in ("name", "description")}
+    return [
+        refusal(key, "text in quotes", quoted(value), place(key))
+        for key, value in keys.items()
+        if not isinstance(value, str)
+    ]
 
 
 def _warn(device: DeviceFile, place: Place) -> None:
@@ -469,37 +487,8 @@ def _warn(device: DeviceFile, place: Place) -> None:
             warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
 
 
-def _around(tables: Mapping[str, Any], place: Place) -> Whole:
-    """The tables of the whole device; a plain drive does without what reading them takes."""
-    from pindrive.files.schema_device import Whole
+def _around(values: Mapping[str, Value]) -> Whole:
+    """The tables of the whole device; a plain drive does without what importing it takes."""
+    from pindrive.files.whole_device import Whole
 
-    return Whole.model_validate(tables, context=place)
-
-
-def _device(
-    file: Path, schema: Schema, whole: Whole | None, hand: bool, tables: Mapping[str, Any]
-) -> DeviceFile:
-    drive, motion = schema.drive, schema.motion
-    plate, finger = schema.plate.contact(), schema.finger.contact()
-    body = {"mass": drive.mass, "stiffness": drive.stiffness}
-    return DeviceFile(
-        path=file,
-        name=schema.device.name,
-        description=schema.device.description,
-        drive=Drive(**body, damping=drive.damping, plate=plate, finger=finger)
-        if drive.damping is not None
-        else Drive.with_damping_ratio(
-            **body, damping_ratio=drive.damping_ratio or 0.0, plate=plate, finger=finger
-        ),
-        release=Release(
-            whole.scan.hand_speed if whole and hand else over_time(motion.mouse_velocity),
-            motion.displacement,
-            motion.velocity,
-            over_time(motion.plate_load),
-            motion.skin_stretch,
-        ),
-        duration=motion.duration,
-        settling_band=motion.settling_band,
-        tables=tables,
-        whole=whole,
-    )
+    return Whole(values)

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, and never in the place of what somebody needs; their kinds.
+"""Files that are written whole or not at all, and replace files of their own kind only; the kinds.
 
 They are written beside their target and renamed when complete. A file that is there is replaced
 only if it is of the kind that is written, and never if the command reads it.

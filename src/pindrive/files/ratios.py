@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 from typing import Any
 
-from pindrive.files.schema import number
-from pindrive.files.template import DRIVE, NUMBERS, usual
+from pindrive.files.schema import Value, read_value
+from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows
 from pindrive.quantities.table import QUANTITIES
@@ -38,15 +38,14 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
         if key in moved or not moved.intersection(quantity.follows):
             continue
         moved.add(key)
-        given = before[table].get(name)
+        given = _given(before, key)
         old, new = (_quotient(each, quantity.follows) for each in (before, tables))
         if given is None or not old or new is None:
             continue
-        if isinstance(given, list):
-            if rows := scaled_rows(_rows(before, key), new):
-                tables[table][name] = _written_rows(key, rows)
-        elif (value := _value(before, key)) is not None:
-            tables[table][name] = written(key, value / old * new)
+        if isinstance(given, float):
+            tables[table][name] = written(key, given / old * new)
+        elif rows := scaled_rows(given, new):
+            tables[table][name] = _written_rows(key, rows)
 
 
 def written(key: str, value: float) -> str | float:
@@ -66,29 +65,23 @@ def _quotient(tables: Tables, keys: tuple[str, ...]) -> float | None:
 def _value(tables: Tables, key: str) -> float | None:
     """The value of a key, SI, or of what holds where it is left out; None where there is none."""
     table, _, name = key.partition(".")
-    given, quantity = tables[table].get(name), DRIVE[key]
-    if given is None:
-        curve = _rows(tables, f"{table}.curve") if name == "kinetic" else None
-        if curve:
+    found = _given(tables, key)
+    if found is None and name not in tables[table]:
+        curve = _given(tables, f"{table}.curve") if name == "kinetic" else None
+        if isinstance(curve, tuple):
             return curve[0][1]
-        return _value(tables, quantity.follows[0]) if name == "static" else None
-    try:
-        return number(given, quantity, usual(quantity), key, "")
-    except ValueError:  # said where the file is read
-        return None
+        return _value(tables, DRIVE[key].follows[0]) if name == "static" else None
+    return found if isinstance(found, float) else None
 
 
-def _rows(tables: Tables, key: str) -> Rows | None:
-    """The rows of a curve, SI; None where there are none, or malformed ones."""
+def _given(tables: Tables, key: str) -> Value:
+    """What a file gives for a key, SI; None where it gives nothing, or what is malformed."""
     table, _, name = key.partition(".")
-    quantity, given = DRIVE[key], tables[table].get(name)
-    across = QUANTITIES[COLUMNS[quantity.rows_of][0]]
+    if name not in tables[table]:
+        return None
     try:
-        return tuple(
-            (number(x, across, "", key, ""), number(y, quantity, usual(quantity), key, ""))
-            for x, y in given
-        )
-    except (TypeError, ValueError):
+        return read_value(tables[table][name], key, "")
+    except ValueError:  # said where the file is read
         return None
 
 

@@ -1,16 +1,19 @@
-"""The tables of a device file: which keys they have, in which units, and what fits together."""
+"""The values of a device file's tables: each read in SI, and what does not fit together.
+
+Which keys there are, their units and bounds, and what holds where one is left out stands in the
+table of quantities.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from math import inf
-from typing import Any, ClassVar, cast
+from typing import Any
 
-from pydantic import BaseModel, StrictStr, ValidationInfo, field_validator, model_validator
-
-from pindrive.files.template import NUMBERS, usual, usual_rows
+from pindrive.files.template import NUMBERS, line, usual, usual_rows
 from pindrive.motion.drive import (
     Contact,
+    Drive,
     Profile,
     check_curve,
     check_increasing,
@@ -21,6 +24,7 @@ from pindrive.motion.drive import (
     check_stretch,
     check_times,
 )
+from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, check, refusal
@@ -28,23 +32,67 @@ from pindrive.quantities.units import UnitError, quoted, to_si
 
 Place = Callable[..., str]
 """Where keys were written: on the command line if one of them was, else in the file."""
+Value = float | Rows | None
+"""Of a key, SI; None where it is left out and no value holds."""
 
 
-class Table(BaseModel):
-    """A table of the file. The context of its validation maps a key to the place it was written."""
+class Problems(list[str]):
+    """What is wrong with a device file, a line each."""
 
-    table: ClassVar[str]
+    def __init__(self, place: Place) -> None:
+        super().__init__()
+        self._place = place
 
-    @field_validator("*", mode="before")
-    @classmethod
-    def _in_si(cls, value: object, info: ValidationInfo) -> object:
-        key = f"{cls.table}.{info.field_name}"
-        if key not in NUMBERS or value is None:
-            return value
-        quantity, place = NUMBERS[key], cast(Place, info.context)(key)
-        if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
-            return _rows(value, quantity, key, place)
-        return number(value, quantity, usual(quantity), key, place)
+    def check(self, check: Callable[..., object], *values: object, keys: tuple[str, ...]) -> None:
+        """Add what a check refuses of values, with the place of their keys; the first is named."""
+        try:
+            check(*values, where=self._place(*keys), label=keys[0])
+        except ValueError as error:
+            self.append(error.args[0])
+
+
+def read_values(
+    tables: Mapping[str, Mapping[str, Any]],
+    names: Container[str],
+    place: Place,
+    meant: Container[str | None] = (),
+) -> tuple[dict[str, Value], list[str]]:
+    """The values of every key in the tables called `names`, and a line for each that is wrong.
+
+    Args:
+        tables: of a device file, as TOML has them.
+        names: the tables that are read.
+        place: where keys were written.
+        meant: known keys that an unknown one in the file seems to stand for: not called missing.
+    """
+    values: dict[str, Value] = {}
+    problems = []
+    for key, quantity in NUMBERS.items():
+        table, _, name = key.partition(".")
+        if table not in names:
+            continue
+        if name in tables[table]:
+            try:
+                values[key] = read_value(tables[table][name], key, place(key))
+            except ValueError as error:
+                problems.append(error.args[0])
+        elif not quantity.mandatory or quantity.alternative.partition(".")[2] in tables[table]:
+            values[key] = quantity.absent
+        elif key not in meant and quantity.alternative not in meant:
+            problems.append(f"{place(key)}: {key} is missing; write {line(quantity)} in [{table}]")
+    return values, problems
+
+
+def read_value(value: object, key: str, place: str) -> float | Rows:
+    """What TOML gave for a key, in SI: a number, or rows.
+
+    Raises:
+        ValueError: it is malformed or out of the key's bounds.
+    """
+    quantity = NUMBERS[key]
+    if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
+        return _rows(value, quantity, key, place)
+    return number(value, quantity, usual(quantity), key, place)
 
 
 def number(value: object, quantity: Quantity, example: str, label: str, place: str) -> float:
@@ -92,97 +140,73 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     return tuple(rows)
 
 
-class _Device(Table):
-    table = "device"
-    name: StrictStr = ""
-    description: StrictStr = ""
+# ---- the drive and its motion --------------------------------------------------------------------
 
 
-class _Drive(Table):
-    table = "drive"
-    mass: float
-    stiffness: float
-    damping: float | None = None
-    damping_ratio: float | None = None
+def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
+    """The values of one table, by the names of its keys."""
+    parts = ((key.partition("."), value) for key, value in values.items())
+    return {name: value for (where, _, name), value in parts if where == table}
 
 
-class _Contact(Table):
-    kinetic: float | None
-    static: float | None = None
-    curve: Rows | None = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _curve_says_kinetic(cls, data: Mapping[str, Any]) -> Mapping[str, Any]:
-        return {"kinetic": None, **data} if "curve" in data else data
-
-    @model_validator(mode="after")
-    def _fits(self, info: ValidationInfo) -> _Contact:
-        place, table = cast(Place, info.context), self.table
-        keys = [f"{table}.{name}" for name in ("curve", "kinetic", "static")]
-        if self.curve:
-            at_rest = self.curve[0][1] if self.kinetic is None else self.kinetic
-            check_curve(self.curve, at_rest, where=place(*keys[:2]), label=keys[0])
-            self.kinetic = at_rest
-        if self.static is not None and self.kinetic is not None:
-            check_static(
-                self.static, self.kinetic, where=place(*reversed(keys)), label=f"{table}.static"
-            )
-        return self
-
-    def contact(self) -> Contact:
-        """What it describes."""
-        return Contact(self.kinetic, self.static, self.curve, getattr(self, "stiffness", inf))
+def contact_of(values: Mapping[str, Value], table: str) -> Contact:
+    """The contact that [plate] or [finger] describes."""
+    given = table_of(values, table)
+    stiffness = given.pop("stiffness", None)
+    return Contact(**given, stiffness=inf if stiffness is None else stiffness)
 
 
-class _Plate(_Contact):
-    table = "plate"
+def drive_of(values: Mapping[str, Value]) -> Drive:
+    """The drive that a file's tables describe.
+
+    Raises:
+        ValueError: each value is in range, but not what follows from them together.
+    """
+    given = table_of(values, "drive")
+    damping, ratio = given.pop("damping"), given.pop("damping_ratio")
+    plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
+    if damping is None:
+        return Drive.with_damping_ratio(**given, damping_ratio=ratio, plate=plate, finger=finger)
+    return Drive(**given, damping=damping, plate=plate, finger=finger)
 
 
-class _Finger(_Contact):
-    table = "finger"
-    stiffness: float = inf
+def release_of(values: Mapping[str, Value]) -> Release:
+    """The initial state and the inputs that [motion] describes."""
+    given = table_of(values, "motion")
+    del given["duration"], given["settling_band"]
+    for name in ("mouse_velocity", "plate_load"):
+        given[name] = over_time(given[name])
+    return Release(**given)
 
 
-class _Motion(Table):
-    table = "motion"
-    mouse_velocity: float | Rows
-    plate_load: float | Rows = 1.0
-    displacement: float = 0.0
-    velocity: float | None = None
-    skin_stretch: float | None = None
-    duration: float | None = None
-    settling_band: float = QUANTITIES["settling_band"].default or 0.0
+def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
+    """What does not fit together within [plate] and [finger], as far as their values are known."""
+    problems = Problems(place)
+    for table in ("plate", "finger"):
+        of_curve, of_static, of_kinetic = (f"{table}.{x}" for x in ("curve", "static", "kinetic"))
+        curve, static, kinetic = (values.get(key) for key in (of_curve, of_static, of_kinetic))
+        if isinstance(curve, tuple):
+            kinetic = curve[0][1] if kinetic is None else kinetic
+            problems.check(check_curve, curve, kinetic, keys=(of_curve, of_kinetic))
+        if static is not None and kinetic is not None:
+            problems.check(check_static, static, kinetic, keys=(of_static, of_kinetic, of_curve))
+    return problems
 
 
-class Schema(BaseModel):
-    """A device file whose every value is in range."""
-
-    device: _Device
-    drive: _Drive
-    plate: _Plate
-    finger: _Finger
-    motion: _Motion
-
-    def conflicts(self, place: Place) -> list[str]:
-        """What does not fit together between its tables."""
-        plate, finger = self.plate.contact(), self.finger.contact()
-        load, stretch = over_time(self.motion.plate_load), self.motion.skin_stretch
-        problems = []
-
-        def say(check: Callable[..., None], *values: object, keys: tuple[str, ...]) -> None:
-            try:
-                check(*values, where=place(*keys), label=keys[0])
-            except ValueError as error:
-                problems.append(error.args[0])
-
-        say(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
-        say(check_load, plate, load, keys=("motion.plate_load", "plate.curve"))
-        if stretch is not None:
-            say(check_stretch, stretch, finger, keys=("motion.skin_stretch", "finger.stiffness"))
-        return problems
+def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
+    """What does not fit together between the tables, each of which fits within itself."""
+    plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
+    load, stretch = over_time(values["motion.plate_load"]), values["motion.skin_stretch"]
+    problems = Problems(place)
+    problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
+    load_keys = ("motion.plate_load", "plate.curve")
+    problems.check(check_load, plate, load, keys=load_keys)
+    if stretch is not None:
+        stretch_keys = ("motion.skin_stretch", "finger.stiffness")
+        problems.check(check_stretch, stretch, finger, keys=stretch_keys)
+    return problems
 
 
-def over_time(value: float | Rows) -> float | Profile:
+def over_time(value: Value) -> float | Profile | None:
     """A constant, or rows (time, value) as a profile."""
-    return value if isinstance(value, float) else Profile(*zip(*value, strict=True))
+    return Profile(*zip(*value, strict=True)) if isinstance(value, tuple) else value

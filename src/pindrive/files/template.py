@@ -69,7 +69,7 @@ def template(whole: bool = False) -> str:
         bounds = quantity.bounds.words(unit)
         lines.append(f"# {quantity.symbol}: {quantity.meaning}")
         follows = f"keeps its ratio to {' over '.join(quantity.follows)} where it is not set itself"
-        said = (bounds, quantity.remark, follows if quantity.follows else "")
+        said = (bounds, quantity.unless_given, quantity.remark, follows if quantity.follows else "")
         lines += [f"#   {text}" for text in wrap("; ".join(filter(None, said)), 94)]
         lines += [f"#   {text}" for text in wrap(quantity.source, 94)]
         lines.append(("# " if quantity.default is None else "") + line(quantity))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pindrive.motion.drive import Drive
     from pindrive.motion.release import Release
 
-    Values = ArrayLike | xr.DataArray
+    Broadcastable = ArrayLike | xr.DataArray
 
 __all__ = ["simulate_batch"]
 
@@ -104,7 +104,7 @@ def simulate_batch(
     energy: bool = False,
     outputs: Sequence[str] | None = None,
     threads: int | None = None,
-    **varied: Values | None,
+    **varied: Broadcastable | None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
 
@@ -158,7 +158,7 @@ def simulate_batch(
 def batched(
     drive: Drive,
     release: Release,
-    varied: Mapping[str, Values | None],
+    varied: Mapping[str, Broadcastable | None],
     *,
     energy: bool = False,
     outputs: Sequence[str] | None = None,
@@ -169,7 +169,7 @@ def batched(
 
     workers = worker_count(threads)
     wanted = _wanted(outputs, energy)
-    named: dict[str, Values] = {
+    named: dict[str, Broadcastable] = {
         **_constants(drive, release, varied),
         **{name: value for name, value in varied.items() if value is not None},
     }
@@ -199,8 +199,8 @@ def batched(
 
 
 def _constants(
-    drive: Drive, release: Release, varied: Mapping[str, Values | None]
-) -> dict[str, Values]:
+    drive: Drive, release: Release, varied: Mapping[str, Broadcastable | None]
+) -> dict[str, Broadcastable]:
     """What drive and release have of the arguments that are not varied, but what is left out."""
     check_fits(drive, release)
     plate, finger = drive.plate, drive.finger
@@ -225,7 +225,7 @@ def _constants(
         "velocity": release.velocity,
         "plate_load": release.plate_load,
     }
-    found: dict[str, Values] = {}
+    found: dict[str, Broadcastable] = {}
     for name, value in has.items():
         if value is None or varied.get(name) is not None:
             continue
@@ -262,7 +262,7 @@ Shared = tuple[dict[str, int], dict[str, "xr.Variable"], dict[str, Any]]
 """The dimensions that the arguments have together, each argument with its own, the coordinates."""
 
 
-def _shared_shape(given: Mapping[str, Values]) -> Shared:
+def _shared_shape(given: Mapping[str, Broadcastable]) -> Shared:
     """The arguments as variables, whose dimensions are named or, as arrays have none, counted."""
     named = {k: v for k, v in given.items() if isinstance(v, xr.DataArray)}
     arrays = {k: _floats(k, v) for k, v in given.items() if k not in named}
@@ -325,7 +325,7 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
     return array.astype(np.float64, copy=False)
 
 
-def _warn(name: str, given: Values) -> None:
+def _warn(name: str, given: Broadcastable) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
     quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
     seen = quantity.seen

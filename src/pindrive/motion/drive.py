@@ -81,7 +81,7 @@ class Contact:
 
     @property
     def frictionless(self) -> bool:
-        """Whether the contact carries no force at all: it is as good as absent."""
+        """Whether the contact carries no force at all."""
         return self.static_friction == 0.0 and (
             self.curve is None or not any(force for _, force in self.curve)
         )

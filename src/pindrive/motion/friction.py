@@ -76,5 +76,5 @@ class Coefficients:
 
 
 def within(value: float, range_: tuple[float, float]) -> bool:
-    """Whether a value lies in a range, but for rounding."""
+    """Whether a value lies in a range, up to rounding."""
     return range_[0] * (1.0 - _SLACK) <= value <= range_[1] * (1.0 + _SLACK)

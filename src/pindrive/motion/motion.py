@@ -64,8 +64,8 @@ class Motion:
         release: the initial state and the inputs.
         settling_band: half the band about the end that counts as settled, a part of
             |x(0) - x_end|.
-        core_numbers: drive, release and the duration asked for, as the core takes them.
-        duration: s; the one asked for, or long enough to see the ending.
+        core_numbers: drive, release and the duration, as the core takes them.
+        duration: s; the one given, or long enough to see the ending.
     """
 
     def __init__(

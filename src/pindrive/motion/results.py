@@ -81,7 +81,7 @@ class Segment:
     begin: float
     """s"""
     end: float
-    """s; infinite for a mode that lasts for ever."""
+    """s; infinite for a mode that lasts forever."""
     mode: ModeName
     """`slip`; `carried` (stuck to the moving plate); `resting` (stuck to what does not move)."""
     plate: int | None
@@ -113,7 +113,7 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
 
     Args:
         table: the core's segments.
-        state_at: position (m) and velocity (m/s) at a time, asked for where no segment follows.
+        state_at: position (m) and velocity (m/s) at a time, used where no segment follows.
     """
     rows = {name: column.tolist() for name, column in table.items()}
     events = []
@@ -221,11 +221,11 @@ class Transient:
     """The paper's time of the transitional period, s: from then on x stays within the settling band
     about x_end; for a steady oscillation, when that begins."""
     rest_time: float
-    """From then on the pin is at rest for good, s; infinite for a motion that never comes to rest:
-    one that decays without end, or a steady oscillation."""
+    """From then on the pin stays at rest, s; infinite for a motion that never comes to rest: one
+    that decays without end, or a steady oscillation."""
     last_event_time: float
     """Last change of a contact's state after the release, s: it sticks, slips or crosses; 0 without
-    any, infinite where they go on for ever, as in a stick-slip cycle."""
+    any, infinite where they go on forever, as in a stick-slip cycle."""
     peak_stretch: float
     """Largest stretch of a compliant finger's skin, m; NaN for a rigid one."""
     peak_stretch_rate: float
@@ -258,7 +258,7 @@ class Ending:
     def kind(self) -> EndKind:
         """In which way it ends.
 
-        `resting`: at rest for ever; `steady`: an oscillation that lasts; `decaying`: a free damped
+        `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
         oscillation or creep towards `position` without another event; `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")

@@ -399,7 +399,7 @@ def _natural_size(motion: Simulated, place: Place) -> float:
 
 
 def _in_range(numbers: CoreNumbers) -> bool:
-    """Whether the core may be asked for a motion; damping may be negative there."""
+    """Whether the core can compute a motion; damping may be negative there."""
 
     def increase(rows: Rows) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))

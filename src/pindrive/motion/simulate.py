@@ -93,7 +93,7 @@ def check_phase(
 
 
 def _plausible(numbers: CoreNumbers) -> bool:
-    """Whether `warn_of` has nothing to say, at a glance: a motion takes microseconds."""
+    """Whether `warn_of` has nothing to say, quickly: a motion takes microseconds."""
     mass, stiffness, damping, plate, finger, v_plate, load, x, v, _, duration = numbers
     m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
     return (

@@ -1,66 +1,11 @@
-"""The paper "Dynamics of tactile device drive": its analysis, mended, and its results, recomputed.
+"""The paper "Dynamics of tactile device drive": its analysis, corrected; its results, recomputed.
 
 Here are equations (2) to (26) as functions of `Releases`; `pindrive paper` writes the report.
 """
 
-from pindrive.paper.formulas import (
-    acceleration,
-    amplitude,
-    applies,
-    coefficients,
-    damped_frequency,
-    decay_rate,
-    first_reversal_time,
-    forward_velocity,
-    friction_offset,
-    initial_phase,
-    limit_damping_ratio,
-    limit_reversal_time,
-    natural_frequency,
-    peak_displacement,
-    peak_time,
-    periods_to_rest,
-    position,
-    return_velocity,
-    return_velocity_time,
-    reversals_to_steady,
-    steady_amplitude,
-    swing,
-    time_to_steady,
-    trough_displacement,
-    trough_time,
-    velocity,
-    velocity_phase,
-)
+from pindrive.paper import formulas
+from pindrive.paper.formulas import *  # noqa: F403
 from pindrive.paper.release import Releases
 
-__all__ = [
-    "Releases",
-    "acceleration",
-    "amplitude",
-    "applies",
-    "coefficients",
-    "damped_frequency",
-    "decay_rate",
-    "first_reversal_time",
-    "forward_velocity",
-    "friction_offset",
-    "initial_phase",
-    "limit_damping_ratio",
-    "limit_reversal_time",
-    "natural_frequency",
-    "peak_displacement",
-    "peak_time",
-    "periods_to_rest",
-    "position",
-    "return_velocity",
-    "return_velocity_time",
-    "reversals_to_steady",
-    "steady_amplitude",
-    "swing",
-    "time_to_steady",
-    "trough_displacement",
-    "trough_time",
-    "velocity",
-    "velocity_phase",
-]
+__all__ = ["Releases"]
+__all__ += formulas.__all__

@@ -84,7 +84,7 @@ def phase_and_amplitude() -> Exhibit:
         "In units of x_0 and 1/ω_0. Above, against the mouse's speed at ζ = 0.16, for three "
         "friction "
         "offsets x_d; below, against x_d at v_p = 0.3 ω_0 x_0, for three damping ratios. Curves "
-        "begin where the plate lets go at once.",
+        "begin where the pin breaks away at once.",
         data,
         _draw_phase_and_amplitude,
         (
@@ -235,7 +235,7 @@ def steady_and_rest() -> Exhibit:
     rest = release(0.0, 1.0, 3.0, 0.0)
     found = batched(
         UNIT_DRIVE,
-        Release(mouse_velocity=1.0, displacement=3.0),  # where the plate lets go: x_p - x_f
+        Release(mouse_velocity=1.0, displacement=3.0),  # where the pin breaks away: x_p - x_f
         dict(plate_kinetic=3.0 + finger, finger_kinetic=finger),
     )
     period = 2 * np.pi
@@ -265,7 +265,7 @@ def steady_and_rest() -> Exhibit:
         "Without damping: until the oscillation is steady, and until finger friction ends it",
         "Left, finger frictionless: the time until the steady oscillation begins, for three mouse "
         "speeds, the reversals of friction until then, and the paper's 0.5 (x_0 / x_d + 1). "
-        "Right: the time from the plate's last letting go to rest, and the paper's "
+        "Right: the time from the last break-away from the plate to rest, and the paper's "
         "v_p / 4 x_f ω_0; x_f = F_f / k.",
         data,
         _draw_steady_and_rest,
@@ -343,8 +343,8 @@ def printed_forms() -> Exhibit:
     return Exhibit(
         "printed-forms",
         "How far the printed extremes are off, without the factor cos φ′",
-        "Largest deviation from the mended forms over mouse speeds of 0 to 3 ω_0 x_0, as a part of "
-        "X_m,0 (of ω_0 X_m,0 for the velocity); x_d = 0.1 x_0.",
+        "Largest deviation from the corrected forms over mouse speeds of 0 to 3 ω_0 x_0, as a part "
+        "of X_m,0 (of ω_0 X_m,0 for the velocity); x_d = 0.1 x_0.",
         data,
         _draw_printed_forms,
         (

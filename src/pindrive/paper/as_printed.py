@@ -1,6 +1,6 @@
-"""The paper's equations as they are printed, where that differs from the mended ones.
+"""The paper's equations as they are printed, where that differs from the corrected ones.
 
-For the comparison alone: each has the name of its mended twin in `formulas.py`. What a printed
+For the comparison alone: each has the name of its corrected twin in `formulas.py`. What a printed
 equation refers to is taken right, so that each answers for its own slip.
 """
 
@@ -14,9 +14,7 @@ from pindrive.paper import formulas
 from pindrive.paper.release import Releases
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from pindrive.paper.formulas import Array
 
 
 def initial_phase(r: Releases) -> Array:

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
+    from pindrive.paper.formulas import Array
     from pindrive.paper.release import Releases
 
-    Array = NDArray[np.float64]
     Truth = NDArray[np.bool_]
 
 TINY = 1e-9

@@ -63,7 +63,7 @@ def steady_state() -> Iterator[Claim]:
     rest = formulas.periods_to_rest(r, finger)
     of_paper = as_printed.periods_to_rest(r, finger)
     from_release = found["transient_rest_time"].to_numpy() / period
-    let_go = np.full(count, np.nan)
+    breakaway = np.full(count, np.nan)
     for i in range(count):
         slips = [
             e.time
@@ -71,9 +71,9 @@ def steady_state() -> Iterator[Claim]:
             if e.contact == "plate" and e.kind == "slip"
         ]
         if slips:
-            let_go[i] = slips[-1]
-    again = np.isfinite(let_go)
-    since = from_release - let_go / period
+            breakaway[i] = slips[-1]
+    again = np.isfinite(breakaway)
+    since = from_release - breakaway / period
     agree = np.abs(since - rest)[again] < 1e-6
     near = np.abs(since - of_paper)[again] <= 0.25 + TINY
     whole = np.abs(from_release - of_paper) <= 0.25 + TINY
@@ -83,7 +83,7 @@ def steady_state() -> Iterator[Claim]:
         "due to it after v_p / (4 · x_d · ω_0) periods.",
         np.concatenate([near, whole]),
         "steady-and-rest",
-        "From the plate's last letting go to rest it is right to a quarter period in "
+        "From the last break-away from the plate to rest it is right to a quarter period in "
         f"{share(near)} motions, where the exact number is ceil(v_p / 2 x_f ω_0) / 2 − 1/4 "
         f"({share(agree)} simulations agree); from the release in {share(whole)}.",
         "x_d is F_f / k, the time runs from the end of the last carried stretch, and a quarter "
@@ -114,9 +114,9 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "due to the spring elastic forces.",
         leaves,
         "figure-2-velocity",
-        f"The pin leaves the plate as the magnet lets go in {share(leaves)} releases from anywhere "
-        f"in 0–3 mm, in {share(leaves[~held])} that meet the condition, in {share(leaves[held])} "
-        "of the others: there the plate alone carries it on.",
+        f"The pin leaves the plate as the magnet releases it in {share(leaves)} releases from "
+        f"anywhere in 0–3 mm, in {share(leaves[~held])} that meet the condition, in "
+        f"{share(leaves[held])} of the others: there the plate alone carries it on.",
         "k x_0 + b v_p + F_f > F_p",
         ~held,
     )
@@ -194,7 +194,7 @@ def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "neither its displacement at t_1 or at phase angle ωt_1 are known.",
         np.array([False]),
         "first-reversal",
-        f"t_1 is a root that can be isolated and found to the last digit: {int(reverses.sum())} of "
+        f"t_1 is a root that can be isolated and found to rounding: {int(reverses.sum())} of "
         f"them satisfy (21) to ${at_most(worst)}$ of ω_0 X_m,0. Displacement and acceleration "
         "there "
         "follow.",
@@ -217,7 +217,7 @@ def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "first-reversal",
         f"Of {both.size} limit cases, 0.1 % more damping ends the reversal and 0.1 % less does not "
         f"in {share(found['damping'])}; the same of mouse velocity in "
-        f"{share(found['mouse_velocity'])}. The time is (26), mended.",
+        f"{share(found['mouse_velocity'])}. The time is (26), corrected.",
     )
 
 
@@ -411,8 +411,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         np.array([row.off_printed < TINY for row in equations] + [right < TINY]),
         "equations",
         f"As printed, {len(wrong)} of {len(equations)} rows of the table of equations are off by "
-        f"up to {max(row.off_printed for row in wrong):.2g}; mended, all are right to "
+        f"up to {max(row.off_printed for row in wrong):.2g}; corrected, all are right to "
         f"${at_most(right)}$.",
-        "the equations are mended, and until friction first reverses",
+        "the equations are corrected, and until friction first reverses",
         np.array([False] * len(equations) + [True]),
     )

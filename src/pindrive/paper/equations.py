@@ -13,11 +13,8 @@ import numpy as np
 from pindrive.paper import as_printed, formulas
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from pindrive.paper.formulas import Array
     from pindrive.paper.population import Facts
-
-    Array = NDArray[np.float64]
 
 
 class Row(NamedTuple):
@@ -126,7 +123,7 @@ def rows(facts: Facts) -> list[Row]:
             "6",
             r"x = e^{\alpha t}X_{m,0}\cos(\omega t - \varphi_0) + x_d",
             "",
-            "x(t), part of X_m,0, with φ_0 mended",
+            "x(t), part of X_m,0, with φ_0 corrected",
             *same((formulas.position(t, f) - x) / sizef),
         ),
         Row(

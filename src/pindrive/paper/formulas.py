@@ -1,4 +1,4 @@
-"""The paper's closed-form analysis, equations (2) to (26), mended.
+"""The paper's closed-form analysis, equations (2) to (26), corrected.
 
 Every function takes `Releases` and gives an array of its shape. They describe the pin from its
 release until friction first changes sign, at t_1 (`first_reversal_time`); before they describe it
@@ -118,7 +118,7 @@ def initial_phase(r: Releases) -> Array:
     """φ_0, rad, (8), from φ'_0 up to φ'_0 + π.
 
     Printed as arctg(v_p / (ω d) - α / ω), which is in the wrong quadrant where x_0 < x_d. The angle
-    of (C_1, C_2) is φ_0 but for whole turns, and of these the one is asked for with which (13) to
+    of (C_1, C_2) is φ_0 up to whole turns, and of these that one is needed with which (13) to
     (26) are times after the release. φ_0 - φ'_0 is the angle of (ω_0² d - α v_p, ω v_p), which has
     no turns to choose.
     """
@@ -307,7 +307,7 @@ def time_to_steady(r: Releases) -> Array:
 
 
 def periods_to_rest(r: Releases, finger_friction: ArrayLike) -> Array:
-    """How many periods after the plate last let it go the undamped pin rests on the finger.
+    """How many periods after its last break-away from the plate the undamped pin rests.
 
     Each half swing takes 2 x_f from the amplitude, x_f = finger friction / k. The paper has
     v_p / (4 x_f ω_0), calling x_f x_d; the exact number is ceil(v_p / (2 x_f ω_0)) / 2 - 1/4, which

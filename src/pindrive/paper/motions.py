@@ -125,7 +125,7 @@ def displacement() -> Exhibit:
         "is "
         "read as the damping ratio ζ = b / 2√(mk), right as b in N·s/m. Assumed: "
         f"{baseline.stated('damping_ratio')}; static friction equal to kinetic, as in (1). "
-        "The line marks when the pin is within 5 % for good.",
+        "The line marks from when on the pin stays within 5 %.",
         data,
         _draw_displacement,
         tuple(readings),
@@ -175,8 +175,8 @@ def _key(figure: Figure) -> None:
 
 def velocity() -> Exhibit:
     """The velocity of the pin over a line: carried, released, at rest. Computed, not measured."""
-    let_go = _CARRY
-    load = Profile([0.0, let_go, let_go + 1e-4], [_HOLD, _HOLD, 1.0])
+    breakaway = _CARRY
+    load = Profile([0.0, breakaway, breakaway + 1e-4], [_HOLD, _HOLD, 1.0])
     release = replace(baseline.RELEASE, displacement=0.0, plate_load=load)
     motion = simulate(baseline.DRIVE, release, duration=0.25)
     t = motion.sample_times(1001)
@@ -197,7 +197,7 @@ def velocity() -> Exhibit:
                 {"flag_values": [0, 1, 2], "flag_meanings": " ".join(_STUCK)},
             ),
             "plate_velocity": ((), baseline.VALUES["mouse_velocity"], {"units": "m/s"}),
-            "released": ((), released, {"units": "s", "long_name": "when the plate lets go"}),
+            "released": ((), released, {"units": "s", "long_name": "when the pin breaks away"}),
         },
         coords={"time": ("time", t, {"units": "s", "long_name": "time since the magnet holds"})},
     )
@@ -210,14 +210,14 @@ def velocity() -> Exhibit:
         "In the shape of Figure 2: velocity of the pin while it crosses a line",
         "Computed. The paper's Figure 2 is a measurement whose data are not printed, so nothing of "
         f"it is here. Assumed: {baseline.stated()}; the magnet holds with {_HOLD:g} times the "
-        f"plate's own friction until {1e3 * let_go:.1f} ms and lets go within 0.1 ms; static "
-        "friction equal to kinetic.",
+        f"plate's own friction until {1e3 * breakaway:.1f} ms and releases the pin within 0.1 ms; "
+        "static friction equal to kinetic.",
         data,
         _draw_velocity,
         (
             f"Carried, the pin has the plate's velocity, {plate:g} mm/s; released, it comes back "
             f"at up to {fastest:.0f} mm/s, {fastest / plate:.1f} times as fast, "
-            f"{return_time:.1f} ms after the plate let go, and then reaches {again:.0f} mm/s "
+            f"{return_time:.1f} ms after it broke away, and then reaches {again:.0f} mm/s "
             "forwards.",
         ),
     )

@@ -1,6 +1,6 @@
 """The stated sets of random releases on which the report tries the paper's formulas and sentences.
 
-Each is drawn from one seed, so that whoever draws it again gets the same.
+Each is drawn from one seed and therefore reproducible.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from pindrive.paper.release import Releases
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
+    from pindrive.paper.formulas import Array
     from pindrive.paper.release import Releases
 
-    Array = NDArray[np.float64]
 
 SEED = 298
 """The paper's number in its journal."""
@@ -28,7 +27,7 @@ COUNT = 2000
 
 RANGES = (
     "m 2–20 g, k 20–400 N/m, ζ 0–0.97 (denser where small), F 0–50 mN, v_p 0–300 mm/s; "
-    "x_0 from where the plate lets go, on average 1.5 mm beyond"
+    "x_0 from where the pin breaks away, on average 1.5 mm beyond"
 )
 """What `damped` draws from, in words."""
 

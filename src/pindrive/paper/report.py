@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-TITLE: Final = "“Dynamics of tactile device drive”: reproduced, mended and answered"
+TITLE: Final = "“Dynamics of tactile device drive”: reproduced, corrected and answered"
 
 PAGE: Final = "paper.html"
 """The name of the page."""
@@ -73,9 +73,9 @@ class Report:
             f"Of {len(self.claims)} sentences of its analysis, results and conclusions, {whole} "
             f"hold, {count['holds'] - whole} hold under a condition that they do not name, and "
             f"{count['does not hold']} do not hold. Of its equations, ({'), ('.join(wrong)}) need "
-            "mending; mended, all agree with the exact simulator to rounding, until friction first "
-            "reverses. When that is, which the paper calls impossible to say analytically, is the "
-            "exact root of (21)."
+            "correction; corrected, all agree with the exact simulator to rounding, until friction "
+            "first reverses. When that is, which the paper calls impossible to say analytically, "
+            "is the exact root of (21)."
         )
 
     @property
@@ -257,7 +257,7 @@ def page(report: Report, pictures: Mapping[str, bytes]) -> str:
 
     parts = {
         "verdicts": "Its sentences, judged",
-        "equations": "Its equations, mended",
+        "equations": "Its equations, corrected",
         **{_anchor(section.title): section.title for section in report.sections},
         "assumed": "What was assumed",
     }
@@ -351,7 +351,7 @@ def _inlined(picture: bytes, name: str) -> str:
 
 NAME: Final = "paper.md"
 IMAGES: Final = "images/paper"
-_EQUATIONS: Final = "Its equations, mended"
+_EQUATIONS: Final = "Its equations, corrected"
 
 
 def text(report: Report) -> str:

@@ -111,7 +111,7 @@ def settling(data: xr.Dataset) -> Exhibit:
     return Exhibit(
         "influence-on-time",
         "The time of the transitional period against each of the six parameters",
-        f"Blue: settled, within 5 % of |x_0 − x_end| for good. Orange: at rest for good. Dot: the "
+        f"Blue: settled, from then on within 5 % of |x_0 − x_end|. Orange: at rest. Dot: the "
         f"baseline ({baseline.stated()}), which every other parameter keeps.",
         data[["value", "settling_time", "rest_time"]],
         _draw_settling,

@@ -34,10 +34,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.hand import HandPath
-    from pindrive.device.scanning import Scan
+    from pindrive.device.scanning import Progress, Scan
     from pindrive.evaluation.results import Judgement
 
-Progress = Callable[[int, int], None]
 
 FRAMES: Final = 25
 """In each second."""

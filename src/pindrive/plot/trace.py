@@ -127,7 +127,7 @@ class Trace:
 
 
 def _rounds(motion: Motion) -> tuple[float, float]:
-    """Begin and period of what repeats for ever; infinite if nothing with events does."""
+    """Begin and period of what repeats forever; infinite if nothing with events does."""
     last = motion.segments[-1].end
     if motion.ending.cycle == "stick-slip" and isfinite(last):
         return last - motion.ending.period, motion.ending.period

@@ -144,7 +144,7 @@ def usable_cores() -> int:
 
 
 def worker_count(threads: int | None) -> int:
-    """As many as are asked for, or as there are cores to run on.
+    """As many as given, or as there are cores to run on.
 
     Raises:
         ValueError: that is no count.

@@ -63,7 +63,7 @@ class CsvTable:
         apart = max(",;\t", key=head.count)
         rows = tuple(tuple(row) for row in csv.reader([line for _, line in lines], delimiter=apart))
         if len(rows) != len(lines):
-            raise ValueError(f"{file}: a quoted cell goes on over several lines")
+            raise ValueError(f"{file}: a quoted cell continues over several lines")
         headings = tuple(heading.strip() for heading in rows[0])
         return cls(str(file), headings, tuple(number for number, _ in lines[1:]), rows[1:])
 

@@ -31,8 +31,7 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         1000.0,
         "mice report 125 to 1000 times a second (USB HID)",
         "control",
-        optional=True,
-        remark="1000 Hz unless given",
+        absent=1000.0,
     ),
     Quantity(
         "latency",
@@ -43,8 +42,7 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         0.005,
         "assumed: a few reports of a mouse",
         "control",
-        optional=True,
-        remark="5 ms unless given",
+        absent=0.005,
     ),
     Quantity(
         "threshold",
@@ -55,8 +53,7 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         0.5,
         "assumed: the middle",
         "control",
-        optional=True,
-        remark="0.5 unless given",
+        absent=0.5,
     ),
     Quantity(
         "hysteresis",
@@ -67,8 +64,8 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         0.1,
         "assumed",
         "control",
-        optional=True,
-        remark="0.1 unless given; the whole band within 0 and 1",
+        absent=0.1,
+        remark="the whole band within 0 and 1",
     ),
 )
 
@@ -82,8 +79,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         4.0,
         "assumed",
         "array",
-        optional=True,
-        remark="1 unless given",
+        absent=1.0,
     ),
     Quantity(
         "rows",
@@ -94,8 +90,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         4.0,
         "assumed",
         "array",
-        optional=True,
-        remark="1 unless given",
+        absent=1.0,
     ),
     Quantity(
         "pitch",
@@ -106,8 +101,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         0.005,
         "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
         "array",
-        optional=True,
-        remark="5 mm unless given",
+        absent=0.005,
     ),
     Quantity(
         "pin_diameter",
@@ -118,8 +112,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         0.0015,
         "as a Braille dot at its base, 1.4-1.6 mm",
         "array",
-        optional=True,
-        remark="1.5 mm unless given",
+        absent=0.0015,
     ),
     Quantity(
         "places",
@@ -129,7 +122,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(-10.0, 10.0),
         source="assumed: three pins in a triangle",
         section="array",
-        optional=True,
         remark="in place of columns, rows and pitch",
         rows_of="places",
         rows=((0.0, -0.002), (0.0, 0.002), (0.0035, 0.0)),
@@ -143,8 +135,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         1.0,
         "assumed: the scene is felt in its own size",
         "array",
-        optional=True,
-        remark="1 unless given",
+        absent=1.0,
     ),
     Quantity(
         "axis",
@@ -155,8 +146,7 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         0.0,
         "the paper keeps drive and motion parallel, along the lines of the page",
         "array",
-        optional=True,
-        remark="0 deg unless given",
+        absent=0.0,
     ),
 )
 
@@ -170,8 +160,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
         "scan",
-        optional=True,
-        remark="60 mm/s unless given",
+        absent=0.060,
     ),
     Quantity(
         "return_speed",
@@ -182,8 +171,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         0.1,
         "the upper end of hand speed in finger studies (arXiv 2505.11162)",
         "scan",
-        optional=True,
-        remark="100 mm/s unless given",
+        absent=0.1,
     ),
     Quantity(
         "pause",
@@ -194,8 +182,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         0.2,
         "assumed",
         "scan",
-        optional=True,
-        remark="200 ms unless given",
+        absent=0.2,
     ),
     Quantity(
         "line_pitch",
@@ -206,7 +193,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: twice the height of the text",
         "scan",
-        optional=True,
         example=0.020,
         remark="of text twice its height, over an image one stroke along its middle, unless given",
     ),
@@ -219,8 +205,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         0.010,
         "assumed: letters that a pin can follow",
         "scan",
-        optional=True,
-        remark="10 mm unless given",
+        absent=0.010,
     ),
     Quantity(
         "pixel",
@@ -231,7 +216,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: 254 pixels an inch",
         "scan",
-        optional=True,
         example=1e-4,
         remark="of an image its own resolution, of text and lines 0.1 mm, unless given",
     ),
@@ -244,8 +228,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         radians(20.0),
         "assumed: 6 % of the speed is lost at 20 deg, of the force as much",
         "scan",
-        optional=True,
-        remark="20 deg unless given",
+        absent=radians(20.0),
     ),
     Quantity(
         "hand_acceleration",
@@ -256,8 +239,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         30.0,
         "assumed: five times that of a minimum-jerk stroke of 100 mm in 0.3 s",
         "scan",
-        optional=True,
-        remark="30 m/s^2 unless given",
+        absent=30.0,
     ),
     Quantity(
         "mouse_resolution",
@@ -268,8 +250,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         1e7 / 254.0,
         "assumed: 1000 to the inch, as usual mice have",
         "scan",
-        optional=True,
-        remark="1000 dpi unless given",
+        absent=1e7 / 254.0,
     ),
     Quantity(
         "smoothing_cutoff",
@@ -280,8 +261,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         20.0,
         "hands move below 10 Hz; twice that takes 0.13 % off the peak speed of a stroke of 0.15 s",
         "scan",
-        optional=True,
-        remark="20 Hz unless given",
+        absent=20.0,
     ),
     Quantity(
         "path_deviation",
@@ -292,8 +272,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         1e-4,
         "its slope, which is the force of inertia, is then within 3 % of its peak",
         "scan",
-        optional=True,
-        remark="1e-4 unless given",
+        absent=1e-4,
     ),
 )
 
@@ -315,7 +294,7 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "white around the text or the lines of a page",
         between(0.0, 10.0),
         0.005,
-        "assumed: the hand starts and stops on white paper",
+        "assumed: half the height of the text",
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
@@ -428,8 +407,8 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "source": "assumed: sixteen spots on letters 10 mm high; the page is felt twice as large",
     },
     "motion.plate_load": {
-        "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, lets go in "
-        "5 ms",
+        "source": "assumed: a magnet that held the pin with 1 N, 102 times its weight, releases "
+        "it in 5 ms",
         "rows": ((0.0, 103.0), (0.005, 1.0)),
     },
     "motion.displacement": {

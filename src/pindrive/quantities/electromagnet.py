@@ -24,7 +24,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
         "magnet",
-        optional=True,
         remark="1 N unless given, or what the coil below gives",
     ),
     Quantity(
@@ -36,7 +35,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
         "magnet",
-        optional=True,
         remark="3 ms unless given, or what the coil gives",
     ),
     Quantity(
@@ -48,7 +46,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
         "magnet",
-        optional=True,
         remark="5 ms unless given, or what the coil gives",
     ),
     Quantity(
@@ -60,7 +57,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         1.0,
         "assumed: a coil just strong enough",
         "magnet",
-        optional=True,
         remark="1 unless given, or what the coil gives",
     ),
     Quantity(
@@ -72,8 +68,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         0.0,
         "assumed: soft iron and a paint thick enough",
         "magnet",
-        optional=True,
-        remark="0 N unless given",
+        absent=0.0,
     ),
     Quantity(
         "pressing",
@@ -84,7 +79,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         None,
         "9.80665 m/s2 (standard gravity) times 1 g",
         "magnet",
-        optional=True,
         example=0.00980665,
         remark="its weight unless given",
     ),
@@ -97,8 +91,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         1e-4,
         "a thousandth of the scatter of friction coefficients in handbooks",
         "magnet",
-        optional=True,
-        remark="1e-4 unless given",
+        absent=1e-4,
     ),
 )
 """The electromagnet by what it does."""
@@ -113,7 +106,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed",
         "magnet",
-        optional=True,
         example=250,
         remark="with the six that follow in place of hold_force, rise_time, fall_time, saturation",
     ),
@@ -126,7 +118,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: a core 2 mm wide",
         "magnet",
-        optional=True,
         example=3e-6,
     ),
     Quantity(
@@ -138,7 +129,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed",
         "magnet",
-        optional=True,
         example=5e-5,
     ),
     Quantity(
@@ -150,7 +140,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed",
         "magnet",
-        optional=True,
         example=1e-4,
     ),
     Quantity(
@@ -162,7 +151,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: round a core 2 mm wide",
         "magnet",
-        optional=True,
         example=0.0085,
     ),
     Quantity(
@@ -174,7 +162,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed",
         "magnet",
-        optional=True,
         example=1.0,
     ),
     Quantity(
@@ -186,7 +173,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: a diode alone, its voltage neglected",
         "magnet",
-        optional=True,
         example=0.0,
         remark="0 ohm unless given",
     ),
@@ -199,7 +185,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "iron, 1.5-2.1 T (handbook tables); the lower middle",
         "magnet",
-        optional=True,
         example=1.6,
         remark="1.6 T unless given",
     ),
@@ -213,7 +198,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         "1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of 2-25 "
         "(Incropera, table 1.1)",
         "magnet",
-        optional=True,
         example=430.0,
         remark="430 K/W unless given",
     ),
@@ -226,7 +210,6 @@ COIL: Final[tuple[Quantity, ...]] = (
         None,
         "assumed: from 25 °C to 45 °C, for a finger stays on it",
         "magnet",
-        optional=True,
         example=20.0,
         remark="20 K unless given",
     ),

@@ -20,8 +20,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
         "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
         "judge",
-        optional=True,
-        remark="0.045 mm unless given",
+        absent=45e-6,
     ),
     Quantity(
         "direction",
@@ -32,8 +31,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         5e-5,
         f"{GLEESON}, from 0.05 mm",
         "judge",
-        optional=True,
-        remark="0.05 mm unless given",
+        absent=5e-5,
     ),
     Quantity(
         "direction_sure",
@@ -44,8 +42,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         2e-4,
         f"{GLEESON}, 0.2 mm",
         "judge",
-        optional=True,
-        remark="0.2 mm unless given",
+        absent=2e-4,
     ),
     Quantity(
         "direction_speed",
@@ -56,8 +53,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         2e-3,
         f"{GLEESON}, 2 mm/s",
         "judge",
-        optional=True,
-        remark="2 mm/s unless given",
+        absent=2e-3,
     ),
     Quantity(
         "echo",
@@ -68,8 +64,7 @@ CRITERIA: Final[tuple[Quantity, ...]] = (
         0.5,
         "assumed",
         "judge",
-        optional=True,
-        remark="0.5 unless given",
+        absent=0.5,
     ),
 )
 """The limits that a scan is judged by: a table of a device file."""
@@ -99,7 +94,7 @@ JUDGED: Final[tuple[Quantity, ...]] = tuple(
         ("lines", "n", "printed lines that passed whole under a pin, counted under each pin"),
         ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
         ("unseen", "n_2", "missed: the control block did not see them"),
-        ("merged", "n_3", "missed: the pin or the magnet had not let go of the line before"),
+        ("merged", "n_3", "missed: the magnet or the pin was not yet back from the line before"),
         ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
         ("echoes", "n_5", "false: swings forward that no magnet made, felt like a line"),
         ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),

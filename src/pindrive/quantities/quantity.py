@@ -89,10 +89,15 @@ class Quantity:
     source: str = ""
     section: str = ""
     """The table of the device file that holds it; empty when the name says so or it is no input."""
-    optional: bool = False
-    """Whether a device file may leave it out."""
+    mandatory: bool = False
+    """Whether a device file must give it."""
+    alternative: str = ""
+    """The key from which a mandatory one follows where that is given in its place."""
+    absent: float | None = None
+    """SI value that holds where a device file leaves it out; None: there is none, or it follows
+    from others."""
     remark: str = ""
-    """What else its device file says about it: what holds where it is left out."""
+    """What else its device file says about it."""
     example: float | None = None
     """SI value in a comment of that file, where the file leaves it out."""
     rows_of: str = ""
@@ -148,6 +153,11 @@ class Quantity:
     def written(self, value: float) -> str:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
         return f"{value * self.display_scale:.12g} {self.display_unit}".rstrip()
+
+    @property
+    def unless_given(self) -> str:
+        """Words for the value that holds where a device file leaves it out; empty: none does."""
+        return "" if self.absent is None else f"{self.written(self.absent)} unless given"
 
     def required(self, value: float) -> str:
         """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""

@@ -83,13 +83,13 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
         "transient.rest_time",
         "t_r",
         "s",
-        "from then on at rest for good; infinite for a motion that never comes to rest",
+        "from then on it stays at rest; infinite for a motion that never comes to rest",
     ),
     Quantity(
         "transient.last_event_time",
         "t_e",
         "s",
-        "last change at a contact; 0 without any, infinite where they go on for ever",
+        "last change at a contact; 0 without any, infinite where they go on forever",
     ),
     Quantity(
         "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"

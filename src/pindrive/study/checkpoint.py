@@ -1,7 +1,7 @@
 """Which chunks of an unfinished study are done: a line for each, with a checksum of its bytes.
 
 A line is written when its chunk is. One that is cut off, or whose bytes are not in the file after a
-power failure, counts for nothing: its chunk is worked out anew.
+power failure, is ignored: its chunk is computed again.
 """
 
 from __future__ import annotations
@@ -13,11 +13,10 @@ from pindrive.files.output import OutputError, naming
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from types import TracebackType
 
 
 class Tally(NamedTuple):
-    """What a chunk came to, in points."""
+    """The numbers of points of a chunk, by what became of them."""
 
     points: int
     refused: int
@@ -50,12 +49,7 @@ class Journal:
     def __enter__(self) -> Journal:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._file.close()
 
     def note(self, chunk: int, checksum: int, tally: Tally) -> None:

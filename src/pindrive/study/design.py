@@ -92,7 +92,7 @@ class Plan:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The files that it was read from, or reads when it is worked out."""
+        """The files that it was read from, or reads when it is computed."""
         page = self.page.page.files.values() if self.page else ()
         return (self.path, *self.device.inputs, *page)
 
@@ -117,7 +117,7 @@ class Plan:
 
     @property
     def at_a_time(self) -> int:
-        """How many points are worked out between two looks at how far it has come."""
+        """How many points are computed before the progress is reported again."""
         return 16 * SCANS if self.page else CHUNK
 
     @property

@@ -23,7 +23,6 @@ from pindrive.lazy import qmc, special
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Values = NDArray[np.float64]
     Indices = NDArray[np.int64]
     from collections.abc import Collection, Mapping
 
@@ -43,7 +42,7 @@ class Even:
     count: int
     log: bool = False
 
-    def at(self, index: Indices) -> Values:
+    def at(self, index: Indices) -> NDArray[np.float64]:
         """The values at these places, counted from 0; the ends are met exactly."""
         part = index / (self.count - 1)
         low, high = (log(self.low), log(self.high)) if self.log else (self.low, self.high)
@@ -69,7 +68,7 @@ class Listed:
         """How many."""
         return len(self.values)
 
-    def at(self, index: Indices) -> Values:
+    def at(self, index: Indices) -> NDArray[np.float64]:
         """The values at these places, counted from 0."""
         return np.asarray(self.values)[index]
 
@@ -103,7 +102,7 @@ class Distribution:
     lower: float = -inf
     upper: float = inf
 
-    def ppf(self, part: Values) -> Values:
+    def ppf(self, part: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values below which these parts (between 0 and 1) of all draws lie."""
         first, second = self.first, self.second
         if self.kind == "uniform":
@@ -115,7 +114,7 @@ class Distribution:
         deviations = special.ndtri(below + (above - below) * part)
         normal = self.kind == "normal"
         values = first + second * deviations if normal else first * np.exp(log(second) * deviations)
-        found: Values = np.clip(values, self.lower, self.upper)
+        found: NDArray[np.float64] = np.clip(values, self.lower, self.upper)
         return found
 
     @property
@@ -207,7 +206,7 @@ def _sobol(keys: tuple[str, ...], seed: int, block: int) -> NDArray[np.float64]:
     if block:
         sequence.fast_forward(block * BLOCK)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a block goes on where the one before ended
+        warnings.simplefilter("ignore")  # a block continues where the one before ended
         drawn = sequence.random(BLOCK)
     return np.ascontiguousarray(drawn.T) + 2.0**-31
 

@@ -123,7 +123,7 @@ def usual_outputs(
 ) -> tuple[str, ...]:
     """All numbers that exist but the ledger's; the skin's only of a skin, the coil's likewise."""
     rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
-    coil = device.whole and device.whole.magnet.magnet().coil
+    coil = device.whole and device.whole.magnet().coil
     missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
     return tuple(name for name in among if name not in missing)
 
@@ -223,11 +223,11 @@ class Demand:
         return np.where(np.isnan(values), inf, beyond)
 
     def text(self) -> str:
-        """As a person reads it: "settling_time ≤ 60.00 ms"."""
+        """For display: "settling_time ≤ 60.00 ms"."""
         return f"{label(self.name)} {'≤' if self.at_most else '≥'} {self.shown()}"
 
     def shown(self) -> str:
-        """The limit in the unit a person reads it in."""
+        """The limit in its display unit."""
         quantity = NUMBERS[self.name]
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
 

@@ -54,7 +54,7 @@ class StudyPage:
     def check(self) -> None:
         """Refuse files that are not there, or hold something else by now.
 
-        Whoever works out a part of a study, perhaps on another machine, does so before.
+        Called before any part of a study is computed, perhaps on another machine.
 
         Raises:
             ValueError: so it is.

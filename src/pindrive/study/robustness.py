@@ -1,4 +1,4 @@
-"""How a design fares in all its tolerances: spread, yield against a specification, worst case."""
+"""Tolerance analysis of a design: spread, yield against a specification, worst case."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from pindrive.device.scanning import Progress
     from pindrive.motion.motion import Motion
     from pindrive.study.design import Plan
     from pindrive.study.outputs import Demand
 
-    Values = NDArray[np.float64]
 
 USUAL_COUNT: Final = 100_000
 USUAL_COUNT_OF_SCANS: Final = 1000
@@ -97,7 +97,7 @@ class Robustness:
     seed: int
     own: Mapping[str, float]
     """Numbers of the design itself."""
-    values: Mapping[str, Values]
+    values: Mapping[str, NDArray[np.float64]]
     """Watched numbers of every design that exists; NaN where it has none."""
     refusals: tuple[RefusedPoints, ...]
     """Draws that cannot exist, as their values contradict each other: no designs."""
@@ -175,7 +175,7 @@ def robustness(
     count: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Robustness:
     """Draw designs within the tolerances of a study and hold them against its specification.
 
@@ -218,7 +218,7 @@ def robustness(
     budgets.DESIGN_VALUES.check(count * each, of)
     sample = Sample(tuple(ranges.scatter), count, seed)
 
-    def numbers(points: Values) -> dict[str, Values]:
+    def numbers(points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         columns = ranges.columns(plan, points)
         return evaluate(plan, columns, points.shape[1], (*watched, "status", "reason"), threads)
 
@@ -272,9 +272,9 @@ def _worst(
     plan: Plan,
     ranges: Ranges,
     demand: Demand,
-    points: Values,
-    table: Mapping[str, Values],
-    numbers: Callable[[Values], Mapping[str, Values]],
+    points: NDArray[np.float64],
+    table: Mapping[str, NDArray[np.float64]],
+    numbers: Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]],
     seed: int,
 ) -> WorstCase:
     """The worst of the draws, made worse by differential evolution within the ranges.
@@ -284,12 +284,12 @@ def _worst(
     spans = np.array([scatter.span for scatter in ranges.scatter.values()])
     low, width = spans[:, :1], np.maximum(np.diff(spans, axis=1), 1e-300)
 
-    def badness(excess: Values, status: Values) -> Values:
+    def badness(excess: NDArray[np.float64], status: NDArray[np.float64]) -> NDArray[np.float64]:
         """Lower is worse; what never happens is worst, what cannot exist does not count."""
         far = 1e6 * abs(demand.limit or 1.0)
         return np.where(exist(status), -np.minimum(excess, far), far)
 
-    def at(parts: Values) -> Values:
+    def at(parts: NDArray[np.float64]) -> NDArray[np.float64]:
         found = numbers(low + width * parts.reshape(len(spans), -1))
         return badness(demand.excess(found[demand.name]), found["status"])
 

@@ -1,4 +1,4 @@
-"""A study worked off chunk by chunk into one file; interrupted, it goes on where it stopped."""
+"""A study computed in chunks into one file; an interrupted run continues where it stopped."""
 
 from __future__ import annotations
 
@@ -35,16 +35,17 @@ from pindrive.study.workers import DIED, workers
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
 
 
 Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
-"""Works out chunks of a plan, and hands over each when it is done, in any order."""
+"""Computes chunks of a plan, and yields each when it is done, in any order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a sweep came to."""
+    """The result of a sweep."""
 
     path: Path
     points: int
@@ -66,20 +67,20 @@ def sweep(
     restart: bool = False,
     stop_after: int | None = None,
     work: Work | None = None,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    tell: Progress = lambda done, total: None,
 ) -> Result:
-    """Work off all points of a study into the NetCDF file `target`.
+    """Compute all points of a study and write them into the NetCDF file `target`.
 
     Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
 
     Args:
         plan: the study.
         target: a NetCDF file.
-        resume: go on with what an interrupted run left, if there is any.
-        restart: throw away what an interrupted run left; an earlier study at `target` is replaced
+        resume: continue an interrupted run, if there is one.
+        restart: discard an interrupted run; an earlier study at `target` is replaced
             when the new one is whole.
-        stop_after: stop when at least so many points are done; `resume` goes on.
-        work: how chunks are worked out; on all cores unless given.
+        stop_after: stop when at least so many points are done; `resume` continues.
+        work: how chunks are computed; on all cores unless given.
         tell: called after each chunk with the points done and the points in all.
 
     Raises:
@@ -138,7 +139,7 @@ def sweep(
 def on_threads(threads: int | None = None) -> Work:
     """Chunks side by side on the cores of this machine, as many at a time as there are threads.
 
-    Scans are worked out by as many processes instead: a script that sweeps them does so under
+    Scans are computed by as many processes instead: a script that sweeps them does so under
     `if __name__ == "__main__":`, as all that begin processes.
     """
     count = worker_count(threads)
@@ -148,7 +149,7 @@ def on_threads(threads: int | None = None) -> Work:
         try:
             yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
         except BrokenProcessPool:
-            raise OutputError(f"{DIED}; finished chunks are kept, --resume goes on") from None
+            raise OutputError(f"{DIED}; finished chunks are kept, --resume continues") from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -182,7 +183,7 @@ def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
         raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
     if notes.exists() and not may_be_there:
         raise OutputError(
-            f"{notes}: an unfinished run is there; --resume goes on with it, --restart begins anew"
+            f"{notes}: an unfinished run is there; --resume continues it, --restart begins anew"
         )
 
 
@@ -234,7 +235,7 @@ def _kept(chunks: int) -> str:
     if not chunks:
         return "no chunk was finished yet"
     finished = counted(chunks, "finished chunk is", "finished chunks are")
-    return f"{finished} kept, --resume goes on with {'it' if chunks == 1 else 'them'}"
+    return f"{finished} kept, --resume continues with {'it' if chunks == 1 else 'them'}"
 
 
 def _drop_damaged(journal: Journal, store: Store, plan: Plan) -> None:
@@ -331,7 +332,7 @@ def on_cluster(address: str) -> Work:
             except KilledWorker as error:
                 raise OutputError(
                     f"--cluster {address}: workers died one after the other: {error}; finished "
-                    "chunks are kept, --resume goes on with them"
+                    "chunks are kept, --resume continues with them"
                 ) from None
 
     return work

@@ -77,7 +77,7 @@ def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
 
 
 def _row(plan: Plan, point: Mapping[str, float]) -> Row:
-    """What a point comes to; one without a scan has a status and no numbers."""
+    """The numbers at a point; one without a scan has a status and no numbers."""
     names = variables(SCANNED)
     try:
         found = scan_numbers(judged_at(plan, point))

@@ -21,11 +21,12 @@ from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sobol import Indices, sobol_indices
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from pindrive.device.scanning import Progress
     from pindrive.study.design import Columns, Plan
 
 _SETTLED: Final = "transient_settled"
@@ -88,7 +89,7 @@ class Influence:
     keys: tuple[str, ...]
     ranges: Ranges
     near: Elasticities | None
-    """None where they were not asked for, and of scans, which have no exact derivatives."""
+    """None where they were not requested, and of scans, which have no exact derivatives."""
     over: Mapping[str, Indices]
     rows: int
     points: int
@@ -146,7 +147,7 @@ def left_out(refusals: Sequence[RefusedPoints]) -> str:
 
 
 def askable(plan: Plan) -> tuple[str, ...]:
-    """The variables whose sensitivity may be asked for."""
+    """The variables whose sensitivity can be computed."""
     return SCAN_MEASURED if plan.page else (*MEASURED, _SETTLED)
 
 
@@ -158,7 +159,7 @@ def sobol(
     rows: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Influence:
     """Which key matters over the ranges of a study: Sobol' indices of first order and total.
 
@@ -168,7 +169,7 @@ def sobol(
     Args:
         study: whose axes are the ranges; each key is drawn independently of the others.
         tolerances: over the study's tolerances instead of its axes.
-        numbers: the numbers that are asked for, as "settling_time"; all that exist unless given, of
+        numbers: the numbers to analyse, as "settling_time"; all that exist unless given, of
             the energy ledger those that the study names in its outputs.
         rows: of the design, a power of 2, at least 128, of (keys + 2) points each; 8192 unless
             given, of scans 256.
@@ -269,7 +270,7 @@ def influence(
     rows: int | None = None,
     seed: int = 1,
     threads: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Influence:
     """Sobol' indices as `sobol` finds them, with elasticities beside them where there are any."""
     found = sobol(

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
     from pindrive.quantities.quantity import Quantity
 
-    Values = NDArray[np.float64]
-
 
 QUANTITY: Final[dict[str, Quantity]] = {
     variable(key): q for key, q in template.NUMBERS.items()
@@ -130,14 +128,14 @@ class Panel:
     """x alone, or y and x: the axes of `values`."""
     at: Mapping[str, float]
     """What else was varied, and is held here."""
-    along: Sequence[Values]
+    along: Sequence[NDArray[np.float64]]
     """The values of each key."""
-    values: Values
+    values: NDArray[np.float64]
     unsettled: NDArray[np.bool_]
     refused: NDArray[np.bool_]
-    low: Values | None = None
+    low: NDArray[np.float64] | None = None
     """Of many draws the 5 % quantile, where `values` are their median."""
-    high: Values | None = None
+    high: NDArray[np.float64] | None = None
     """The 95 % quantile."""
 
 
@@ -161,7 +159,9 @@ class View:
             raise ValueError(f"{self.path}: cannot be read: {reason}") from None
         if self.path.endswith(".partial"):
             self.data.close()
-            raise ValueError(f"{self.path}: is not finished; `pindrive sweep --resume` goes on")
+            raise ValueError(
+                f"{self.path}: is not finished; `pindrive sweep --resume` continues it"
+            )
         if "identity" not in self.data.attrs:
             self.data.close()
             raise ValueError(f"{self.path}: is no study; `pindrive sweep` writes one")
@@ -194,7 +194,7 @@ class View:
     def __exit__(self, *_: object) -> None:
         self.data.close()
 
-    # ---- what is asked for -----------------------------------------------------------------------
+    # ---- what is requested -----------------------------------------------------------------------
 
     def key(self, given: str, option: str) -> str:
         """The varied key that is meant.
@@ -256,7 +256,7 @@ class View:
         return found
 
     def axes(self, x: str | None, y: str | None, held: Mapping[str, float]) -> tuple[str, str]:
-        """The keys to draw over: those asked for, or the first two that are free.
+        """The keys to draw over: those given, or the first two that are free.
 
         Raises:
             ValueError: there are none, or the two change together.
@@ -349,7 +349,7 @@ def _unsettled(part: xr.Dataset, number: str) -> NDArray[np.bool_]:
     return np.asarray(found | np.isnan(part[number].values))
 
 
-def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> Values:
+def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> NDArray[np.float64]:
     """A coordinate's values, so that they spread over the others of these dimensions."""
     shape = [coordinate.size if d == coordinate.dims[0] else 1 for d in dims]
     return np.asarray(coordinate.values).reshape(shape)
@@ -359,8 +359,8 @@ def _summed_up(
     number: str,
     keys: Sequence[str],
     at: Mapping[str, float],
-    places: Sequence[Values],
-    values: Values,
+    places: Sequence[NDArray[np.float64]],
+    values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
 ) -> Panel:
@@ -376,8 +376,8 @@ def _binned(
     number: str,
     keys: Sequence[str],
     at: Mapping[str, float],
-    along: Sequence[Values],
-    values: Values,
+    along: Sequence[NDArray[np.float64]],
+    values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
 ) -> Panel:
@@ -405,7 +405,9 @@ def _binned(
     return Panel(number, keys, at, middles, middle, parts[0], parts[1], low, high)
 
 
-def quantiles(group: NDArray[np.int64], values: Values, count: int) -> Values:
+def quantiles(
+    group: NDArray[np.int64], values: NDArray[np.float64], count: int
+) -> NDArray[np.float64]:
     """The 5, 50 and 95 % quantiles of the values in each of `count` groups without NaN, (3, n)."""
     exists = ~np.isnan(values)
     group, values = group[exists], values[exists]

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
     from pindrive.study.distributions import Distribution
 
-    Values = NDArray[np.float64]
-    Function = Callable[[Values], Mapping[str, Values]]
+    Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
     """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
 
 RESAMPLES: Final = 500
@@ -37,9 +36,9 @@ _AT_A_TIME: Final = 50
 class Interval:
     """A number for each key, with its 95 % confidence interval."""
 
-    value: Values
-    low: Values
-    high: Values
+    value: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,12 +82,16 @@ def sobol_indices(
     return _estimate(designs, rng)
 
 
-def _estimate(designs: Mapping[str, Values], rng: np.random.Generator) -> dict[str, Indices]:
+def _estimate(
+    designs: Mapping[str, NDArray[np.float64]], rng: np.random.Generator
+) -> dict[str, Indices]:
     """From the values at A, B and each mixture: everything is a sum over rows, reweighted."""
     sums = {name: _Sums.of(values) for name, values in designs.items()}
     count = next(iter(designs.values())).shape[1]
     one = {name: s.indices(np.ones((1, count))) for name, s in sums.items()}
-    draws: dict[str, list[tuple[Values, Values]]] = {name: [] for name in sums}
+    draws: dict[str, list[tuple[NDArray[np.float64], NDArray[np.float64]]]] = {
+        name: [] for name in sums
+    }
     for _ in range(0, RESAMPLES, _AT_A_TIME):
         weights = rng.multinomial(count, np.full(count, 1.0 / count), _AT_A_TIME).astype(float)
         for name, s in sums.items():
@@ -111,14 +114,14 @@ def _estimate(designs: Mapping[str, Values], rng: np.random.Generator) -> dict[s
 class _Sums:
     """The terms of the estimators of one number, a row for each row of the design."""
 
-    terms: Values
+    terms: NDArray[np.float64]
     """Columns: 1, a + b, a² + b², and for each key b (ab - a), ab - a, (ab - a)²."""
     kept: float
     spread: float
     keys: int
 
     @classmethod
-    def of(cls, design: Values) -> _Sums:
+    def of(cls, design: NDArray[np.float64]) -> _Sums:
         """Of values at A, B and each mixture, shape (keys + 2, count)."""
         exists = np.isfinite(design).all(axis=0)
         keys = len(design) - 2
@@ -138,7 +141,9 @@ class _Sums:
             columns += [b * (ab - a), ab - a, (ab - a) ** 2]
         return cls(np.array(columns).T, kept, spread, keys)
 
-    def indices(self, weights: Values) -> tuple[Values, Values]:
+    def indices(
+        self, weights: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """First order and total, shape (n, keys) each, for weights of the rows (n, count)."""
         rows, both, squares, *each = (weights @ self.terms).T
         with np.errstate(invalid="ignore", divide="ignore"):

@@ -253,7 +253,7 @@ class _Reader:
         return max(least, min(default, most))
 
     def chunk(self) -> int:
-        """Points that are worked out together."""
+        """Points that are computed together."""
         most = budgets.CHUNK_OF_SCANS if self._scans else budgets.CHUNK
         return self.whole("chunk", SCANS if self._scans else CHUNK, most.most)
 

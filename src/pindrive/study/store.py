@@ -29,7 +29,6 @@ from pindrive.study.evaluate import evaluate
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-    from types import TracebackType
 
     from numpy.typing import NDArray
 
@@ -108,12 +107,7 @@ class Store:
     def __enter__(self) -> Store:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._file.close()
 
     def put(self, pieces: list[Piece]) -> None:
@@ -147,7 +141,7 @@ class Store:
 
 
 def bytes_of(plan: Plan) -> int:
-    """How large the file will be, but for its structure."""
+    """The size of the file without its structure."""
     each = sum(outputs.dtype(name).itemsize for name in plan.outputs)
     return plan.size * each + sum(8 * d.size * len(d.axes) for d in plan.dimensions)
 

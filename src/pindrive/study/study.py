@@ -130,7 +130,7 @@ class Study(Plan):
         `if __name__ == "__main__":`, as all that begin processes.
 
         Args:
-            path: a NetCDF file that keeps the points; an interrupted run goes on from it. None: a
+            path: a NetCDF file that keeps the points; an interrupted run continues from it. None: a
                 temporary file.
             resume: go on with an interrupted run of the same study.
             restart: replace an interrupted run, or an earlier study.
@@ -142,7 +142,7 @@ class Study(Plan):
             A dimension for each axis (one, `sample`, for all that are drawn), the values of each
             key along it, a variable for each output, and `status` and `ending` as flags whose
             meaning their attributes say; NaN where a point has no such number. Units in the
-            attributes. With `path` the numbers are read from the file when they are asked for.
+            attributes. With `path` the numbers are read from the file when they are given.
 
         Raises:
             ValueError: nothing varies; or the file is there, or cannot be written.
