@@ -47,7 +47,7 @@ def spans(axes: Axes, gid: str) -> list[tuple[float, float]]:
 
 
 def patch_spans(axes: Axes, gid: str | None) -> list[tuple[float, float, float, float]]:
-    """x and y, from and to, of each rectangle with this id."""
+    """X and y, from and to, of each rectangle with this id."""
     chosen = [patch for patch in axes.patches if patch.get_gid() == gid]
     boxes = [patch.get_path().get_extents(patch.get_patch_transform()) for patch in chosen]
     return [(box.x0, box.x1, box.y0, box.y1) for box in boxes]
@@ -76,8 +76,8 @@ def collisions(figure: Figure) -> list[tuple[str, str]]:
                 low, high = sorted(along.get_view_interval())
                 ticks = [t for t in along.get_major_ticks() if low <= t.get_loc() <= high]
                 texts += [along.label, *(t.label1 for t in ticks if t.label1.get_visible())]
-        legend = axes.get_legend()
-        texts += legend.get_texts() if legend else []
+        if (own := axes.get_legend()) is not None:
+            texts += own.get_texts()
     boxes = [
         (text.get_text(), text.get_window_extent())
         for text in texts

@@ -114,7 +114,9 @@ def test_pins_of_a_scan(judged: Judgement) -> None:
     assert len(body) == len(done.pins) == 4
     for row, pin in zip(body, done.pins, strict=True):
         assert row[0] == str(pin.number)
-        assert numbers(row[1]) == pytest.approx([1e3 * x for x in done.device.array.places[pin.number]])
+        assert numbers(row[1]) == pytest.approx(
+            [1e3 * x for x in done.device.array.places[pin.number]]
+        )
         for cell, name in zip(row[2:], names, strict=False):
             value = pin_numbers(pin)[name]
             assert close(cell, value, QUANTITIES[name].display_scale), name

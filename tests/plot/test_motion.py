@@ -11,11 +11,11 @@ from subprocess import run
 import matplotlib
 import numpy as np
 import pytest
-from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
 from pindrive import Contact, Drive, Motion, Profile, simulate
 from pindrive.plot.motion import plot_motion
 from pindrive.plot.style import PALETTE, save
@@ -182,7 +182,7 @@ def test_kinds_and_contacts_differ_without_colour(
             handle = handles[f"{words} at {where}"]
             assert (handle.get_marker(), handle.get_fillstyle()) == (line.get_marker(), filled)
             assert to_hex(handle.get_color()) == to_hex(line.get_color())
-    assert len(seen) == 3 and len(set.union(*seen.values())) == 3
+    assert seen == {"stick": {"s"}, "slip": {"^"}, "cross": {"D"}}
 
 
 @pytest.mark.parametrize("name", MARKED)
@@ -301,7 +301,9 @@ def test_peak_and_trough_are_where_they_are(
         assert text.xy == pytest.approx((1e3 * time, 1e3 * place))  # type: ignore[attr-defined]
         shown = text.get_text().removeprefix(label).removesuffix(" mm").replace("−", "-")
         assert float(shown) == pytest.approx(1e3 * place, rel=1e-3)
-        assert text.get_va() == ("bottom" if extreme > 0.0 else "top"), "outside of the curve"
+        assert text.get_verticalalignment() == ("bottom" if extreme > 0.0 else "top"), (
+            "outside of the curve"
+        )
     first = x[t <= 1e3 * max(numbers.peak_time, numbers.trough_time)]
     assert max(outward * first) == pytest.approx(outward * 1e3 * numbers.peak_displacement)
     assert min(outward * first) == pytest.approx(outward * 1e3 * numbers.trough_displacement)

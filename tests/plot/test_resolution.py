@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from figure_reading import Array, collisions, data, legend_of, lines, patch_spans, points
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from figure_reading import Array, collisions, data, legend_of, lines, patch_spans, points
 from pindrive.evaluation import Criteria
 from pindrive.evaluation.resolution import SpeedLimit
 from pindrive.plot.resolution import plot_speeds
@@ -49,9 +49,13 @@ def area(axes: Axes, gid: str) -> Array:
 
 def test_curves_are_the_limits(figure: Figure) -> None:
     (axes,) = figure.axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("pitch of the lines (mm)", "hand speed (mm/s)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (
+        "pitch of the lines (mm)",
+        "hand speed (mm/s)",
+    )
     pitch, distinct = data(axes, "distinct")
-    assert (pitch.tolist(), distinct) == ([1.0, 2.0, 4.0], pytest.approx([100.0, 200.0, 400.0]))
+    assert pitch.tolist() == [1.0, 2.0, 4.0]
+    assert distinct == pytest.approx([100.0, 200.0, 400.0])
     settled = data(axes, "settled")[1]
     np.testing.assert_allclose(settled, [70.0, np.nan, 250.0])
     assert data(axes, "slowest")[1] == pytest.approx([20.0, 0.0, 0.0])

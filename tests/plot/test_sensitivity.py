@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from figure_reading import collisions, legend_of
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from figure_reading import collisions, legend_of
 from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_influence
 from pindrive.plot.style import PALETTE
 from pindrive.study.sensitivity import Influence, influence

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from figure_reading import collisions, legend_of, patch_spans
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.collections import QuadMesh
@@ -16,6 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from typer.testing import CliRunner, Result
 
+from figure_reading import collisions, legend_of, patch_spans
 from pindrive.cli.app import app
 from pindrive.plot.slices import _flattened, _line_colours, plot_study
 from pindrive.study.runner import sweep
@@ -111,6 +111,23 @@ def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: View) -
         assert refused or not np.isnan(panel.values[panel.unsettled]).all(), "some have a swing"
     settled = list(grid.panels("transient_swing", "mouse_velocity", "", {"stiffness": 500.0}))
     assert all(panel.unsettled.mean() < 1.0 for panel in settled)
+
+
+def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: View) -> None:
+    figure = draw(grid, ["settling_time"])
+    parts = list(grid.panels("transient_settling_time", *grid.axes(None, None, {}), {}))
+    for axes, part in zip(figure.axes, parts, strict=False):
+        assert axes.patch.get_hatch(), "shows wherever there is no colour"
+        grey = [
+            c
+            for c in axes.collections
+            if isinstance(c, QuadMesh) and c.cmap.name != "viridis" and c.get_array() is not None
+        ]
+        assert len(grey) == int(part.refused.any())
+        for mesh in grey:
+            covered = ~np.isnan(np.ma.filled(mesh.get_array(), np.nan))  # type: ignore[arg-type]
+            np.testing.assert_array_equal(covered.reshape(part.refused.shape), part.refused)
+    assert any(part.refused.any() for part in parts)
 
 
 def test_curves_are_slices_too(grid: View) -> None:
@@ -285,7 +302,7 @@ def test_the_band_and_the_median_are_the_quantiles(drawn: View) -> None:
         there = corners[corners[:, 0] == x[i], 1]
         assert (there.min(), there.max()) == pytest.approx((1e3 * part.low[i], 1e3 * part.high[i]))
     (curve,) = (line for line in axes.get_lines() if line.get_gid() == "settled")
-    np.testing.assert_allclose(curve.get_ydata(), 1e3 * part.values)
+    np.testing.assert_allclose(np.asarray(curve.get_ydata(), float), 1e3 * part.values)
     assert list(legend_of(figure)) == ["median", "5 % to 95 % of draws"]
 
 

@@ -192,8 +192,8 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     else:
         notes.append(f"{len(trace.events)} events: too many to mark")
     if len(trace.starts) > 1:
-        line = {"color": PALETTE["curve"], "lw": 0.5}
-        handles.append(Line2D([], [], **line, label="acceleration jumps"))
+        jump = Line2D([], [], color=PALETTE["curve"], lw=0.5, label="acceleration jumps")
+        handles.append(jump)
     handles += [
         Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=stuck_name(motion, mode))
         for mode in _TINT

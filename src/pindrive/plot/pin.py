@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -244,7 +244,5 @@ def _key(signs: list[tuple[str, str]]) -> list[Artist]:
         Line2D([], [], color=GREY, lw=0.6, ls=":", label="threshold of the control block"),
         Patch(color=PALETTE["stick"], lw=0.0, label="magnet switched on"),
         Patch(color=PALETTE["carried"], alpha=0.4, lw=0.0, label="carried by the plate"),
-        *(
-            Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs
-        ),
+        *(Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs),
     ]
