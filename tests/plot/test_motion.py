@@ -4,24 +4,21 @@ import io
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from subprocess import run
 
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.plot.motion import plot_motion
 from pindrive.plot.style import PALETTE, save
-
-Array = NDArray[np.float64]
 
 OKABE_ITO = {
     *("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"),
@@ -84,23 +81,6 @@ def drawn() -> dict[str, tuple[Motion, Figure]]:
     return {name: (motion, plot_motion(motion)) for name, motion in motions.items()}
 
 
-def panel(figure: Figure, name: str) -> Axes:
-    return next(axes for axes in figure.axes if axes.get_label() == name)
-
-
-def lines(axes: Axes, gid: str) -> list[Line2D]:
-    return [line for line in axes.lines if line.get_gid() == gid]
-
-
-def points(line: Line2D) -> tuple[Array, Array]:
-    return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
-
-
-def data(axes: Axes, gid: str) -> tuple[Array, Array]:
-    (line,) = lines(axes, gid)
-    return points(line)
-
-
 def test_axes_have_units(drawn: dict[str, tuple[Motion, Figure]]) -> None:
     for name, unit in (("example", "ms"), ("long", "s")):
         figure = drawn[name][1]
@@ -160,17 +140,35 @@ def test_events_are_marked(drawn: dict[str, tuple[Motion, Figure]], name: str) -
     motion, figure = drawn[name]
     if motion.ending.cycle == "stick-slip":
         return
-    for kind in ("stick", "slip", "cross"):
-        events = [e for e in motion.events if e.kind == kind]
+    scale = 1e3 if motion.duration < 2.0 else 1.0
+    for kind, contact in product(("stick", "slip", "cross"), ("plate", "finger", "both")):
+        chosen = [e for e in motion.events if (e.kind, e.contact) == (kind, contact)]
         for axes, field in (("x", "position"), ("v", "velocity"), ("portrait", "velocity")):
-            found = [y for line in lines(panel(figure, axes), kind) for y in points(line)[1]]
-            assert found == pytest.approx([1e3 * getattr(e, field) for e in events])
+            across, up = events(panel(figure, axes), kind, contact)
+            assert up == pytest.approx([1e3 * getattr(e, field) for e in chosen])
+            along = [1e3 * e.position if axes == "portrait" else scale * e.time for e in chosen]
+            assert across == pytest.approx(along)
 
 
-def test_kinds_differ_without_colour(drawn: dict[str, tuple[Motion, Figure]]) -> None:
-    x = panel(drawn["example"][1], "x")
-    markers = {lines(x, kind)[0].get_marker() for kind in ("stick", "slip", "cross")}
-    assert len(markers) == 3
+def test_kinds_and_contacts_differ_without_colour(
+    drawn: dict[str, tuple[Motion, Figure]],
+) -> None:
+    """The shape is the kind; filled at the plate, an outline at the finger, half of it at both."""
+    seen: dict[str, set[object]] = {}
+    for name in ("example", "skin", "still plate"):
+        motion, figure = drawn[name]
+        handles = legend_of(panel(figure, "key"))
+        for kind, contact in {(e.kind, e.contact) for e in motion.events}:
+            (line,) = lines(panel(figure, "x"), f"{kind} {contact}")
+            seen.setdefault(kind, set()).add(line.get_marker())
+            filled = {"plate": "full", "finger": "none", "both": "left"}[contact]
+            assert line.get_fillstyle() == filled
+            words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+            where = "both" if contact == "both" else f"the {contact}"
+            handle = handles[f"{words} at {where}"]
+            assert (handle.get_marker(), handle.get_fillstyle()) == (line.get_marker(), filled)
+            assert to_hex(handle.get_color()) == to_hex(line.get_color())
+    assert seen == {"stick": {"s"}, "slip": {"^"}, "cross": {"D"}}
 
 
 @pytest.mark.parametrize("name", MARKED)
@@ -180,14 +178,11 @@ def test_stuck_phases_are_shaded(drawn: dict[str, tuple[Motion, Figure]], name: 
         return
     for axes in ("x", "v", "a"):
         for mode in ("carried", "resting"):
-            (shade,) = (c for c in panel(figure, axes).collections if c.get_gid() == mode)
-            assert isinstance(shade, PolyCollection)
             stuck = [s for s in motion.segments if s.mode == mode and s.begin < motion.duration]
-            across = [np.asarray(path.vertices)[:, 0] for path in shade.get_paths()]
-            spans = [(edge.min(), edge.max()) for edge in across]
             scale = 1e3 if motion.duration < 2.0 else 1.0
             expected = [(scale * s.begin, scale * min(s.end, motion.duration)) for s in stuck]
-            assert spans == [pytest.approx(span) for span in expected]
+            found = spans(panel(figure, axes), mode)
+            assert found == [pytest.approx(span) for span in expected]
 
 
 def test_cycle_goes_on_round_after_round(drawn: dict[str, tuple[Motion, Figure]]) -> None:
@@ -198,12 +193,10 @@ def test_cycle_goes_on_round_after_round(drawn: dict[str, tuple[Motion, Figure]]
         assert t[-1] == pytest.approx(1e3 * motion.duration)
         away = [np.ptp(of(np.clip(ti / 1e3 + np.array([-1e-9, 1e-9]), 0, None))) for ti in t]
         assert np.max(np.abs(y - 1e3 * of(t / 1e3))) < 1e-6 + 1e3 * np.max(away)
-    (sticks,) = lines(panel(figure, "v"), "stick")
-    times = points(sticks)[0] / 1e3
+    times = events(panel(figure, "v"), "stick", "plate")[0] / 1e3
     assert len(times) > 2
     assert np.diff(times) == pytest.approx(motion.ending.period)
-    (shade,) = (c for c in panel(figure, "v").collections if c.get_gid() == "carried")
-    assert len(shade.get_paths()) == len(times) + 1  # it starts carried
+    assert len(spans(panel(figure, "v"), "carried")) == len(times) + 1  # it starts carried
 
 
 @pytest.mark.parametrize("name", [name for name in MOTIONS if name not in ("skin", "magnet")])
@@ -239,13 +232,11 @@ def test_skin_has_a_panel(drawn: dict[str, tuple[Motion, Figure]]) -> None:
     inside = np.min(np.abs(t[:, None] / 1e3 - [p.begin for p in motion.segments]), axis=1) > 1e-12
     assert stretch[inside] == pytest.approx(1e6 * motion.stretch(t[inside] / 1e3), abs=1e-9)
     assert stretch.max() == pytest.approx(30.0), "what static friction holds"
-    (shade,) = (c for c in s.collections if c.get_gid() == "gripping")
     gripping = [p for p in motion.segments if p.finger == 0]
-    edges = [np.asarray(path.vertices)[:, 0] for path in shade.get_paths()]
-    assert [edge.min() for edge in edges] == pytest.approx([1e3 * p.begin for p in gripping])
-    legend = panel(figure, "key").get_legend()
-    assert legend is not None
-    assert "skin grips the pin" in [text.get_text() for text in legend.get_texts()]
+    ends = [1e3 * min(p.end, motion.duration) for p in gripping]
+    expected = [(1e3 * p.begin, end) for p, end in zip(gripping, ends, strict=True)]
+    assert spans(s, "gripping") == [pytest.approx(span) for span in expected]
+    assert "skin grips the pin" in legend_of(panel(figure, "key"))
 
 
 @pytest.mark.parametrize("name", ["example", "magnet"])
@@ -272,9 +263,81 @@ def test_settling_is_marked(drawn: dict[str, tuple[Motion, Figure]]) -> None:
     assert levels == pytest.approx([1e3 * (end - band), 1e3 * (end + band)])
     time, _ = data(x, "settling")
     assert time == pytest.approx(1e3 * motion.transient.settling_time)
-    words = " ".join(text.get_text() for text in x.texts)
-    assert "settled at" in words and "peak" in words and "trough" in words and "end" in words
+    assert "settled at 116.2 ms" in {text.get_text() for text in x.texts}
+    (label,) = (text for text in x.texts if "end" in text.get_text())
+    assert label.xy[1] == pytest.approx(1e3 * end)  # type: ignore[attr-defined]
+    said = r"$x_\mathrm{end}$ ± 5 % of $|x_0 - x_\mathrm{end}|$"
+    assert legend_of(panel(figure, "key"))[said].get_linestyle() == ":"
     assert not lines(panel(drawn["cut"][1], "x"), "settling")
+
+
+@pytest.mark.parametrize("name", ["example", "backwards", "skin"])
+def test_peak_and_trough_are_where_they_are(
+    drawn: dict[str, tuple[Motion, Figure]], name: str
+) -> None:
+    motion, figure = drawn[name]
+    numbers = motion.transient
+    t, x = data(panel(figure, "x"), "curve")
+    outward = 1.0 if name != "backwards" else -1.0
+    for label, time, place, extreme in (
+        ("peak", numbers.peak_time, numbers.peak_displacement, outward),
+        ("trough", numbers.trough_time, numbers.trough_displacement, -outward),
+    ):
+        (text,) = (i for i in panel(figure, "x").texts if i.get_text().startswith(label))
+        assert text.xy == pytest.approx((1e3 * time, 1e3 * place))  # type: ignore[attr-defined]
+        shown = text.get_text().removeprefix(label).removesuffix(" mm").replace("−", "-")
+        assert float(shown) == pytest.approx(1e3 * place, rel=1e-3)
+        assert text.get_verticalalignment() == ("bottom" if extreme > 0.0 else "top"), (
+            "outside of the curve"
+        )
+    first = x[t <= 1e3 * max(numbers.peak_time, numbers.trough_time)]
+    assert max(outward * first) == pytest.approx(outward * 1e3 * numbers.peak_displacement)
+    assert min(outward * first) == pytest.approx(outward * 1e3 * numbers.trough_displacement)
+
+
+@pytest.mark.parametrize("name", ["example", "backwards", "cut", "skin"])
+def test_the_portrait_begins_and_ends_where_the_motion_does(
+    drawn: dict[str, tuple[Motion, Figure]], name: str
+) -> None:
+    motion, figure = drawn[name]
+    axes = panel(figure, "portrait")
+    start, end = (points(line) for line in lines(axes, "ends"))
+    assert [i.item() for i in start] == pytest.approx(
+        [1e3 * motion.displacement, 1e3 * motion.initial_velocity]
+    )
+    last = [1e3 * float(of(motion.duration)) for of in (motion.position, motion.velocity)]
+    assert [i.item() for i in end] == pytest.approx(last, abs=1e-9)
+    words = {text.get_text(): text.xy for text in axes.texts}  # type: ignore[attr-defined]
+    assert words["start"] == pytest.approx(tuple(i.item() for i in start))
+    assert words["50 ms" if name == "cut" else "end"] == pytest.approx(last, abs=1e-9)
+    for mode in ("carried", "resting"):
+        x, v = data(axes, mode)
+        stuck = [s for s in motion.segments if s.mode == mode and s.begin < motion.duration]
+        assert (~np.isnan(x)).any() == bool(stuck)
+        assert mode != "resting" or v[~np.isnan(v)] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_steady_motion_names_its_middle(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    motion, figure = drawn["stick-slip"]
+    (line,) = lines(panel(figure, "x"), "middle")
+    assert points(line)[1] == pytest.approx(1e3 * motion.ending.position)
+    assert any("about which it oscillates" in said for said in legend_of(panel(figure, "key")))
+
+
+def test_each_tint_and_jump_is_explained(drawn: dict[str, tuple[Motion, Figure]]) -> None:
+    for name, (motion, figure) in drawn.items():
+        said = legend_of(panel(figure, "key"))
+        x = panel(figure, "x")
+        tints = [mode for mode in ("carried", "resting") if spans(x, mode)]
+        colours = {to_hex(h.get_facecolor()) for h in said.values() if hasattr(h, "get_hatch")}
+        assert {to_hex(PALETTE[mode]) for mode in tints} <= colours, name
+        assert ("acceleration jumps" in said) == (len(motion.segments) > 1), name
+    example = legend_of(panel(drawn["example"][1], "key"))
+    for words, mode in (
+        ("carried by the plate", "carried"),
+        ("resting on the finger", "resting"),
+    ):
+        assert to_hex(example[words].get_facecolor()) == to_hex(PALETTE[mode])
 
 
 def test_title_says_the_numbers(drawn: dict[str, tuple[Motion, Figure]]) -> None:
@@ -289,12 +352,29 @@ def test_too_many_events_are_not_marked_and_it_says_so(
 ) -> None:
     motion, figure = drawn["many"]
     assert len(motion.events) > 5000
-    assert not any(lines(panel(figure, "x"), kind) for kind in ("stick", "slip", "cross"))
-    legend = panel(figure, "key").get_legend()
-    assert legend is not None
-    notes = [text.get_text() for text in legend.get_texts()]
-    assert any("too many to mark" in note for note in notes)
-    assert any(note.startswith("drawn: the first") and note.endswith("of 200 s") for note in notes)
+    assert {line.get_gid() for line in panel(figure, "x").lines} == {"zero", "curve"}
+    assert "5000 events: too many to mark" in legend_of(panel(figure, "key"))
+    t, _ = data(panel(figure, "x"), "curve")
+    assert 100.0 < t[-1] < 200.0
+    assert panel(figure, "a").get_xlim() == pytest.approx((0.0, t[-1]))
+    said = f"time after release (s): the first {t[-1]:.4g} s of 200 s"
+    assert panel(figure, "a").get_xlabel() == said
+
+
+def test_a_pin_that_is_carried_for_days_is_drawn_to_its_end() -> None:
+    motion = simulate(drive(plate=(1e3, 1e3)), mouse_velocity=1e-5)
+    assert motion.duration > 1e6
+    figure = plot_motion(motion)
+    t, x = data(panel(figure, "x"), "curve")
+    assert t[-1] == pytest.approx(motion.duration)
+    assert panel(figure, "a").get_xlabel() == "time after release (s)"
+    assert x.max() == pytest.approx(1e3 * motion.transient.peak_displacement)
+    assert len(t) < 200_000
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_no_words_overlap(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
+    assert collisions(drawn[name][1]) == []
 
 
 def test_colours_are_from_the_palette() -> None:
@@ -320,12 +400,13 @@ def test_words_stay_on_the_page(drawn: dict[str, tuple[Motion, Figure]], name: s
 
 
 def test_a_motion_cut_short_leaves_out_what_lies_far_beyond() -> None:
-    """It is carried for days: where it will rest takes no room, where the drawing stops is said."""
-    motion = simulate(drive(plate=(1e3, 1e3)), Release(1e-5))
+    """It goes on for days: where it will rest takes no room, where the drawing stops is said."""
+    motion = simulate(drive(plate=(1e3, 1e3)), Release(1e-5), duration=10.0)
     figure = plot_motion(motion)
     figure.draw_without_rendering()  # a layout that fails warns, which is an error here
     portrait = {text.get_text() for text in panel(figure, "portrait").texts}
-    assert "start" in portrait and "end" not in portrait
+    assert {"start", "10 s"} <= portrait and "end" not in portrait
+    assert panel(figure, "x").get_ylim()[1] < 1.0, "mm"
     assert panel(figure, "x").get_window_extent().width > 0.25 * figure.bbox.width
 
 

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import csv
 import io
+from itertools import product
 from math import isnan
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from typer.testing import CliRunner
 
+from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
 from pindrive import Contact, Drive
 from pindrive.cli.app import app
-from pindrive.device import Device, HandPath, PinArray, Scene, lines, scan
+from pindrive.device import Device, HandPath, PinArray, Scene, scan
+from pindrive.device import lines as lines_of
 from pindrive.evaluation import Judgement, judge
+from pindrive.evaluation.line_crossings import printed
 from pindrive.evaluation.tactile_image import paint
 from pindrive.plot.pin import moment
-from pindrive.plot.scan import plot_scan
+from pindrive.plot.scan import plot_reliefs, plot_scan
 from pindrive.plot.style import save
 
 MINIMAL = Path(__file__).parents[1] / "minimal.toml"
@@ -36,19 +39,13 @@ DRIVE = Drive(
 def judged() -> Judgement:
     device = Device(drive=DRIVE, array=PinArray.grid(2, 3, 0.002))
     scene = Scene.from_grating([0.003, 0.006], count=2, margin=0.008, height=0.006)
-    path = lines([0.009, 0.013], 0.002, 0.036, speed=0.08, return_speed=0.15, pause=0.1)
+    path = lines_of([0.009, 0.013], 0.002, 0.036, speed=0.08, return_speed=0.15, pause=0.1)
     return judge(scan(device, scene, path))
 
 
 @pytest.fixture(scope="module")
 def figure(judged: Judgement) -> Figure:
     return plot_scan(judged)
-
-
-def curve(figure: Figure, panel: str, gid: str) -> NDArray[np.float64]:
-    axes = next(axes for axes in figure.axes if axes.get_label() == panel)
-    line = next(line for line in axes.lines if line.get_gid() == gid)
-    return np.asarray(line.get_data(), float)
 
 
 def test_the_tactile_image_is_the_mean_deflection_of_the_pins_that_passed() -> None:
@@ -97,29 +94,147 @@ def test_a_mirrored_scan_is_painted_mirrored() -> None:
 def test_the_history_is_that_of_the_pin(judged: Judgement, figure: Figure) -> None:
     chosen = moment(judged)
     pin = judged.scan.pins[chosen.pin]
-    for panel, gid, of, scale in (
+    for name, gid, of, scale in (
         ("x", "curve", pin.position, 1e3),
         ("force", "force", pin.skin_force, 1e3),
         ("pull", "pull", lambda t: judged.scan.device.magnet.pull(pin.current(t)), 1.0),
     ):
-        t, y = curve(figure, panel, gid)
+        t, y = data(panel(figure, name), gid)
         assert t[0] == 0.0
         assert t[-1] == pytest.approx(1e3 * (chosen.end - chosen.begin))
         times = np.clip(chosen.begin + 1e-3 * t, pin.begin, pin.end)
         jumps = np.array([e.time for e in pin.events])
         clear = np.abs(times[:, None] - jumps).min(axis=1) > 1e-9
         assert y[clear] == pytest.approx(scale * of(times[clear]), rel=1e-6, abs=1e-9)
-    marked = np.concatenate(
-        [
-            np.asarray(line.get_xdata(), float)
-            for axes in figure.axes
-            if axes.get_label() == "x"
-            for line in axes.lines
-            if line.get_gid() in ("stick", "slip", "cross")
-        ]
-    )
-    events = [e.time for e in pin.events if chosen.begin < e.time < chosen.end]
-    assert sorted(marked) == pytest.approx([1e3 * (t - chosen.begin) for t in events])
+    within = [e for e in pin.events if chosen.begin < e.time < chosen.end]
+    for kind, contact in product(("stick", "slip", "cross"), ("plate", "finger", "both")):
+        own = [e for e in within if (e.kind, e.contact) == (kind, contact)]
+        t, x = events(panel(figure, "x"), kind, contact)
+        assert t == pytest.approx([1e3 * (e.time - chosen.begin) for e in own])
+        assert x == pytest.approx([1e3 * e.position for e in own])
+        words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+        said = f"{words} at {'both' if contact == 'both' else f'the {contact}'}"
+        assert (said in legend_of(figure)) == bool(own)
+    units = {name: panel(figure, name).get_ylabel() for name in ("x", "pull", "force", "seen")}
+    assert units == {
+        "x": "deflection $x$ (mm)",
+        "pull": "pull (N)",
+        "force": "skin force (mN)",
+        "seen": "luminance",
+    }
+    assert panel(figure, "force").get_xlabel() == "time (ms)"
+
+
+def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Figure) -> None:
+    chosen = moment(judged)
+    pin, axes = judged.scan.pins[chosen.pin], panel(figure, "seen")
+    under = [
+        (1e3 * (line.begin - chosen.begin), 1e3 * (line.end - chosen.begin))
+        for line in printed(judged.scan)[chosen.pin]
+        if line.end > chosen.begin and line.begin < chosen.end
+    ]
+    for name in ("seen", "pull", "x", "force"):
+        assert spans(panel(figure, name), "printed") == [pytest.approx(span) for span in under]
+    ms, seen = data(axes, "luminance")
+    middles = np.array([0.5 * (a + b) for a, b in under])
+    inside = [seen[np.argmin(np.abs(ms - middle))] for middle in middles]
+    assert max(inside) < judged.scan.device.control.threshold < seen.max()
+    on = [
+        (1e3 * (a - chosen.begin), 1e3 * (b - chosen.begin))
+        for a, b in pin.energised
+        if b > chosen.begin and a < chosen.end
+    ]
+    bars = [c for c in axes.collections if c.get_gid() == "command"]
+    drawn = [np.asarray(c.get_paths()[0].vertices)[:, 0] for c in bars]
+    assert [(x.min(), x.max()) for x in drawn] == [pytest.approx(span) for span in on]
+    assert all(a < b for (a, _), (b, _) in zip(under, on, strict=False)), "switched on after it"
+    threshold = data(axes, "threshold")[1]
+    assert threshold.tolist() == [judged.scan.device.control.threshold] * 2
+    carried = spans(panel(figure, "x"), "carried")
+    held = [
+        chosen.begin + 1e-3 * (a + part * (b - a)) for a, b in carried for part in (0.02, 0.5, 0.98)
+    ]
+    plate = judged.scan.path.plate_velocity(judged.scan.device.array.axis)
+    assert len(held) > 2
+    for t in held:
+        assert pin.velocity(t) == pytest.approx(float(plate(t - pin.begin)), rel=1e-6)
+
+
+def test_the_tactile_image_is_drawn_as_it_is(judged: Judgement, figure: Figure) -> None:
+    """Each deflection in its place and with its sign: forward is blue."""
+    axes, painting = panel(figure, "felt"), paint(judged.scan)
+    (image,) = (i for i in axes.images if i.get_gid() == "relief")
+    shown = np.ma.filled(image.get_array(), np.nan)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(shown, 1e3 * painting.deflection)
+    left, right, top, bottom = (1e3 * edge for edge in painting.extent)
+    assert list(image.get_extent()) == [left, right, bottom, top]
+    assert axes.get_ylim()[0] > axes.get_ylim()[1], "down the page"
+    assert np.nanmax(shown) > 0.2
+    low, high = image.get_clim()
+    assert low == -high and 0.0 < high <= np.nanmax(np.abs(shown))
+    back, rest, forward = image.to_rgba(np.array([low, 0.0, high]))
+    assert forward[2] > forward[0] and back[0] > back[2]
+    assert rest[:3] == pytest.approx([1.0, 1.0, 1.0], abs=0.02)
+    scale = panel(figure, "scale")
+    assert scale.get_ylabel() == "deflection, forward (mm)"
+    assert scale.get_ylim() == (low, high)
+
+
+def test_the_way_and_the_spots_are_those_of_the_hand(judged: Judgement, figure: Figure) -> None:
+    scan, axes = judged.scan, panel(figure, "print")
+    begin = 1e3 * scan.spots([scan.path.begin])[:, 0]
+    np.testing.assert_allclose(np.transpose(data(axes, "spots")), begin)
+    ways = [points(line) for line in lines(axes, "way")]
+    returns = [points(line) for line in lines(axes, "return")]
+    assert all(x[-1] > x[0] for x, _ in ways), "reading goes to the right"
+    assert all(x[-1] < x[0] for x, _ in returns)
+    assert len(ways) == 2 and len(returns) == 1
+    assert [y[0] for _, y in ways] == pytest.approx([9.0, 13.0])
+    signs = legend_of(figure)
+    assert signs["way of the hand, reading"].get_linestyle() == "-"
+    assert signs["and back"].get_linestyle() != "-"
+    assert signs["what a pin's sensor sees at first"].get_marker() == "o"
+    assert "threshold of the control block" in signs and "outline of the print" in signs
+    chosen = moment(judged)
+    green = lines(panel(figure, "felt"), "moment")[0]
+    track = 1e3 * scan.spots([chosen.begin, chosen.end])[chosen.pin]
+    x, y = points(green)
+    assert [x[0], y[0], x[-1], y[-1]] == pytest.approx(track.ravel().tolist())
+
+
+def test_lines_of_text_are_apart_by_slashes_and_words_do_not_overlap() -> None:
+    scene = Scene.from_text("5 $ Ü\n6 $", pixel=2e-4)
+    path = lines_of([scene.lines[0]], 0.002, 0.03, speed=0.08, return_speed=0.15)
+    figure = plot_scan(judge(scan(Device(drive=DRIVE), scene, path)))
+    title = panel(figure, "print").get_title(loc="left")
+    assert title == r'printed: text "5 \$ Ü / 6 \$"'
+    assert collisions(figure) == []
+
+
+def test_reliefs_share_a_scale_and_name_their_speeds() -> None:
+    found = []
+    for speed in (0.04, 0.12):
+        scene = Scene.from_grating([0.004], count=2, margin=0.008, height=0.003)
+        path = lines_of([scene.lines[0]], 0.002, 0.02, speed=speed, return_speed=0.15)
+        found.append(judge(scan(Device(drive=DRIVE), scene, path)))
+    figure = plot_reliefs(found)
+    limits = set()
+    for i, judgement in enumerate(found):
+        axes = panel(figure, f"felt {i + 1}")
+        (image,) = axes.images
+        np.testing.assert_array_equal(
+            np.ma.filled(image.get_array(), np.nan),  # type: ignore[arg-type]
+            1e3 * paint(judgement.scan).deflection,
+        )
+        limits.add(image.get_clim())
+        title = axes.get_title(loc="left").splitlines()
+        assert title[0] == f"hand at up to {(40, 120)[i]} mm/s"
+        counts = judgement.counts
+        assert title[1].startswith(f"{counts['judged.shown']} of {counts['judged.lines']} line")
+        assert title[2] == f"lag {1e3 * judgement.spread('line.lag_off')[1]:.2g} mm"
+    assert len(limits) == 1
+    assert "way of the hand, reading" in legend_of(figure)
+    assert collisions(figure) == []
 
 
 def test_the_moment_holds_lines_of_the_pin(judged: Judgement) -> None:
@@ -158,7 +273,7 @@ def test_the_title_says_the_verdict(judged: Judgement, figure: Figure) -> None:
 
 def test_a_blank_page_is_drawn() -> None:
     page = Scene(np.ones((60, 500)), 1e-4)
-    path = lines([0.003], 0.002, 0.045, speed=0.08, return_speed=0.1)
+    path = lines_of([0.003], 0.002, 0.045, speed=0.08, return_speed=0.1)
     figure = plot_scan(judge(scan(Device(drive=DRIVE), page, path)))
     assert "no line passed whole under a pin" in figure.get_suptitle()
     save(figure, io.BytesIO(), "png")

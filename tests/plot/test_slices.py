@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from typer.testing import CliRunner, Result
 
+from figure_reading import collisions, legend_of, patch_spans
 from pindrive.cli.app import app
-from pindrive.plot.slices import plot_study
+from pindrive.plot.slices import _flattened, _line_colours, plot_study
 from pindrive.study.runner import sweep
 from pindrive.study.slices import View, quantiles
 from pindrive.study.study import load_study
@@ -112,6 +113,23 @@ def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: View) -
     assert all(panel.unsettled.mean() < 1.0 for panel in settled)
 
 
+def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: View) -> None:
+    figure = draw(grid, ["settling_time"])
+    parts = list(grid.panels("transient_settling_time", *grid.axes(None, None, {}), {}))
+    for axes, part in zip(figure.axes, parts, strict=False):
+        assert axes.patch.get_hatch(), "shows wherever there is no colour"
+        grey = [
+            c
+            for c in axes.collections
+            if isinstance(c, QuadMesh) and c.cmap.name != "viridis" and c.get_array() is not None
+        ]
+        assert len(grey) == int(part.refused.any())
+        for mesh in grey:
+            covered = ~np.isnan(np.ma.filled(mesh.get_array(), np.nan))  # type: ignore[arg-type]
+            np.testing.assert_array_equal(covered.reshape(part.refused.shape), part.refused)
+    assert any(part.refused.any() for part in parts)
+
+
 def test_curves_are_slices_too(grid: View) -> None:
     held = {"stiffness": 100.0, "damping_ratio": 0.3}
     figure = draw(grid, ["swing", "peak_time"], "mouse_velocity", None, **held)
@@ -127,6 +145,95 @@ def test_curves_are_slices_too(grid: View) -> None:
     legend = figure.axes[0].get_legend()
     assert legend is not None
     assert legend.get_texts()[1].get_text() == r"$F_\mathrm{p}$ = 5 mN"
+
+
+def test_a_single_curve_is_shaded_where_it_has_no_value(grid: View) -> None:
+    held = {"stiffness": 100.0, "damping_ratio": 0.1, "plate_kinetic": 0.01}
+    figure = draw(grid, ["settling_time"], "mouse_velocity", None, **held)
+    (axes,) = figure.axes
+    assert axes.get_ylabel() == r"settling time $t_\mathrm{s}$ (ms)"
+    (part,) = grid.panels("transient_settling_time", "mouse_velocity", "", held)
+    assert 0 < part.unsettled.sum() < len(part.values)
+    shaded = [span[:2] for span in patch_spans(axes, None)]
+    x = 1e3 * part.along[0]
+    for i, place in enumerate(x):
+        assert any(low <= place <= high for low, high in shaded) == part.unsettled[i]
+    assert list(legend_of(figure)) == ["not settled in the time followed"]
+
+
+def test_contours_are_labelled_and_their_levels_stand_at_the_scale(grid: View) -> None:
+    figure = draw(grid, ["settling_time"])
+    _, _, _, *scales = figure.axes
+    for axes in figure.axes[:3]:
+        for lines in (c for c in axes.collections if c.get_gid() == "contours"):
+            written = {text.get_text() for text in lines.labelTexts}  # type: ignore[attr-defined]
+            levels = {f"{level:.6g}" for level in lines.levels}  # type: ignore[attr-defined]
+            assert written and written <= levels
+            bar = scales[0] if len(scales) == 1 else scales[figure.axes.index(axes)]
+            assert {f"{tick:.6g}" for tick in bar.get_yticks()} == levels
+
+
+def test_lines_on_bright_colours_are_black() -> None:
+    assert _line_colours([0.0, 0.3, 0.7, 1.0], 0.0, 1.0) == ["white", "white", "black", "black"]
+
+
+def test_a_panel_that_others_would_flatten_has_its_own_scale() -> None:
+    one, small, flat = np.array([[0.0, 100.0]]), np.array([[3.0, 5.0]]), np.array([[7.0, 7.0]])
+    assert not _flattened([one, 0.5 * one])
+    assert _flattened([one, small])
+    assert not _flattened([one, flat]), "what is the same everywhere is best seen on a common scale"
+    assert not _flattened([one, np.array([[np.nan, np.nan]])])
+
+
+def test_maps_on_scales_of_their_own(folder: Path) -> None:
+    """The settling time at a high damping ratio varies little beside that at a low one."""
+    (folder / "flat.toml").write_text(
+        BASE + '[axes]\nmouse_velocity = { lin = ["20 mm/s", "300 mm/s"], count = 9 }\n'
+        'plate.kinetic = { lin = ["5 mN", "20 mN"], count = 7 }\ndamping_ratio = [0.01, 0.2]\n'
+    )
+    sweep(load_study(folder / "flat.toml"), folder / "flat.nc")
+    with View(folder / "flat.nc") as view:
+        figure = draw(view, ["settling_time", "swing"])
+        for row, name in enumerate(("settling_time", "swing")):
+            parts = [view.data[f"transient_{name}"].isel(damping_ratio=i).values for i in (0, 1)]
+            own = [(1e3 * np.nanmin(part), 1e3 * np.nanmax(part)) for part in parts]
+            limits = []
+            for axes in figure.axes[2 * row : 2 * row + 2]:
+                (mesh,) = (c for c in axes.collections if isinstance(c, QuadMesh))
+                limits.append(mesh.get_clim())
+            apart = (own[1][1] - own[1][0]) < 0.25 * (own[0][1] - own[0][0])
+            assert apart == (name == "settling_time")
+            both = (min(own[0][0], own[1][0]), max(own[0][1], own[1][1]))
+            np.testing.assert_allclose(limits, own if apart else [both] * 2)
+        scales = figure.axes[4:]
+        assert [axes.get_ylabel() for axes in scales] == [
+            "",
+            r"settling time $t_\mathrm{s}$ (ms)",
+            "swing (mm)",
+        ]
+        assert collisions(figure) == []
+
+
+def test_titles_of_any_text_stay_on_the_page(folder: Path) -> None:
+    name = "Ümläute, 5 $ und 6 $, x_a^2: " + "ein sehr langer Name " * 8
+    text = f'name = "{name}"\n' + BASE + GRID
+    (folder / "long.toml").write_text(text, encoding="utf-8")
+    sweep(load_study(folder / "long.toml"), folder / "long.nc")
+    with View(folder / "long.nc") as view:
+        for y in (None, "stiffness"):
+            held = {} if y else {"stiffness": 100.0}
+            figure = draw(view, ["swing"], "mouse_velocity", y, **held)
+            assert collisions(figure) == []
+            box = figure.texts[0].get_window_extent()
+            assert box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1
+            assert r"5 \$ und 6 \$" in figure.get_suptitle().replace("\n", " ")
+
+
+def test_curves_differ_without_colour(grid: View) -> None:
+    figure = draw(grid, ["swing"], "mouse_velocity", None, stiffness=100.0)
+    curves = [line for line in figure.axes[0].get_lines() if line.get_gid() == "settled"]
+    looks = {(str(c._dash_pattern), c.get_linewidth()) for c in curves}  # type: ignore[attr-defined]
+    assert len(looks) == len(curves) == 5
 
 
 # ---- draws ---------------------------------------------------------------------------------------
@@ -181,6 +288,22 @@ def test_quantiles_of_groups_are_numpys(pairs: list[tuple[int, float]]) -> None:
         own = values[(group == g) & ~np.isnan(values)]
         expected = np.quantile(own, (0.05, 0.5, 0.95)) if own.size else np.full(3, np.nan)
         np.testing.assert_allclose(found[:, g], expected, rtol=1e-12, atol=1e-12)
+
+
+def test_the_band_and_the_median_are_the_quantiles(drawn: View) -> None:
+    figure = draw(drawn, ["swing"], "mouse_velocity", None, plate_kinetic=0.02)
+    (axes,) = figure.axes
+    (part,) = drawn.panels("transient_swing", "mouse_velocity", "", {"plate_kinetic": 0.02})
+    (band,) = (c for c in axes.collections if c.get_gid() == "draws")
+    corners = np.concatenate([path.vertices for path in band.get_paths()])
+    assert part.low is not None and part.high is not None
+    x = 1e3 * part.along[0]
+    for i in (0, 20, len(x) - 1):
+        there = corners[corners[:, 0] == x[i], 1]
+        assert (there.min(), there.max()) == pytest.approx((1e3 * part.low[i], 1e3 * part.high[i]))
+    (curve,) = (line for line in axes.get_lines() if line.get_gid() == "settled")
+    np.testing.assert_allclose(np.asarray(curve.get_ydata(), float), 1e3 * part.values)
+    assert list(legend_of(figure)) == ["median", "5 % to 95 % of draws"]
 
 
 # ---- the command ---------------------------------------------------------------------------------

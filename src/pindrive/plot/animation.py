@@ -24,7 +24,7 @@ from PIL import Image
 
 from pindrive.evaluation.tactile_image import view
 from pindrive.plot.pin import moment
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, plain
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 
@@ -254,7 +254,12 @@ def _page(scan: Scan, axes: Axes, times: NDArray[np.float64]) -> Part:
     axes.imshow(
         scan.scene.luminance, cmap="gray", vmin=0.0, vmax=1.0, extent=(left, right, bottom, top)
     )
-    axes.set_title(scan.scene.title, loc="left", fontsize=SMALL, pad=3.0)
+    axes.set_title(
+        f"{plain(scan.scene.title)}; red line: way of the hand",
+        loc="left",
+        fontsize=SMALL,
+        pad=3.0,
+    )
     _bare(axes)
     spots = MM * scan.spots(times)
     x, y = (MM * place for place in scan.path.position(times))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from io import BytesIO
-from itertools import groupby
+from itertools import groupby, product
 from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -20,7 +20,18 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.motion.drive import Profile
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, save
+from pindrive.plot.style import (
+    CONTACTS,
+    EVENT_SHAPE,
+    GREY,
+    PALETTE,
+    SMALL,
+    STYLE,
+    Figure,
+    event_marker,
+    event_name,
+    save,
+)
 from pindrive.plot.trace import MM, Trace
 from pindrive.quantities.table import QUANTITIES, digits, duration, short
 
@@ -41,7 +52,6 @@ def write_figure(motion: Motion, path: Path, format: str) -> None:
 
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
 _GRIP_TINT: Final = 0.3
-_MARKER: Final = {"stick": "s", "slip": "^", "cross": "x"}
 
 _MOST_MARKERS = 100
 """With more events their markers would hide the curve."""
@@ -53,7 +63,7 @@ def plot_motion(motion: Motion) -> Figure:
     With a compliant finger also the stretch of its skin.
 
     Args:
-        motion: any motion; of a very long one the first phases are drawn, and it says so.
+        motion: any motion; of a very long one the first phases, and the time axis says until when.
 
     Returns:
         A figure that belongs to nobody else: `save` it, or show it in a notebook.
@@ -105,10 +115,13 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     _draw_plate(motion, v, trace)
     _mark_settling(motion, trace, x)
     _mark_extremes(motion, trace, x)
-    x.set_ylim(_room(trace.x, 0.0))
+    x.set_ylim(_room(trace.x, 0.0, margin=0.22))
     v.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
     a.set_ylim(_room(trace.a, 0.0))
-    a.set_xlabel(f"time after release ({trace.unit})")
+    part = ""
+    if trace.end < motion.duration:
+        part = f": the first {duration(trace.end)} of {duration(motion.duration)}"
+    a.set_xlabel(f"time after release ({trace.unit}){part}")
     a.set_xlim(0.0, trace.end * trace.scale)
 
 
@@ -169,15 +182,18 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     axes.set_axis_off()
     handles: list[Artist] = []
     notes: list[str] = []
-    kinds = {event.kind for event, _ in trace.events}
+    occur = {(event.kind, event.contact) for event, _ in trace.events}
     if len(trace.events) <= _MOST_MARKERS:
         handles += [
-            Line2D([], [], **_marker(kind), label=NAME[kind]) for kind in _MARKER if kind in kinds
+            Line2D([], [], **event_marker(*sign), label=event_name(*sign))
+            for sign in product(EVENT_SHAPE, CONTACTS)
+            if sign in occur
         ]
     else:
         notes.append(f"{len(trace.events)} events: too many to mark")
-    if trace.end < motion.duration:
-        notes.append(f"drawn: the first {duration(trace.end)} of {duration(motion.duration)}")
+    if len(trace.starts) > 1:
+        jump = Line2D([], [], color=PALETTE["curve"], lw=0.5, label="acceleration jumps")
+        handles.append(jump)
     handles += [
         Patch(color=PALETTE[mode], alpha=_TINT[mode], lw=0.0, label=stuck_name(motion, mode))
         for mode in _TINT
@@ -189,6 +205,9 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     if _band(motion) > 0.0:
         part = f"{100 * motion.settling_band:g} %"
         label = rf"$x_\mathrm{{end}}$ ± {part} of $|x_0 - x_\mathrm{{end}}|$"
+        handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
+    elif motion.ending.kind == "steady" and isfinite(motion.ending.position):
+        label = r"$x_\mathrm{end}$, about which it oscillates"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
     axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
@@ -206,19 +225,14 @@ def _room(values: NDArray[np.float64], *others: float, margin: float = 0.15) -> 
     return low - margin * span, high + margin * span
 
 
-def _marker(kind: str) -> dict[str, Any]:
-    fill = "white" if kind == "slip" else PALETTE[kind]
-    return {"ls": "none", "marker": _MARKER[kind], "color": PALETTE[kind], "mfc": fill, "mew": 0.9}
-
-
 def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -> None:
     if len(trace.events) > _MOST_MARKERS:
         return
-    for kind in _MARKER:
-        chosen = [i for i, (event, _) in enumerate(trace.events) if event.kind == kind]
+    for sign in product(EVENT_SHAPE, CONTACTS):
+        chosen = [i for i, (e, _) in enumerate(trace.events) if (e.kind, e.contact) == sign]
         if chosen:
             up = [getattr(trace.events[i][0], ordinate) * MM for i in chosen]
-            axes.plot([across[i] for i in chosen], up, **_marker(kind), zorder=3, gid=kind)
+            axes.plot([across[i] for i in chosen], up, **event_marker(*sign), zorder=3)
 
 
 def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
@@ -272,8 +286,14 @@ def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
         fill = "white" if i == 0 else "black"
         axes.plot(*place, "o", color="black", mfc=fill, mew=0.8, ms=3.5, zorder=4, gid="ends")
         above = i == 0 or comes_from_below
+        right = i == 0 and 2.0 * place[0] > trace.x.min() + trace.x.max()
         axes.annotate(
-            text, place, (4, 4 if above else -9), textcoords="offset points", fontsize=SMALL
+            text,
+            place,
+            (-4 if right else 4, 4 if above else -9),  # at the start away from the plate's name
+            textcoords="offset points",
+            ha="right" if right else "left",
+            fontsize=SMALL,
         )
 
 
@@ -319,7 +339,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
         axes.annotate(
             f"{name} {short('displacement', place)}",
             (time * trace.scale, place * MM),
-            (-4 if late else 4, 1 if up else -2),
+            (-4 if late else 4, 3 if up else -4),
             textcoords="offset points",
             ha="right" if late else "left",
             va="bottom" if up else "top",
@@ -333,9 +353,6 @@ def _outward(motion: Motion) -> bool:
 
 
 NAME: Final = {
-    "stick": "sticks",
-    "slip": "breaks loose",
-    "cross": "reverses without sticking",
     "carried": "carried by the plate",
     "resting": "resting on the finger",
     "gripping": "skin grips the pin",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from itertools import product
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -11,7 +12,15 @@ from matplotlib.patches import Patch
 
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.line_crossings import printed
-from pindrive.plot.style import GREY, PALETTE, SMALL
+from pindrive.plot.style import (
+    CONTACTS,
+    EVENT_SHAPE,
+    GREY,
+    PALETTE,
+    SMALL,
+    event_marker,
+    event_name,
+)
 from pindrive.quantities.table import check_whole
 
 if TYPE_CHECKING:
@@ -33,8 +42,6 @@ LONGEST: Final = 1.2
 BEFORE: Final = 0.04
 AFTER: Final = 0.16
 """Before the first line and after the last, s."""
-MARKERS: Final = {"stick": "s", "slip": "^", "cross": "x"}
-NAMES: Final = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,16 +97,17 @@ def _closest(lines: list[Line]) -> tuple[int, int]:
     return best
 
 
-def draw_history(judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec) -> None:
-    """Draw it: four panels over one time axis, with a key."""
+def draw_history(
+    judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec
+) -> list[Artist]:
+    """Draw it: four panels over one time axis; what their signs mean, for a legend."""
     scan = judgement.scan
     pin = scan.pins[chosen.pin]
-    rows = place.subgridspec(5, 1, height_ratios=(0.8, 0.8, 2.0, 1.2, 0.22))
+    rows = place.subgridspec(4, 1, height_ratios=(0.8, 0.8, 2.0, 1.2))
     seen = figure.add_subplot(rows[0], label="seen")
     pull = figure.add_subplot(rows[1], label="pull", sharex=seen)
     x = figure.add_subplot(rows[2], label="x", sharex=seen)
     force = figure.add_subplot(rows[3], label="force", sharex=seen)
-    key = figure.add_subplot(rows[4], label="key")
     t = _times(pin, chosen)
     ms = MS * (t - chosen.begin)
     for axes in (seen, pull, x, force):
@@ -109,7 +117,7 @@ def draw_history(judgement: Judgement, chosen: Moment, figure: Figure, place: Su
     pull.plot(ms, scan.device.magnet.pull(pin.current(t)), color=PALETTE["curve"], gid="pull")
     pull.set_ylabel("pull (N)")
     pull.set_ylim(0.0, 1.15 * scan.device.magnet.hold_force)
-    kinds = _draw_motion(pin, chosen, x, t, ms)
+    signs = _draw_motion(pin, chosen, x, t, ms)
     _draw_force(judgement, pin, force, t, ms)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
@@ -122,7 +130,7 @@ def draw_history(judgement: Judgement, chosen: Moment, figure: Figure, place: Su
     force.set_xlabel("time (ms)")
     force.set_xlim(0.0, MS * (chosen.end - chosen.begin))
     figure.align_ylabels((seen, pull, x, force))
-    _draw_key(key, kinds)
+    return _key(signs)
 
 
 def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
@@ -174,8 +182,8 @@ def _draw_seen(
 
 def _draw_motion(
     pin: PinScan, chosen: Moment, axes: Axes, t: NDArray[np.float64], ms: NDArray[np.float64]
-) -> list[str]:
-    """The deflection, where the plate carries the pin, and its events; the kinds that occur."""
+) -> list[tuple[str, str]]:
+    """The deflection, where the plate carries the pin, and its events; the signs that occur."""
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
     carried = [
         (MS * (pin.begin + begin - chosen.begin), MS * (end - begin))
@@ -193,21 +201,21 @@ def _draw_motion(
         gid="carried",
     )
     axes.plot(ms, MM * pin.position(t), color=PALETTE["curve"], lw=1.3, gid="curve")
-    kinds = []
-    for kind, marker in MARKERS.items():
-        events = [e for e in pin.events if e.kind == kind and chosen.begin < e.time < chosen.end]
+    signs = []
+    within = [e for e in pin.events if chosen.begin < e.time < chosen.end]
+    for sign in product(EVENT_SHAPE, CONTACTS):
+        events = [e for e in within if (e.kind, e.contact) == sign]
         if events:
-            kinds.append(kind)
+            signs.append(sign)
             axes.plot(
                 [MS * (e.time - chosen.begin) for e in events],
                 [MM * e.position for e in events],
-                **_marker(kind, marker),
+                **event_marker(*sign),
                 zorder=3,
-                gid=kind,
             )
     axes.margins(y=0.12)
     axes.set_ylabel("deflection $x$ (mm)")
-    return kinds
+    return signs
 
 
 def _draw_force(
@@ -230,25 +238,11 @@ def _draw_force(
         other.spines["right"].set_visible(True)
 
 
-def _marker(kind: str, marker: str) -> dict[str, Any]:
-    fill = "white" if kind == "slip" else PALETTE[kind]
-    return {"ls": "none", "marker": marker, "color": PALETTE[kind], "mfc": fill, "mew": 0.9}
-
-
-def _draw_key(axes: Axes, kinds: list[str]) -> None:
-    axes.set_axis_off()
-    handles: list[Artist] = [
+def _key(signs: list[tuple[str, str]]) -> list[Artist]:
+    return [
         Patch(color="0.86", lw=0.0, label="printed line under the spot"),
+        Line2D([], [], color=GREY, lw=0.6, ls=":", label="threshold of the control block"),
         Patch(color=PALETTE["stick"], lw=0.0, label="magnet switched on"),
         Patch(color=PALETTE["carried"], alpha=0.4, lw=0.0, label="carried by the plate"),
-        *(Line2D([], [], **_marker(kind, MARKERS[kind]), label=NAMES[kind]) for kind in kinds),
+        *(Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs),
     ]
-    axes.legend(
-        handles=handles,
-        loc="center",
-        ncols=len(handles),
-        frameon=False,
-        borderaxespad=0.0,
-        handlelength=1.4,
-        columnspacing=1.4,
-    )

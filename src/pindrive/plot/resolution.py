@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from textwrap import fill
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
+from matplotlib.patches import Patch
 
 from pindrive.evaluation.resolution import criterion
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
+    from matplotlib.lines import Line2D
 
     from pindrive.evaluation.resolution import SpeedLimit
     from pindrive.evaluation.results import Criteria
 
 MM: Final = 1e3
+CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}
 HANDS: Final = (20.0, 100.0)
 """Hand speeds in finger studies, mm/s (arXiv 2505.11162)."""
 
@@ -37,24 +40,36 @@ def plot_speeds(
         device: its name, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure = Figure(figsize=(120 / 25.4, 95 / 25.4), dpi=250, layout="constrained")
+        figure = Figure(figsize=(120 / 25.4, 105 / 25.4), dpi=250, layout="constrained")
         axes = figure.add_subplot(label="speed")
         ordered = sorted(limits, key=lambda limit: limit.pitch)
         pitch = np.array([limit.pitch for limit in ordered]) * MM
         apart = np.array([limit.speed for limit in ordered]) * MM
         settled = np.array([limit.settled_speed for limit in ordered]) * MM
         top = 1.12 * float(np.nanmax([*apart, HANDS[1]]))
-        axes.axhspan(*HANDS, color=PALETTE["resting"], alpha=0.13, lw=0.0, zorder=0, gid="hands")
-        slowest = np.array([_from(limit) for limit in ordered]) * MM
         blue = PALETTE["curve"]
-        axes.fill_between(pitch, slowest, apart, alpha=0.12, color=blue, lw=0.0)
-        axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0)
+        slowest = np.array([_from(limit) for limit in ordered]) * MM
+        hands: dict[str, Any] = {"color": PALETTE["resting"], "alpha": 0.2, "lw": 0.0}
+        axes.axhspan(*HANDS, **hands, zorder=0, gid="hands")
+        axes.fill_between(pitch, slowest, apart, alpha=0.12, color=blue, lw=0.0, gid="distinct")
+        axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0, gid="settled")
+        handles: list[Artist] = []
+        if not np.isnan(apart).all():
+            said = f"distinct: back by {part:.0%} in between"
+            handles += axes.plot(pitch, apart, marker="o", **CURVE, label=said, gid="distinct")
+            _name(axes, "they run into one", (0.02, 0.98))
+        else:
+            _name(axes, "at no speed distinct", (0.02, 0.98))
+        if not np.isnan(settled).all():
+            said = "settled in between, too"
+            handles += axes.plot(pitch, settled, marker="s", **CURVE, label=said, gid="settled")
         if slowest.any():
-            axes.plot(pitch, slowest, color=PALETTE["curve"], lw=0.7, ls=":", gid="slowest")
-        _curve(axes, pitch, apart, "o", "distinct")
-        _curve(axes, pitch, settled, "s", "settled")
-        _bands(axes, ordered)
-        _names(axes, pitch, apart, settled, part)
+            said = "not distinct below"
+            style: dict[str, Any] = {"color": blue, "lw": 0.7, "ls": ":"}
+            handles += axes.plot(pitch, slowest, **style, label=said, gid="slowest")
+        handles += _bands(axes, ordered)[:1]
+        handles.append(Patch(**hands, label="hands in finger studies"))
+        figure.legend(handles=handles, loc="outside lower left", ncols=2, frameon=False)
         axes.set_xlim(0.0, 1.04 * pitch.max())
         axes.set_ylim(0.0, top)
         axes.set_xlabel("pitch of the lines (mm)")
@@ -62,7 +77,7 @@ def plot_speeds(
         axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         title = f"How fast the hand may move{f': {device}' if device else ''}"
         words = fill(criterion(part, criteria.direction), 78)
-        figure.suptitle(f"{title}\n{words}", x=0.012, ha="left", fontsize=8.0)
+        figure.suptitle(f"{plain(title, 66)}\n{words}", x=0.012, ha="left", fontsize=8.0)
     return figure
 
 
@@ -71,72 +86,22 @@ def _from(limit: SpeedLimit) -> float:
     return limit.distinct[0][0] if limit.distinct and limit.distinct[0][0] > limit.tried[0] else 0.0
 
 
-def _curve(
-    axes: Axes, pitch: NDArray[np.float64], speed: NDArray[np.float64], marker: str, name: str
-) -> None:
-    axes.plot(pitch, speed, color=PALETTE["curve"], marker=marker, mfc="white", mew=1.0, gid=name)
-
-
-def _bands(axes: Axes, limits: Sequence[SpeedLimit]) -> None:
+def _bands(axes: Axes, limits: Sequence[SpeedLimit]) -> list[Line2D]:
     """Where the lines are distinct again beyond the limit."""
-    for limit in limits:
-        for low, high in limit.distinct[1:]:
-            axes.plot(
-                [MM * limit.pitch] * 2, [MM * low, MM * high], color=GREY, lw=2.0, gid="again"
-            )
-
-
-def _names(
-    axes: Axes,
-    pitch: NDArray[np.float64],
-    apart: NDArray[np.float64],
-    settled: NDArray[np.float64],
-    part: float,
-) -> None:
-    """The regions by their names, where they are widest."""
-    axes.annotate(
-        "hands in finger studies",
-        (1.0, HANDS[1]),
-        (-3, -3),
-        xycoords=axes.get_yaxis_transform(),
-        textcoords="offset points",
-        ha="right",
-        va="top",
-        fontsize=SMALL,
-        color="#8a5a00",
-    )
-    known = ~np.isnan(apart)
-    if not known.any():
-        axes.annotate("at no speed distinct", (0.5, 0.5), xycoords="axes fraction", ha="center")
-        return
-    x, y = pitch[known], apart[known]
-    axes.annotate(
-        "they run into one",
-        (0.05, 0.95),
-        xycoords="axes fraction",
-        va="top",
-        fontsize=8.0,
-        color="0.25",
-    )
-    axes.annotate(
-        f"distinct: back by {part:.0%} in between",
-        (float(x[-1]), float(y[-1])),
-        (-8, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        fontsize=SMALL,
-        color=PALETTE["curve"],
-    )
-    if not np.isnan(settled).all():
-        last = int(np.flatnonzero(~np.isnan(settled))[-1])
-        axes.annotate(
-            "settled in between",
-            (float(pitch[last]), float(settled[last])),
-            (-4, -40),
-            textcoords="offset points",
-            ha="right",
-            va="top",
-            fontsize=SMALL,
-            color=PALETTE["curve"],
+    return [
+        line
+        for limit in limits
+        for low, high in limit.distinct[1:]
+        for line in axes.plot(
+            [MM * limit.pitch] * 2,
+            [MM * low, MM * high],
+            color=GREY,
+            lw=2.0,
+            label="distinct again",
+            gid="again",
         )
+    ]
+
+
+def _name(axes: Axes, text: str, place: tuple[float, float]) -> None:
+    axes.annotate(text, place, xycoords="axes fraction", va="top", color="0.25")

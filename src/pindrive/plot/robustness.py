@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from textwrap import fill
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.study.design import variable
 from pindrive.study.slices import QUANTITY, axis_label, symbol
@@ -22,6 +21,8 @@ if TYPE_CHECKING:
 
 _BINS: Final = 80
 """At most: no more than twice the root of the number of draws."""
+_REACH: Final = 1.0
+"""A limit farther from the designs than they scatter, times this, would squeeze them."""
 _WIDTH: Final = 104
 """Characters of a line of the title."""
 
@@ -47,7 +48,7 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         for axes in grid[:, 0]:
             axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
-        title = fill(f"{name}: {_outcome(found)}", _WIDTH)
+        title = plain(f"{name}: {_outcome(found)}", _WIDTH)
         lines = filter(None, (title, _left_out(found), _scatter(found)))
         figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=8.0)
     return figure
@@ -58,12 +59,15 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
     values = scale * found.values[number]
     values = values[np.isfinite(values)]
     demands = [demand for demand, _ in found.shares if demand.name == number]
-    marks = [scale * demand.limit for demand in demands] + [scale * found.own[number]]
     cases = [case for case in found.worst if case.demand.name == number]
-    marks += [scale * case.value for case in cases]
+    marks = [scale * found.own[number], *(scale * case.value for case in cases)]
     marks = [mark for mark in marks if np.isfinite(mark)]
     ends = [*marks, *(values[[values.argmin(), values.argmax()]] if values.size else [])]
     low, high = (min(ends), max(ends)) if ends else (0.0, 1.0)
+    reach = _REACH * (high - low) or abs(high) or 1.0
+    limits = [scale * demand.limit for demand in demands]
+    near = [limit for limit in limits if low - reach <= limit <= high + reach]
+    low, high = min([low, *near]), max([high, *near])
     room = 0.04 * (high - low or abs(high) or 1.0)
     axes.set_xlim(low - room, high + room)
     if values.size:
@@ -71,14 +75,19 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
         edges = np.histogram_bin_edges(values, bins).tolist()
         axes.hist(values, edges, color=PALETTE["curve"], alpha=0.75, lw=0.0)
         for part, style in ((0.05, ":"), (0.5, "-"), (0.95, ":")):
-            axes.axvline(float(np.quantile(values, part)), color="black", lw=0.7, ls=style)
+            place = float(np.quantile(values, part))
+            axes.axvline(place, color="black", lw=0.7, ls=style, gid="quantile")
     top = axes.get_ylim()[1]
-    for demand in demands:
-        limit = scale * demand.limit
-        ends_at = high + room if demand.at_most else low - room
-        axes.axvspan(limit, ends_at, color=PALETTE["stick"], alpha=0.13, lw=0.0, zorder=0)
-        axes.axvline(limit, color=PALETTE["stick"], lw=1.0)
-    axes.plot(scale * found.own[number], 0.0, "^", color="black", ms=5.0, clip_on=False, zorder=5)
+    notes = []
+    for demand, limit in zip(demands, limits, strict=True):
+        if limit not in near:
+            notes.append(f"limit {demand.shown()}: off the axis")
+        ends_at = max(limit, high + room) if demand.at_most else min(limit, low - room)
+        tint: dict[str, Any] = {"color": PALETTE["stick"], "alpha": 0.13, "lw": 0.0}
+        axes.axvspan(limit, ends_at, **tint, zorder=0, gid="beyond")
+        axes.axvline(limit, color=PALETTE["stick"], lw=1.0, gid="limit")
+    design: dict[str, Any] = {"color": "black", "ms": 5.0, "clip_on": False, "zorder": 5}
+    axes.plot(scale * found.own[number], 0.0, "^", **design, gid="design")
     for case in cases:
         if np.isfinite(case.value):
             axes.plot(
@@ -90,12 +99,14 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
                 ms=7.0,
                 clip_on=False,
                 zorder=6,
+                gid="worst",
             )
     missing = found.designs - values.size
     if missing:
-        share = f"{100.0 * missing / found.designs:.2g} % without"
+        notes.append(f"{100.0 * missing / found.designs:.2g} % without")
+    if notes:
         axes.annotate(
-            share,
+            "\n".join(notes),
             (1.0, 1.0),
             (-2, -2),
             xycoords="axes fraction",

@@ -8,20 +8,23 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib.style
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
+from matplotlib.lines import Line2D
 
 from pindrive.device.dataset import gap_words
 from pindrive.evaluation.line_crossings import turnings
 from pindrive.evaluation.tactile_image import Painting, paint, view
 from pindrive.plot.pin import Moment, draw_history, moment
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.image import AxesImage
+    from numpy.typing import NDArray
 
     from pindrive.device.scanning import Scan
     from pindrive.evaluation.results import Judgement
@@ -38,6 +41,12 @@ BAR: Final = 0.022
 """Width of the scale of colours, a part of the page's."""
 TALLEST: Final = 1000.0
 """Height of a page as drawn at most, mm: a longer one is drawn smaller."""
+KEY_COLUMNS: Final = 4
+SPOT: Final[dict[str, Any]] = {
+    **{"ls": "none", "marker": "o", "ms": 2.6, "mew": 0.7},
+    **{"mfc": "white", "mec": PALETTE["stick"]},
+}
+RETURN: Final[dict[str, Any]] = {"ls": (0, (1, 2)), "lw": 0.7}
 RELIEF: Final = LinearSegmentedColormap.from_list(
     "relief",
     [
@@ -73,7 +82,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         scale = min(scale, TALLEST / (bottom - top))
         page = scale * (bottom - top) + 9.0
         pages = (2.0 * page if wide else page) + 6.0
-        figure = Figure(figsize=(WIDTH / 25.4, (pages + 112.0) / 25.4), dpi=250)
+        figure = Figure(figsize=(WIDTH / 25.4, pages / 25.4), dpi=250)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
@@ -98,7 +107,10 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         else:
             felt.set_ylabel("")
             felt.tick_params(labelleft=False)
-        draw_history(judgement, chosen, figure, rows[1])
+        handles = [*_key(scan), *draw_history(judgement, chosen, figure, rows[1])]
+        lines = -(-len(handles) // KEY_COLUMNS)
+        figure.set_figheight((pages + 106.0 + 4.0 * lines) / 25.4)
+        _draw_key(figure, handles, KEY_COLUMNS)
         figure.suptitle(_title(judgement), x=0.008, ha="left", fontsize=8.0)
     return figure
 
@@ -116,7 +128,7 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
     left, right, top, bottom = view(first, around=True)
     with matplotlib.style.context(STYLE, after_reset=True):
         side = (WIDTH - 26.0) / (len(judgements) + 1)
-        height = min(side * (bottom - top) / (right - left), TALLEST) + 28.0
+        height = min(side * (bottom - top) / (right - left), TALLEST) + 33.0
         figure = Figure(figsize=(WIDTH / 25.4, height / 25.4), dpi=250)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
@@ -138,7 +150,29 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
         panels[0].set_xlim(MM * left, MM * right)
         panels[0].set_ylim(MM * bottom, MM * top)
         _scale(figure, image, figure.add_subplot(cells[0, count], label="scale"))
+        _draw_key(figure, _key(first), 4)
     return figure
+
+
+def _key(scan: Scan) -> list[Artist]:
+    """What the signs on the page mean."""
+    way: dict[str, Any] = {"color": PALETTE["stick"], "alpha": 0.8}
+    handles: list[Artist] = [Line2D([], [], **way, lw=0.9, label="way of the hand, reading")]
+    if any(back for _, back in _strokes(scan)):
+        handles.append(Line2D([], [], **way, **RETURN, label="and back"))
+    spot = Line2D([], [], **SPOT, label="what a pin's sensor sees at first")
+    return [*handles, spot, Line2D([], [], color="0.35", lw=0.5, label="outline of the print")]
+
+
+def _draw_key(figure: Figure, handles: list[Artist], columns: int) -> None:
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=columns,
+        frameon=False,
+        handlelength=1.4,
+        columnspacing=1.4,
+    )
 
 
 def _relief_title(judgement: Judgement) -> str:
@@ -165,34 +199,40 @@ def _draw_print(scan: Scan, axes: Axes, chosen: Moment | None) -> None:
         gid="scene",
     )
     _draw_way(scan, axes)
-    _frame(axes, f"printed: {scan.scene.title}")
+    _frame(axes, f"printed: {plain(scan.scene.title)}")
     spots = MM * scan.spots([scan.path.begin])[:, 0]
-    axes.plot(*spots.T, "o", ms=2.6, mfc="white", mec=PALETTE["stick"], mew=0.7, gid="spots")
+    axes.plot(*spots.T, **SPOT, gid="spots")
     if chosen:
         _draw_moment(scan, axes, chosen)
 
 
 def _draw_way(scan: Scan, axes: Axes) -> None:
     """The hand's strokes: reading solid with an arrow, back dotted."""
-    path = scan.path
-    cuts = np.unique([path.begin, *turnings(scan).tolist(), path.end])
-    plate = path.plate_velocity(scan.device.array.axis)
-    longest = max(np.diff(cuts), default=0.0)
-    for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
-        t = np.linspace(begin, end, 200)
-        x, y = path.position(t)
-        if np.hypot(np.ptp(x), np.ptp(y)) < 1e-9:
-            continue
-        back = float(plate(0.5 * (begin + end) - path.begin)) < 0.0
-        style: dict[str, Any] = {"ls": (0, (1, 2)), "lw": 0.7} if back else {"lw": 0.9}
-        axes.plot(MM * x, MM * y, color=PALETTE["stick"], alpha=0.8, gid="way", **style)
-        if not back and end - begin > 0.1 * longest:
+    strokes = [(t, back, scan.path.position(t)) for t, back in _strokes(scan)]
+    longest = max((t[-1] - t[0] for t, _, _ in strokes), default=0.0)
+    for t, back, (x, y) in strokes:
+        style: dict[str, Any] = RETURN if back else {"lw": 0.9}
+        gid = "return" if back else "way"
+        axes.plot(MM * x, MM * y, color=PALETTE["stick"], alpha=0.8, gid=gid, **style)
+        if not back and t[-1] - t[0] > 0.1 * longest:
             axes.annotate(
                 "",
                 (MM * x[-1], MM * y[-1]),
                 (MM * x[-12], MM * y[-12]),
                 arrowprops={"arrowstyle": "-|>", "color": PALETTE["stick"], "lw": 0.9},
             )
+
+
+def _strokes(scan: Scan) -> Iterator[tuple[NDArray[np.float64], bool]]:
+    """Times along each stroke of the hand, and whether it goes back; pauses are left out."""
+    path = scan.path
+    cuts = np.unique([path.begin, *turnings(scan).tolist(), path.end])
+    plate = path.plate_velocity(scan.device.array.axis)
+    for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
+        t = np.linspace(begin, end, 200)
+        x, y = path.position(t)
+        if np.hypot(np.ptp(x), np.ptp(y)) >= 1e-9:
+            yield t, float(plate(0.5 * (begin + end) - path.begin)) < 0.0
 
 
 def _draw_felt(
@@ -219,7 +259,7 @@ def _draw_felt(
         )
         outline.set_gid("outline")
     axes.set_facecolor("0.94")
-    _frame(axes, "shown to the finger (outline: the print)")
+    _frame(axes, "shown to the finger")
     if chosen:
         _draw_moment(scan, axes, chosen)
     return image

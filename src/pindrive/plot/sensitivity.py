@@ -10,7 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
 from pindrive.study.design import variable
 from pindrive.study.distributions import as_distribution
 from pindrive.study.slices import QUANTITY, elasticity, symbol, words
@@ -32,6 +32,13 @@ _FULL: Final = 2.0
 """The elasticity at which the colour is full."""
 _BAR: Final = 0.84
 """Of a column, what a whole variance takes."""
+_LONGEST: Final = 1.15
+"""Of a whole variance: an estimate above 1 is drawn as it is, up to the next column."""
+_WIDTH: Final = 104
+"""Characters of a line of the title."""
+_FEW: Final = 8
+"""With so many columns at most, the half is written at each scale too."""
+MINUS: Final = "\N{MINUS SIGN}"
 
 
 def plot_influence(found: Influence, name: str) -> Figure:
@@ -47,7 +54,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
         if n != "transient_settled" and (indices.spread > 0.0 or _known(found, n))
     ]
     with matplotlib.style.context(STYLE, after_reset=True):
-        height = 30 + 5.6 * len(numbers)
+        height = 38 + 5.6 * len(numbers)
         figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
         if found.near:
             near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
@@ -58,7 +65,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
         near.set_yticks(range(len(numbers)), [words(n) for n in numbers])
         near.set_ylim(len(numbers) - 0.5, -0.5)
         for axes in {near, over}:
-            ticks = [f"{symbol(variable(key))}" for key in found.keys]
+            ticks = [symbol(variable(key)) or words(variable(key)) for key in found.keys]
             axes.set_xticks(range(len(found.keys)), ticks)
             axes.set_xlim(-0.5, len(found.keys) - 0.5)
             axes.tick_params(labelsize=SMALL, length=0.0, labeltop=True, labelbottom=False)
@@ -66,11 +73,14 @@ def plot_influence(found: Influence, name: str) -> Figure:
         bars: list[Any] = [
             Patch(color=_FIRST, label="by itself"),
             Patch(color=_TOTAL, label="with interactions"),
-            Line2D([], [], color="black", lw=0.6, label="its 95 % interval"),
+            Line2D([], [], color="black", lw=0.6, label="95 % interval of the latter"),
         ]
         figure.legend(handles=bars, loc="outside lower right", ncols=3, frameon=False)
         figure.suptitle(
-            f"{name}: which parameter matters\n{_ranges(found)}", x=0.008, ha="left", fontsize=8.0
+            f"{plain(f'{name}: which parameter matters', _WIDTH)}\n{_ranges(found)}",
+            x=0.008,
+            ha="left",
+            fontsize=8.0,
         )
     return figure
 
@@ -105,13 +115,15 @@ def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) ->
         axes.text(
             column,
             row,
-            text.replace("-", "\N{MINUS SIGN}"),
+            text.replace("-", MINUS),
             ha="center",
             va="center",
             fontsize=5.8,
             color="white" if dark else "0.55" if text in ("-", "·") else "black",
         )
     axes.set_title("near: % of change for 1 % more of", fontsize=8.0)
+    signs = f"blue: it grows, orange: it falls; ·: below 0.005, {MINUS}: none"
+    axes.set_xlabel(signs, fontsize=SMALL, color=GREY)
 
 
 def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
@@ -119,18 +131,29 @@ def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
     for column in range(len(found.keys)):
         left = column - 0.5 * _BAR
         axes.axvline(left, color="0.8", lw=0.5, zorder=0)
-        axes.axvline(left + _BAR, color="0.9", lw=0.5, ls=":", zorder=0)
+        for part in (0.5, 1.0):
+            axes.axvline(left + part * _BAR, color="0.8", lw=0.5, ls=":", zorder=0)
         for row, number in enumerate(numbers):
             first, total = found.over[number].first, found.over[number].total
             if np.isnan(total.value[column]):
                 continue
             for interval, colour, thick in ((total, _TOTAL, 0.62), (first, _FIRST, 0.3)):
-                length = _BAR * float(np.clip(interval.value[column], 0.0, 1.0))
+                length = _BAR * float(np.clip(interval.value[column], 0.0, _LONGEST))
                 axes.barh(row, length, thick, left=left, color=colour, lw=0.0)
-            ends = np.clip([total.low[column], total.high[column]], 0.0, 1.0)
-            axes.hlines(row, *(left + _BAR * ends), color="black", lw=0.6)
+            ends = np.clip([total.low[column], total.high[column]], 0.0, _LONGEST)
+            axes.hlines(row, *(left + _BAR * ends), color="black", lw=0.6, gid="interval")
     for row, number in enumerate(numbers):
         if not found.over[number].spread > 0.0:
             words_for = "constant" if found.over[number].spread == 0.0 else "does not exist"
             axes.text(-0.4, row, words_for, va="center", fontsize=5.8, color="0.55")
     axes.set_title("over the ranges: part of the variance due to", fontsize=8.0)
+    parts = {0.0: "0", 0.5: "½", 1.0: "1"} if len(found.keys) <= _FEW else {0.0: "0", 1.0: "1"}
+    scale = axes.secondary_xaxis("bottom")
+    scale.set_label("scale")
+    columns = range(len(found.keys))
+    scale.set_xticks(
+        [column + _BAR * (part - 0.5) for column in columns for part in parts],
+        [label for _ in columns for label in parts.values()],
+    )
+    scale.tick_params(labelsize=5.8, length=2.0, width=0.5)
+    scale.spines["bottom"].set_visible(False)

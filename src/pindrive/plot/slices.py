@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from pindrive._core import settling_band
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.slices import QUANTITY, axis_label, value, values
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
+    from matplotlib.collections import QuadMesh
 
     from pindrive.study.slices import Panel, View
 
@@ -33,9 +33,19 @@ _HATCH: Final[dict[str, Any]] = {
     "lw": 0.0,
 }
 _REFUSED: Final = "0.72"
-_ORDER: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
-"""Okabe and Ito's colours for curves side by side."""
+_ORDER: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#0072B2", "ls": "-"},
+    {"color": "#D55E00", "ls": (0, (6, 2))},
+    {"color": "#009E73", "ls": (0, (6, 2, 1.5, 2))},
+    {"color": "#CC79A7", "ls": (0, (3, 1.5))},
+    {"color": "#E69F00", "ls": "-", "lw": 2.0},
+)
+"""Curves side by side: Okabe and Ito's colours, and dashes for print in grey."""
 _LEVELS: Final = 8
+_FLAT: Final = 0.25
+"""Of a common scale of colours: a panel that takes less has its own."""
+_BRIGHT: Final = 0.5
+"""From this luminance of a colour on, lines on it are black."""
 
 
 def plot_study(
@@ -96,7 +106,7 @@ def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -
         if (name, number) not in (("plate_load", 1.0), ("settling_band", settling_band))
     }
     name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
-    said = [name, values(shown, width), *view.links]
+    said = [plain(name, width), values(shown, width), *view.links]
     figure.suptitle("\n".join(filter(None, said)), x=0.008, ha="left", fontsize=8.0)
 
 
@@ -114,32 +124,55 @@ def _scale(axes: Axes, view: View, x: str, y: str) -> None:
 
 
 def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> None:
-    """One number on one scale of colours."""
-    quantity = QUANTITY[panels[0].number]
-    shown = [quantity.display_scale * panel.values for panel in panels]
-    finite = np.concatenate([values[np.isfinite(values)] for values in shown])
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
-    stepped = is_stepped(panels[0].number)
-    levels = ticks[(ticks > low) & (ticks < high) & (not stepped)]
-    if low == high:  # one colour, the middle one
-        low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
-    drawn: ScalarMappable | None = None
-    for panel, values_shown, axes in zip(panels, shown, row, strict=True):
-        drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
-        differs = {k: v for k, v in panel.at.items() if k not in _common(panels)}
-        if differs:
-            axes.set_title(", ".join(value(k, v) for k, v in differs.items()), fontsize=SMALL)
-    row[0].set_ylabel(axis_label(panels[0].keys[0]))
-    if drawn is not None:
-        bar = figure.colorbar(drawn, ax=list(row), pad=0.015, fraction=0.05, aspect=24)
-        for level in levels if panels[0].low is None else ():
-            bar.ax.axhline(level, color="white", lw=0.5)
-        said = "median " if panels[0].number in MEASURED else "median of draws:\n"
-        median = said if panels[0].low is not None else ""
-        bar.set_label(median + axis_label(panels[0].number))
+    """One number on one scale of colours, or each panel on its own where one would flatten some."""
+    name = panels[0].number
+    shown = [QUANTITY[name].display_scale * panel.values for panel in panels]
+    every = [*zip(panels, shown, row, strict=True)]
+    common = _common(panels)
+    for group in [[each] for each in every] if _flattened(shown) else [every]:
+        low, high = _ends([values for _, values, _ in group])
+        ticks: Any = MaxNLocator(_LEVELS).tick_values(low, high)
+        contoured = low < high and panels[0].low is None and not is_stepped(name)
+        levels = ticks[(ticks > low) & (ticks < high) & contoured]
+        if low == high:  # one colour, the middle one
+            low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
+        for panel, values_shown, axes in group:
+            drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
+            differs = {k: v for k, v in panel.at.items() if k not in common}
+            if differs:
+                axes.set_title(", ".join(value(k, v) for k, v in differs.items()), fontsize=SMALL)
+        bar = figure.colorbar(
+            drawn, ax=[axes for *_, axes in group], pad=0.015, fraction=0.05, aspect=24
+        )
+        for level, colour in zip(levels, _line_colours(levels, low, high), strict=True):
+            bar.ax.axhline(level, color=colour, lw=0.5)
+        if len(levels) > 1:
+            bar.set_ticks(levels)
         bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         bar.outline.set_linewidth(0.0)
+    said = "median " if name in MEASURED else "median of draws:\n"
+    bar.set_label((said if panels[0].low is not None else "") + axis_label(name))
+    row[0].set_ylabel(axis_label(panels[0].keys[0]))
+
+
+def _ends(shown: Sequence[Any]) -> tuple[float, float]:
+    """The least and the largest value, 0 and 1 where there is none."""
+    finite = np.concatenate([values[np.isfinite(values)] for values in shown])
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+
+
+def _flattened(shown: Sequence[Any]) -> bool:
+    """Whether a panel that varies would take a small part of a common scale of colours."""
+    low, high = _ends(shown)
+    spans = [np.ptp(_ends([values])) for values in shown if np.isfinite(values).any()]
+    return any(0.0 < span < _FLAT * (high - low) for span in spans)
+
+
+def _line_colours(levels: Any, low: float, high: float) -> list[str]:
+    """For each level black or white, whichever is seen on the colour of its value."""
+    colours = matplotlib.colormaps[_MAP]((np.asarray(levels) - low) / (high - low))
+    bright = colours[..., :3] @ (0.2126, 0.7152, 0.0722) > _BRIGHT
+    return ["black" if one else "white" for one in bright.tolist()]
 
 
 def _draw_map(
@@ -148,7 +181,7 @@ def _draw_map(
     shown: Any,
     ends: tuple[float, float],
     levels: Any,
-) -> ScalarMappable:
+) -> QuadMesh:
     (y, x) = (
         QUANTITY[key].display_scale * along
         for key, along in zip(panel.keys, panel.along, strict=True)
@@ -157,8 +190,11 @@ def _draw_map(
     drawn = axes.pcolormesh(
         x, y, shown, cmap=_MAP, vmin=ends[0], vmax=ends[1], shading="nearest", rasterized=True
     )
-    if panel.low is None and min(shown.shape) > 1 and (~missing).any() and len(levels):
-        axes.contour(x, y, shown, levels=levels, colors="white", linewidths=0.5, alpha=0.8)
+    if min(shown.shape) > 1 and (~missing).any() and len(levels):
+        colours = _line_colours(levels, *ends)
+        lines = axes.contour(x, y, shown, levels=levels, colors=colours, linewidths=0.5)
+        lines.set_gid("contours")
+        axes.clabel(lines, fontsize=SMALL - 1.0, fmt="%.6g", inline_spacing=2)
     axes.patch.set(**_HATCH)
     refused = np.where(panel.refused, 1.0, np.nan)
     if panel.refused.any():
@@ -187,17 +223,18 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
     quantity = QUANTITY[panels[0].number]
     scale = quantity.display_scale
     common = _common(panels)
-    for panel, colour in zip(panels, _ORDER, strict=False):
+    for panel, look in zip(panels, _ORDER, strict=False):
+        colour = look["color"]
         x = QUANTITY[panel.keys[0]].display_scale * panel.along[0]
         differs = {k: v for k, v in panel.at.items() if k not in common}
         label = ", ".join(value(k, v) for k, v in differs.items())
         if panel.low is not None and panel.high is not None:
             band: dict[str, Any] = {"color": colour, "alpha": 0.18, "lw": 0.0}
-            axes.fill_between(x, scale * panel.low, scale * panel.high, **band)
+            axes.fill_between(x, scale * panel.low, scale * panel.high, **band, gid="draws")
         few = len(x) <= 40
         marker = "." if few else ""
         settled = np.where(panel.unsettled, np.nan, scale * panel.values)
-        axes.plot(x, settled, color=colour, label=label, marker=marker, gid="settled")
+        axes.plot(x, settled, **look, label=label, marker=marker, gid="settled")
         if panel.unsettled.any() and len(panels) > 1:
             loose: dict[str, Any] = {"color": colour, "lw": 0.7, "ls": (0, (1, 1.5)), "zorder": 1}
             axes.plot(x, scale * panel.values, **loose, gid="unsettled")

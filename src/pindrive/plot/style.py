@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from io import BytesIO
+from textwrap import fill
 from typing import IO, TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -22,6 +23,10 @@ PALETTE: Final = {
     "gripping": "#CC79A7",  # reddish purple
 }
 """Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
+
+EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D"}
+CONTACTS: Final = {"plate": ("full", 3.2), "finger": ("none", 6.0), "both": ("left", 6.0)}
+"""How a marker is filled, and its size, by the contact that changes."""
 
 GREY: Final = "0.45"
 SMALL: Final = 7.0
@@ -48,6 +53,27 @@ _SAVING: Final[dict[str, dict[str, Any]]] = {
     "svg": {"metadata": {"Date": None}},
     "pdf": {"metadata": {"CreationDate": None}},
 }
+
+
+def plain(text: str, width: int = 10_000) -> str:
+    """Text of a user, in lines of about so many characters, none of which begins a formula."""
+    return fill(text, width).replace("$", r"\$")
+
+
+def event_name(kind: str, contact: str) -> str:
+    """What such an event is called: "sticks at the plate"."""
+    change = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+    return f"{change} at {'both' if contact == 'both' else f'the {contact}'}"
+
+
+def event_marker(kind: str, contact: str) -> dict[str, Any]:
+    """The marker of an event: its shape is the kind, how it is filled the contact.
+
+    That of the finger is larger than that of the plate: both are seen in one place.
+    """
+    fill, size = CONTACTS[contact]
+    look = {"marker": EVENT_SHAPE[kind], "color": PALETTE[kind], "fillstyle": fill, "ms": size}
+    return {"ls": "none", "mew": 0.9, "mfcalt": "white", **look, "gid": f"{kind} {contact}"}
 
 
 class Figure(_Figure):

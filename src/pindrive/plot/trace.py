@@ -19,7 +19,12 @@ if TYPE_CHECKING:
     from pindrive.motion.results import Event, Segment
 
 MOST_PHASES, MOST_PERIODS = 5000, 2500
-"""What is traced of a very long motion, from its start."""
+"""What is traced of a very long motion, from its start: so many phases, so many periods in motion.
+
+While the pin is stuck nothing swings, however long that takes."""
+STUCK: Final = ("carried", "resting")
+_STUCK_POINTS: Final = 200
+"""Of a phase in which the pin is stuck: there its place is a parabola over time."""
 
 _MOST_CLOSER: Final = 30.0
 """How much closer at most the grid is where skin grips, which is a stiffer spring."""
@@ -56,25 +61,33 @@ class Trace:
         """Trace a motion; a very long one from its start, as far as a picture can show."""
         ratio, frequency = motion.drive.damping_ratio, motion.drive.natural_frequency
         oscillates, period = ratio < 1.0, tau / frequency
-        end = min(motion.duration, MOST_PERIODS * period) if oscillates else motion.duration
+        end = motion.duration
         phases = tuple(_phases(motion, end))
         if len(phases) == MOST_PHASES:
             last, delay = phases[-1]
             end = min(end, last.end + delay)
-        density = (
-            min(200.0 / period, max(40.0 / period, 20_000 / end)) if oscillates else 2000 / end
+        if oscillates:
+            end = _until(phases, end, MOST_PERIODS * period)
+            phases = tuple((phase, delay) for phase, delay in phases if phase.begin + delay < end)
+        free = sum(
+            min(phase.end + delay, end) - phase.begin - delay
+            for phase, delay in phases
+            if phase.mode not in STUCK
         )
+        density = 2000.0 / end
+        if oscillates:
+            density = min(200.0 / period, max(40.0 / period, 20_000 / (free or end)))
         fastest = frequency * (ratio + sqrt(max(0.0, ratio**2 - 1.0)))
         skin, spring = motion.drive.finger, motion.drive.stiffness
         gripped = 1.0 if skin.rigid else min(sqrt(1.0 + skin.stiffness / spring), _MOST_CLOSER)
         grids = [
-            _grid(
-                phase.begin,
-                min(phase.end, end - delay),
-                density * (gripped if phase.finger == 0 else 1.0),
-                fastest,
+            np.linspace(phase.begin, last, _STUCK_POINTS)
+            if phase.mode in STUCK
+            else _grid(
+                phase.begin, last, density * (gripped if phase.finger == 0 else 1.0), fastest
             )
             for phase, delay in phases
+            for last in [min(phase.end, end - delay)]
         ]
         sizes = np.array([len(grid) for grid in grids])
         lasts = np.cumsum(sizes) - 1
@@ -124,6 +137,18 @@ class Trace:
         sizes = np.diff(np.append(self.starts, len(values)))
         there = np.repeat([phase.mode == mode for phase, _ in self.phases], sizes)
         return self.broken(np.where(there, values, nan))
+
+
+def _until(phases: tuple[tuple[Segment, float], ...], end: float, room: float) -> float:
+    """When the pin has moved freely for so long, s; the end if that is before."""
+    for phase, delay in phases:
+        if phase.mode not in STUCK:
+            begin = phase.begin + delay
+            length = min(phase.end + delay, end) - begin
+            if length > room:
+                return begin + room
+            room -= length
+    return end
 
 
 def _rounds(motion: Motion) -> tuple[float, float]:

@@ -1,0 +1,195 @@
+"""The tables of motions and scans: each cell is the number of its row and column, in its unit."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+from pathlib import Path
+
+import pytest
+
+from pindrive import Motion, simulate
+from pindrive.cli.evaluation_tables import judgement_report, speed_report, verdict_words
+from pindrive.cli.tables import device_words, ending, motion_report, regime, scan_report
+from pindrive.device import Device, PinArray, Scene, lines, scan
+from pindrive.device.dataset import numbers as pin_numbers
+from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.evaluation.resolution import SpeedLimit, Trial
+from pindrive.files.device import load, motion_of
+from pindrive.quantities.table import QUANTITIES
+from table_reading import numbers, printed, table
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def motion() -> Motion:
+    return motion_of(load(EXAMPLES / "tactile-mouse.toml"))
+
+
+@pytest.fixture(scope="module")
+def judged() -> Judgement:
+    drive = load(EXAMPLES / "tactile-reader.toml", whole=True).drive
+    device = Device(drive=drive, array=PinArray.grid(2, 2, 0.004))
+    scene = Scene.from_grating([0.004, 0.0015], count=2, margin=0.008, height=0.008)
+    path = lines([scene.lines[0]], 0.004, 0.028, speed=0.15, return_speed=0.15, pause=0.05)
+    return judge(scan(device, scene, path))
+
+
+def close(cell: str, value: float, scale: float = 1e3) -> bool:
+    """Whether a cell is a value to four digits."""
+    return float(cell) == pytest.approx(scale * value, rel=1.01e-3, abs=1e-12)
+
+
+def test_phases(motion: Motion) -> None:
+    heads, units, *rows = table(motion_report(motion), "Phases")
+    assert heads == ["from", "to", "duration", "phase", "x", "v", "ends as"]
+    assert units[:3] == ["ms", "ms", "ms"] and units[4:6] == ["mm", "mm/s"]
+    assert len(rows) == len(motion.segments) > 4
+    for row, segment in zip(rows, motion.segments, strict=True):
+        assert close(row[0], segment.begin)
+        assert row[3] == segment.mode
+        assert close(row[4], float(motion.position(segment.begin)))
+        assert float(row[5]) == pytest.approx(
+            1e3 * float(motion.velocity(segment.begin)), rel=1e-3, abs=1e-9
+        )
+        if isfinite(segment.end):
+            assert close(row[1], segment.end)
+            assert close(row[2], segment.end - segment.begin)
+        else:
+            assert row[2] == "for ever"
+        words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+        ends = [e for e in motion.events if e.time == segment.end]
+        assert row[6] == ", ".join(f"{e.contact} {words[e.kind]}" for e in ends)
+
+
+def test_numbers_of_a_motion(motion: Motion) -> None:
+    _, *rows = table(motion_report(motion), "Transient, followed for")
+    found = {row[0]: row for row in rows if row[0]}
+    compared = 0
+    for name, value in motion.numbers().items():
+        quantity = QUANTITIES[name]
+        row = found.get(quantity.symbol)
+        if row is None or quantity.symbol == "" or isnan(value):
+            continue
+        assert row[2] == quantity.display_unit
+        assert close(row[1], value, quantity.display_scale), name
+        compared += 1
+    assert compared > 10
+    assert found["t_a"][1:3] == ["3.022", "ms"], "the peak is the first turning point"
+    peak, trough = found["x_m,a"], found["x_m,c"]
+    assert close(peak[1], motion.transient.peak_displacement)
+    assert close(trough[1], motion.transient.trough_displacement)
+    assert "on the way out" in peak[3] and "follows the peak" in trough[3]
+
+
+def test_the_ending_in_words(motion: Motion) -> None:
+    place, since = numbers(ending(motion))
+    assert place == pytest.approx(1e3 * motion.ending.position, rel=1e-3)
+    assert since == pytest.approx(1e3 * motion.transient.rest_time, rel=1e-3)
+    free = simulate(
+        load(EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]).drive,
+        mouse_velocity=0.06,
+        displacement=2e-3,
+        duration=0.01,
+    )
+    assert ending(free) == "Still moving after 10.00 ms."
+
+
+def test_regimes() -> None:
+    names = [regime(ratio) for ratio in (0.0, 0.5, 1.0, 2.0)]
+    assert names == ["undamped", "underdamped", "critically damped", "overdamped"]
+
+
+def test_pins_of_a_scan(judged: Judgement) -> None:
+    done = judged.scan
+    heads, *_ = rows = table(scan_report(done), "Pins, over lines every 4, 1.5 mm")
+    del heads
+    body = [row for row in rows if row[0].isdigit()]
+    units = next(row for row in rows if row[1] == "mm")
+    names = [
+        *("pin.energised", "pin.switchings", "pin.slips", "pin.captures", "pin.carried"),
+        *("pin.peak_displacement", "pin.peak_skin_force", "pin.peak_stretch"),
+    ]
+    assert [QUANTITIES[name].display_unit for name in names] == units[2 : 2 + len(names)]
+    assert len(body) == len(done.pins) == 4
+    for row, pin in zip(body, done.pins, strict=True):
+        assert row[0] == str(pin.number)
+        assert numbers(row[1]) == pytest.approx(
+            [1e3 * x for x in done.device.array.places[pin.number]]
+        )
+        for cell, name in zip(row[2:], names, strict=False):
+            value = pin_numbers(pin)[name]
+            assert close(cell, value, QUANTITIES[name].display_scale), name
+        gaps = [gap.size for gap in done.gaps if pin.number in (gap.behind, gap.ahead)]
+        assert close(row[-1], min(gaps))
+
+
+def test_a_device_in_words(judged: Judgement) -> None:
+    device = judged.scan.device
+    reach = device_words(device)[0]
+    assert reach.startswith("A magnet carries its pin up to ") and reach.endswith(" mm.")
+    assert numbers(reach) == pytest.approx([1e3 * device.reach], rel=1e-3)
+
+
+def test_what_became_of_the_lines(judged: Judgement) -> None:
+    heads, *rows = table(judgement_report(judged), "What became of the lines")
+    assert heads == ["symbol", "count", "meaning"]
+    found = {row[2]: int(row[1]) for row in rows}
+    assert len(found) == len(rows) == 9
+    for name, count in judged.counts.items():
+        assert found[QUANTITIES[name].meaning] == count, name
+    counts = judged.counts
+    missed = counts["judged.unseen"] + counts["judged.merged"] + counts["judged.faint"]
+    first = verdict_words(judged)[0]
+    assert numbers(first)[:3] == [counts["judged.lines"], counts["judged.shown"], missed]
+    assert numbers(first)[-1] == counts["judged.echoes"]
+
+
+def test_lines_shown(judged: Judgement) -> None:
+    heads, *rows = table(judgement_report(judged), "Lines shown to the finger")
+    assert heads[1:4] == ["least", "median", "most"]
+    found = {row[-1]: row for row in rows}
+    for name in judged.lines[0].numbers:
+        quantity = QUANTITIES[name]
+        row = found[quantity.meaning]
+        for cell, value in zip(row[1:4], judged.spread(name), strict=True):
+            if isnan(value):
+                assert cell == "-"
+            elif cell.endswith("%"):
+                assert float(cell[:-1]) == pytest.approx(100.0 * value, abs=0.051)
+            else:
+                assert close(cell, value, quantity.display_scale), name
+        if quantity.display_unit:
+            assert row[4] == quantity.display_unit
+    least, median, most = judged.spread("line.lag_off")
+    assert least < median < most, "a test that can tell them apart"
+
+
+def test_speeds() -> None:
+    limits = [
+        SpeedLimit(
+            pitch=0.002,
+            width=0.001,
+            tried=(0.005, 1.0),
+            distinct=((0.005, 0.2), (0.3, 0.4)),
+            settled=((0.005, 0.1),),
+            beyond=Trial(0.21, 0.25, 1e-4, ()),
+        ),
+        SpeedLimit(
+            pitch=0.004,
+            width=0.0015,
+            tried=(0.005, 1.0),
+            distinct=((0.01, 1.0),),
+            settled=(),
+            beyond=None,
+        ),
+    ]
+    heads, units, one, other = table(
+        speed_report(limits, 0.5, Criteria()), "How fast the hand may move"
+    )
+    assert heads == ["pitch", "width", "distinct up to", "settled up to", "a faster hand"]
+    assert units[:4] == ["mm", "mm", "mm/s", "mm/s"]
+    assert one[:4] == ["2.000", "1.000", "200.0", "100.0"]
+    assert one[4] == "has the pin back by 25%, is distinct again at 300.0-400.0 mm/s"
+    assert other[:4] == ["4.000", "1.500", "10.00 to > 1000", "-"]
+    assert "Tried: 5.000 mm/s to 1000 mm/s" in printed(speed_report(limits, 0.5, Criteria()))

@@ -1,0 +1,286 @@
+"""Whether the tests see what goes wrong: the Python package is spoiled in one place at a time.
+
+    python3 tests/mutants.py [--changed] [NAME...]
+
+A mutant is one text of one file replaced by another (tests/mutations/*.toml). Its tests run on a
+copy of the installed package with that text replaced; they must fail. Before that the same tests
+run on a copy as it is, and must pass. Without a NAME (a part of a mutant's name or of its file)
+all run; `--changed` takes those whose file or tests the last commit or the working tree changed,
+20 at most, and says which it left out.
+
+Ends with 1 where a mutant lives that is not explained, where fewer than 95 % die, where a text is
+not once in its file, or where a mutant cannot be imported.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src" / "pindrive"
+LISTS = Path(__file__).with_name("mutations")
+LIMIT = 20
+"""Mutants of changed files that run at most."""
+ENOUGH = 0.95
+TIMEOUT = 300.0
+FAILED, PASSED = 1, 0
+"""What pytest ends with; anything else is no verdict."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One thing made wrong."""
+
+    name: str
+    file: str
+    text: str
+    instead: str
+    tests: tuple[str, ...]
+    lives: str = ""
+    """Why no test can see it; empty: one must."""
+
+
+def mutants() -> list[Mutant]:
+    """All that are listed."""
+    found = []
+    for path in sorted(LISTS.glob("*.toml")):
+        listed = tomllib.loads(path.read_text("utf-8"))
+        for given in listed["mutant"]:
+            tests = given.pop("tests", None) or listed["tests"][given["file"]]
+            found.append(Mutant(tests=tuple(tests), **given))
+    return found
+
+
+def problems(chosen: list[Mutant]) -> list[str]:
+    """Mutants that are none: of one name, or whose text is not once in its file."""
+    names = [mutant.name for mutant in chosen]
+    found = [f"{name}: the name is given twice" for name in names if names.count(name) > 1]
+    for mutant in chosen:
+        times = (SOURCE / mutant.file).read_text("utf-8").count(mutant.text)
+        if times != 1:
+            found.append(f"{mutant.name}: its text is {times} times in {mutant.file}, not once")
+        if mutant.text == mutant.instead:
+            found.append(f"{mutant.name}: changes nothing")
+        for test in mutant.tests:
+            if not (ROOT / test.partition("::")[0]).is_file():
+                found.append(f"{mutant.name}: there is no {test}")
+    return found
+
+
+def changed() -> set[str]:
+    """Files that differ from those before the last commit; relative to the root."""
+    command = ["git", "diff", "--name-only", "HEAD~1"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode:
+        print("No commit before the last one is here: nothing to compare with.")
+    return set(done.stdout.split())
+
+
+def spread(chosen: list[Mutant]) -> list[Mutant]:
+    """The mutants in another order: one of each file after the other."""
+    place: dict[str, int] = {}
+    keys = []
+    for mutant in chosen:
+        place[mutant.file] = place.get(mutant.file, -1) + 1
+        keys.append(place[mutant.file])
+    return [mutant for _, mutant in sorted(zip(keys, chosen, strict=True), key=lambda of: of[0])]
+
+
+# ---- running -------------------------------------------------------------------------------------
+
+
+def python() -> str:
+    """The interpreter that has the package and pytest."""
+    own = ROOT / ".venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
+    return str(own) if own.exists() else sys.executable
+
+
+class Runner:
+    """Runs tests on copies of the package; `close` ends those that still run."""
+
+    def __init__(self, folder: Path) -> None:
+        """Copies the installed package, with the Python files as they are in the source."""
+        self._folder, self._running, self._closed = folder, set[subprocess.Popen[str]](), False
+        where = "import pindrive; print(pindrive.__path__[0])"
+        done = subprocess.run(
+            [python(), "-c", where], cwd=folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            raise SystemExit("pindrive is not installed; python3 run.py test sets it up")
+        self._whole = folder / "whole"
+        shutil.copytree(done.stdout.strip(), self._whole / "pindrive")
+        for file in SOURCE.rglob("*.py"):
+            target = self._whole / "pindrive" / file.relative_to(SOURCE)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(file, target)
+        done = subprocess.run(
+            [python(), "-c", where],
+            env=self._environment(self._whole),
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if Path(done.stdout.strip()) != self._whole / "pindrive":
+            raise SystemExit(f"the copy of the package is not what is imported: {done.stdout}")
+        subprocess.run([python(), "-m", "compileall", "-q", str(self._whole)], check=False)
+
+    @staticmethod
+    def _environment(path: Path) -> dict[str, str]:
+        return os.environ | {
+            "PYTHONPATH": str(path),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "CI": "true",
+        }
+
+    def control(self, tests: list[str]) -> str:
+        """What the tests say of the package as it is; empty where they pass."""
+        status, said = self._test(self._whole, tests)
+        return "" if status == PASSED else said
+
+    def verdict(self, mutant: Mutant) -> tuple[str, str]:
+        """How it ends: "dies", "lives" or "error", and by what."""
+        with self._spoiled(mutant) as path:
+            module = ".".join(["pindrive", *Path(mutant.file).with_suffix("").parts])
+            status, said = self._run([python(), "-c", f"import {module}"], path)
+            if status:
+                return "error", f"cannot be imported: {said}"
+            status, said = self._test(path, list(mutant.tests))
+        if status not in (FAILED, PASSED):
+            return ("dies", said) if said == "does not end" else ("error", said)
+        return ("dies" if status == FAILED else "lives"), said
+
+    @contextmanager
+    def _spoiled(self, mutant: Mutant) -> Iterator[Path]:
+        """A copy of the package with the text replaced; all other files are links."""
+        with tempfile.TemporaryDirectory(dir=self._folder) as name:
+            path = Path(name)
+            shutil.copytree(self._whole, path, copy_function=os.link, dirs_exist_ok=True)
+            file = path / "pindrive" / mutant.file
+            text = file.read_text("utf-8")
+            file.unlink()
+            file.write_text(text.replace(mutant.text, mutant.instead), "utf-8")
+            for compiled in (file.parent / "__pycache__").glob(f"{file.stem}.*.pyc"):
+                compiled.unlink()
+            yield path
+
+    def _test(self, path: Path, tests: list[str]) -> tuple[int, str]:
+        options = ["-x", "-q", "-n", "0", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
+        return self._run([python(), "-m", "pytest", *options, *tests], path)
+
+    def _run(self, command: list[str], path: Path) -> tuple[int, str]:
+        """The exit status, and the line that says most."""
+        if self._closed:
+            return -1, "interrupted"
+        with subprocess.Popen(
+            command,
+            cwd=ROOT,
+            env=self._environment(path),
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        ) as running:
+            self._running.add(running)
+            try:
+                said, _ = running.communicate(timeout=TIMEOUT)
+            except subprocess.TimeoutExpired:
+                running.kill()
+                return -1, "does not end"
+            finally:
+                self._running.discard(running)
+        lines = [line for line in said.splitlines() if line.strip()] or [""]
+        telling = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
+        return running.returncode, (telling or lines[-1:])[0]
+
+    def close(self) -> None:
+        """Ends what still runs."""
+        self._closed = True
+        for running in list(self._running):
+            running.terminate()
+
+
+def run(chosen: list[Mutant]) -> int:
+    """Judges them on all cores; the exit status."""
+    died, lived, wrong = 0, [], []
+    files: dict[str, set[str]] = {}
+    for mutant in chosen:
+        for test in mutant.tests:
+            files.setdefault(test.partition("::")[0], set()).add(test)
+    with tempfile.TemporaryDirectory() as name:
+        runner = Runner(Path(name))
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            try:
+                print(f"The tests of {len(chosen)} mutants on the package as it is:", flush=True)
+                for file, said in zip(
+                    files, pool.map(runner.control, map(sorted, files.values())), strict=True
+                ):
+                    if said:
+                        print(f"  {file} fails: {said}")
+                        wrong.append(file)
+                if wrong:
+                    return 1
+                print("they pass.", flush=True)
+                for mutant, (verdict, said) in zip(
+                    chosen, pool.map(runner.verdict, chosen), strict=True
+                ):
+                    print(f"{verdict}: {mutant.file}: {mutant.name} ({said})", flush=True)
+                    died += verdict == "dies"
+                    if verdict == "lives":
+                        lived.append(mutant)
+                    elif verdict == "error":
+                        wrong.append(mutant.name)
+            except KeyboardInterrupt:
+                runner.close()
+                pool.shutdown(cancel_futures=True)
+                print("Interrupted.")
+                return 130
+    print(f"{len(chosen)} mutants: {died} die, {len(lived)} live, {len(wrong)} are none.")
+    for mutant in lived:
+        print(f"  lives: {mutant.name}: {mutant.lives or 'NOT EXPLAINED'}")
+    if died < ENOUGH * len(chosen):
+        print(f"Fewer than {ENOUGH:.0%} die.")
+        return 1
+    return 1 if wrong or any(not mutant.lives for mutant in lived) else 0
+
+
+def main(arguments: list[str]) -> int:
+    """The command."""
+    every = mutants()
+    if bad := problems(every):
+        print(*bad, sep="\n")
+        return 1
+    names = [argument for argument in arguments if argument != "--changed"]
+    chosen = [m for m in every if not names or any(n in m.name or n in m.file for n in names)]
+    if "--changed" in arguments:
+        files = changed()
+        chosen = [
+            mutant
+            for mutant in chosen
+            if f"src/pindrive/{mutant.file}" in files
+            or files.intersection(test.partition("::")[0] for test in mutant.tests)
+        ]
+        left_out = spread(chosen)[LIMIT:]
+        chosen = spread(chosen)[:LIMIT]
+        for mutant in left_out:
+            print(f"left out: {mutant.file}: {mutant.name}")
+    elif not chosen:
+        print(f"there is no mutant called {' or '.join(names)}")
+        return 2
+    if not chosen:
+        print("No mutant is of a file that changed.")
+        return 0
+    return run(chosen)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
