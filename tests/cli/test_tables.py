@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from pindrive import Motion, simulate
+from pindrive import Motion, Release, simulate
 from pindrive.cli.evaluation_tables import judgement_report, speed_report, verdict_words
 from pindrive.cli.tables import device_words, ending, motion_report, regime, scan_report
 from pindrive.device import Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.evaluation.resolution import SpeedLimit, Trial
-from pindrive.files.device import load, motion_of
+from pindrive.files.device import load_device, motion_of
 from pindrive.quantities.table import QUANTITIES
 from table_reading import numbers, printed, table
 
@@ -23,12 +23,12 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return motion_of(load(EXAMPLES / "tactile-mouse.toml"))
+    return motion_of(load_device(EXAMPLES / "tactile-mouse.toml"))
 
 
 @pytest.fixture(scope="module")
 def judged() -> Judgement:
-    drive = load(EXAMPLES / "tactile-reader.toml", whole=True).drive
+    drive = load_device(EXAMPLES / "tactile-reader.toml", whole=True).drive
     device = Device(drive=drive, array=PinArray.grid(2, 2, 0.004))
     scene = Scene.from_grating([0.004, 0.0015], count=2, margin=0.008, height=0.008)
     path = lines([scene.lines[0]], 0.004, 0.028, speed=0.15, return_speed=0.15, pause=0.05)
@@ -87,9 +87,8 @@ def test_the_ending_in_words(motion: Motion) -> None:
     assert place == pytest.approx(1e3 * motion.ending.position, rel=1e-3)
     assert since == pytest.approx(1e3 * motion.transient.rest_time, rel=1e-3)
     free = simulate(
-        load(EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]).drive,
-        mouse_velocity=0.06,
-        displacement=2e-3,
+        load_device(EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]).drive,
+        Release(0.06, 2e-3),
         duration=0.01,
     )
     assert ending(free) == "Still moving after 10.00 ms."

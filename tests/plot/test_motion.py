@@ -362,7 +362,7 @@ def test_too_many_events_are_not_marked_and_it_says_so(
 
 
 def test_a_pin_that_is_carried_for_days_is_drawn_to_its_end() -> None:
-    motion = simulate(drive(plate=(1e3, 1e3)), mouse_velocity=1e-5)
+    motion = simulate(drive(plate=(1e3, 1e3)), Release(1e-5))
     assert motion.duration > 1e6
     figure = plot_motion(motion)
     t, x = data(panel(figure, "x"), "curve")
