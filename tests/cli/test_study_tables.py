@@ -20,7 +20,7 @@ from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.robustness import Robustness, robustness
 from pindrive.study.sensitivity import Influence, influence
 from pindrive.study.slices import elasticity
-from pindrive.study.spec import load_study
+from pindrive.study.study import load_study
 from table_reading import numbers, printed, table
 
 STUDY = Path(__file__).parents[2] / "examples" / "tactile-mouse-study.toml"

@@ -87,7 +87,9 @@ def test_the_ending_in_words(motion: Motion) -> None:
     assert place == pytest.approx(1e3 * motion.ending.position, rel=1e-3)
     assert since == pytest.approx(1e3 * motion.transient.rest_time, rel=1e-3)
     free = simulate(
-        load_device(EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]).drive,
+        load_device(
+            EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]
+        ).drive,
         Release(0.06, 2e-3),
         duration=0.01,
     )

@@ -303,7 +303,7 @@ def test_the_portrait_begins_and_ends_where_the_motion_does(
     axes = panel(figure, "portrait")
     start, end = (points(line) for line in lines(axes, "ends"))
     assert [i.item() for i in start] == pytest.approx(
-        [1e3 * motion.displacement, 1e3 * motion.initial_velocity]
+        [1e3 * float(motion.position(0.0)), 1e3 * float(motion.velocity(0.0))]
     )
     last = [1e3 * float(of(motion.duration)) for of in (motion.position, motion.velocity)]
     assert [i.item() for i in end] == pytest.approx(last, abs=1e-9)

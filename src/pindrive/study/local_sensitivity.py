@@ -41,8 +41,6 @@ class Elasticities:
     """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
     """Why, for each key with numbers that have no derivative."""
-    status: Status
-    """Of the motion of which they are the derivatives."""
     name: str = ""
     """Of the study."""
 
@@ -125,9 +123,7 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(
-        tuple(keys), numbers, table, motion.duration, gaps, motion.status, plan.name
-    )
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, plan.name)
 
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:
