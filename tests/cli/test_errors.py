@@ -127,7 +127,7 @@ def test_one_file_named_twice() -> None:
 
 
 def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    def write_csv(_: object, path: Path, __: int) -> NoReturn:
+    def write_csv(_: object, path: Path, __: object) -> NoReturn:
         path.write_text("half")
         raise OSError(28, "No space left on device")
 
@@ -172,7 +172,7 @@ def test_a_full_standard_output_is_said(arguments: list[str]) -> None:
 
 
 def test_interruption_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    def write_csv(_: object, path: Path, __: int) -> NoReturn:
+    def write_csv(_: object, path: Path, __: object) -> NoReturn:
         path.write_text("half")
         raise KeyboardInterrupt
 

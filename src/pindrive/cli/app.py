@@ -18,12 +18,16 @@ from pindrive.cli.errors import (
     OneLine,
     OverridesOption,
     count_option,
+    measure,
     picture,
     picture_format,
     refusing,
 )
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from pindrive.motion.motion import Motion
 
 app = typer.Typer(
@@ -161,7 +165,10 @@ def simulate(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
     ] = None,
-    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Samples over time.")] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Even samples; events go beside it, to FILE-events.csv."),
+    ] = None,
     netcdf: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Samples, events, numbers, with units.")
     ] = None,
@@ -171,11 +178,15 @@ def simulate(
     samples: Annotated[
         int, count_option("--samples", "Even times in CSV and NetCDF.", least=2)
     ] = 1001,
+    rate: Annotated[
+        str | None, typer.Option(metavar="FREQUENCY", help='Of the CSV instead, as in "1 kHz".')
+    ] = None,
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive.files import export
     from pindrive.files.device import load_device, motion_of
     from pindrive.files.output import (
+        EVENTS_CSV,
         MOTION_CSV,
         MOTION_JSON,
         MOTION_NETCDF,
@@ -193,9 +204,24 @@ def simulate(
 
             kind = picture_format(plot)
             wanted.append((picture(plot), lambda m, part: write_figure(m, part, kind)))
+        if rate is not None and not csv:
+            raise ValueError("--rate goes with --csv")
+        frequency = None if rate is None else measure(rate, "rate", "1 kHz", "--rate")
         if csv:
-            to_csv = Output(csv, MOTION_CSV, "--csv")
-            wanted.append((to_csv, lambda m, part: export.write_csv(m, part, samples)))
+
+            def times(m: Motion) -> NDArray[np.float64]:
+                if frequency is None:
+                    return m.even_times(samples)
+                return export.even_times(0.0, m.duration, frequency)
+
+            events = Output(export.events_path(csv), EVENTS_CSV, "--csv")
+            wanted += [
+                (
+                    Output(csv, MOTION_CSV, "--csv"),
+                    lambda m, part: export.write_csv(m, part, times(m)),
+                ),
+                (events, export.write_events),
+            ]
         if netcdf:
             to_netcdf = Output(netcdf, MOTION_NETCDF, "--netcdf")
             wanted.append((to_netcdf, lambda m, part: export.write_netcdf(m, part, samples)))

@@ -11,6 +11,7 @@ import typer
 from pindrive.cli.errors import (
     DeviceArgument,
     OverridesOption,
+    measure,
     measures,
     picture,
     picture_format,
@@ -52,6 +53,13 @@ def scan(
     lines: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Each line under each pin, as CSV.")
     ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Even samples; events go beside it, to FILE-events.csv."),
+    ] = None,
+    rate: Annotated[
+        str | None, typer.Option(metavar="FREQUENCY", help='Of the CSV, as in "1 kHz".')
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="All of it, as NetCDF.")
     ] = None,
@@ -76,6 +84,15 @@ def scan(
             outputs.append(Output(lines, LINES_CSV, "--lines"))
         if output:
             outputs.append(Output(output, SCAN_NETCDF, "--output"))
+        if rate is not None and not csv:
+            raise ValueError("--rate goes with --csv")
+        frequency = measure("1 kHz" if rate is None else rate, "rate", "1 kHz", "--rate")
+        if csv:
+            from pindrive.files.export import events_path
+            from pindrive.files.output import SCAN_CSV, SCAN_EVENTS_CSV
+
+            outputs.append(Output(csv, SCAN_CSV, "--csv"))
+            outputs.append(Output(events_path(csv), SCAN_EVENTS_CSV, "--csv"))
         if pin is not None and not (plot and 0 <= pin < len(device.array)):
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
@@ -101,6 +118,10 @@ def scan(
             from pindrive.device.dataset import check_samples, sample_count
 
             check_samples(len(device.array), sample_count(hand))
+        if csv:
+            from pindrive.files import export
+
+            times = export.even_times(hand.begin, hand.end, frequency, len(device.array))
         if film:
             frame_times(hand, slow)
         with bar("Pins") as progress:
@@ -111,6 +132,10 @@ def scan(
 
             with naming(output):
                 write_netcdf(done, parts[output])
+        if csv:
+            with naming(csv):
+                export.write_scan_csv(done, parts[csv], times)
+                export.write_scan_events(done, parts[export.events_path(csv)])
         if lines:
             from pindrive.cli.evaluation_tables import write_lines
 

@@ -38,6 +38,8 @@ from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -115,7 +117,7 @@ class PinScan:
         """The pin's motion, over the time since `begin`.
 
         Raises:
-            SimulationError: it had to be given up.
+            SimulationError: the simulation had to be given up.
         """
         kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
         if "_motion" not in kept:
@@ -206,6 +208,10 @@ class Scan:
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
         return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
 
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
+
     def evaluate(self, criteria: object = None) -> Any:
         """What the finger was shown against what is printed, line by line.
 
@@ -266,6 +272,23 @@ class Scan:
         array = self.device.array
         hand = np.stack(self.path.position(np.asarray(t, np.float64)), axis=-1)
         return np.asarray(hand + array.on_page(array.spots[pin : pin + 1]))
+
+    def to_csv(self, path: str | PathLike[str], rate: float | str = 1000.0) -> Path:
+        """Write each pin at even times as CSV: x, its velocity and acceleration, the forces on it.
+
+        Args:
+            path: the file of samples, pin after pin, on the path's clock. The events go beside it:
+                those of "s.csv" to "s-events.csv". Both are whole or not there.
+            rate: samples a second, Hz, from 1e-6 to 1e12, the first at the path's begin.
+
+        Returns:
+            The path of the events.
+
+        Raises:
+            ValueError: as for `Motion.to_csv`; the samples of all pins count together.
+        """
+        made: Path = lazy.call("pindrive.files.export:scan_to_csv", self, path, rate)
+        return made
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All pins over time, their events and commands, the hand and the scene, with units.

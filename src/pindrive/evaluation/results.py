@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from pindrive.device.scanning import Scan
+    from pindrive.quantities.status import Status
 
 Fate = Literal["shown", "unseen", "merged", "faint"]
 Cue = Literal["none", "felt", "direction", "sure"]
@@ -162,6 +163,10 @@ class Judgement:
     def status(self) -> Status:
         """That of the scan."""
         return self.scan.status
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self, pin: int | None = None) -> Figure:
         """The scan and one pin of it, from 0, as `Scan.plot` draws them."""

@@ -1,4 +1,4 @@
-"""A motion as files: a figure, samples as CSV, everything as NetCDF, the numbers as JSON.
+"""Motions and scans as files: samples as CSV, a motion as NetCDF, its numbers as JSON.
 
 Pictures and NetCDF are made in memory first: on a full disk the libraries that make them fail in
 ways of their own, while plain writing raises OSError.
@@ -14,10 +14,30 @@ from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from pindrive.files.output import (
+    EVENTS_CSV,
+    MOTION_CSV,
+    SCAN_CSV,
+    SCAN_EVENTS_CSV,
+    Output,
+    naming,
+    writing,
+)
+from pindrive.motion.dataset import columns
+from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
-from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.results import SERIES
+from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from pindrive.device.scanning import Scan
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
 
@@ -25,19 +45,108 @@ AT_ONCE: Final = 1 << 16
 """Rows that are made into text together: more take memory and save no time."""
 
 
-def write_csv(motion: Motion, path: Path, samples: int) -> None:
-    """Write the motion, SI, at even times and at its events (right-hand limits), a row each."""
-    from pindrive.motion.dataset import Column, columns
+def events_path(path: Path) -> Path:
+    """Where the events beside a file of samples go: m.csv has them in m-events.csv."""
+    return path.with_name(f"{path.stem}-events{path.suffix}")
 
-    t = motion.sample_times(samples)
-    found = {"time": Column(t, "s", "time since the release"), **columns(motion, t)}
-    names = [f"{name}_{column.unit.replace('/', '_per_')}" for name, column in found.items()]
+
+def even_times(begin: float, end: float, rate: float, curves: int = 1) -> NDArray[np.float64]:
+    """The times begin + i / rate up to the end, s.
+
+    Args:
+        begin: s.
+        end: s, later.
+        rate: samples a second, Hz, from 1e-6 to 1e12.
+        curves: how many motions are sampled at them.
+
+    Raises:
+        ValueError: there would be more samples than `pindrive.quantities.budgets` allow.
+    """
+    rate = check("rate", rate)
+    count = (end - begin) * rate + 1.0
+    budgets.MOTION_SAMPLES.check(curves * count, f"{end - begin:g} s at {rate:g} Hz")
+    # A count that is whole but for rounding is whole.
+    return begin + np.arange(int(count * (1.0 + 1e-15))) / rate
+
+
+def to_csv(motion: Motion, path: str | PathLike[str], rate: float) -> Path:
+    """What `Motion.to_csv` does; the path of the events."""
+    target = Path(path)
+    events = events_path(target)
+    times = even_times(0.0, motion.duration, rate)
+    outputs = [Output(target, MOTION_CSV), Output(events, EVENTS_CSV)]
+    with writing(outputs) as parts:
+        with naming(target):
+            write_csv(motion, parts[target], times)
+        with naming(events):
+            write_events(motion, parts[events])
+    return events
+
+
+def write_csv(motion: Motion, path: Path, times: NDArray[np.float64]) -> None:
+    """Write the motion, SI, at times (s, shape (n,)), a row each; right-hand limits."""
+    found = columns(motion, times)
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(names)
-        for begin in range(0, len(t), AT_ONCE):
-            part = (column.values[begin : begin + AT_ONCE].tolist() for column in found.values())
-            writer.writerows(zip(*part, strict=True))
+        writer.writerow([heading(name) for name in found])
+        _write_rows(writer, [*found.values()])
+
+
+def write_events(motion: Motion, path: Path) -> None:
+    """Write the events of a motion, SI, a row each; of a cycle, one round."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        names = ("position", "velocity")
+        writer.writerow([heading("time"), "contact", "kind", *map(heading, names)])
+        for event in motion.events:
+            writer.writerow([event.time, event.contact, event.kind, event.position, event.velocity])
+
+
+def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
+    """What `Scan.to_csv` does; the path of the events."""
+    target = Path(path)
+    events = events_path(target)
+    outputs = [Output(target, SCAN_CSV), Output(events, SCAN_EVENTS_CSV)]
+    times = even_times(scan.path.begin, scan.path.end, rate, len(scan.pins))
+    with writing(outputs) as parts:
+        with naming(target):
+            write_scan_csv(scan, parts[target], times)
+        with naming(events):
+            write_scan_events(scan, parts[events])
+    return events
+
+
+def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
+    """Write each pin at times on the path's clock (s, shape (n,)), pin after pin, a row each."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        for pin in scan.pins:
+            found = {**columns(pin.motion, pin.since(times)), "time": times}
+            if pin is scan.pins[0]:
+                writer.writerow(["pin", *map(heading, found)])
+            _write_rows(writer, [np.full(len(times), pin.number), *found.values()])
+
+
+def write_scan_events(scan: Scan, path: Path) -> None:
+    """Write the events of each pin, pin after pin, on the path's clock, a row each."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        names = ("position", "velocity")
+        writer.writerow(["pin", heading("time"), "contact", "kind", *map(heading, names)])
+        for pin in scan.pins:
+            for e in pin.events:
+                writer.writerow([pin.number, e.time, e.contact, e.kind, e.position, e.velocity])
+
+
+def heading(name: str) -> str:
+    """A column's name with its unit: "velocity_m_per_s"."""
+    return f"{name}_{SERIES[name].unit.replace('/', '_per_').replace('^', '')}"
+
+
+def _write_rows(writer: Any, table: Sequence[NDArray[Any]]) -> None:
+    for begin in range(0, len(table[0]), AT_ONCE):
+        part = (column[begin : begin + AT_ONCE].tolist() for column in table)
+        writer.writerows(zip(*part, strict=True))
 
 
 def write_netcdf(motion: Motion, path: Path, samples: int) -> None:
@@ -57,7 +166,6 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
         ValueError: the motion has more phases than `pindrive.quantities.budgets` allow.
     """
     from pindrive import __version__
-    from pindrive.quantities import budgets
 
     budgets.MOTION_PHASES.check(motion.segment_count)
     inputs, numbers = motion.inputs(), motion.numbers()

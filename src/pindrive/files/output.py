@@ -258,6 +258,9 @@ FILMS: Final = {
     ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp"),
 }
 MOTION_CSV: Final = _beginning("CSV file of a motion", b"time_s,position_m,")
+EVENTS_CSV: Final = _beginning("CSV file of the events of a motion", b"time_s,contact,")
+SCAN_CSV: Final = _beginning("CSV file of a scan", b"pin,time_s,position_m,")
+SCAN_EVENTS_CSV: Final = _beginning("CSV file of the events of a scan", b"pin,time_s,contact,")
 MOTION_JSON: Final = _beginning("JSON file of a motion", b'{\n  "pindrive": ')
 MOTION_NETCDF: Final = _titled("NetCDF file of a motion", "Motion of ")
 LINES_CSV: Final = _beginning("CSV file of lines", b"pin,fate,")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.quantities.table import QUANTITIES
 
@@ -18,39 +19,30 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
 
 
-class Column(NamedTuple):
-    """One quantity over time."""
+def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """What the motion does at the times t (s, shape (n,)), by the names of `SERIES`.
 
-    values: NDArray[np.float64]
-    """Right-hand limits, SI."""
-    unit: str
-    meaning: str
-
-
-def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, Column]:
-    """What the motion does at the times t (s, shape (n,)); what it does not have left out."""
+    Right-hand limits, SI; what the motion does not have left out.
+    """
     found = {
-        "position": Column(motion.position(t), "m", "deflection of the pin from the spring's rest"),
-        "velocity": Column(motion.velocity(t), "m/s", "velocity of the pin in the housing"),
-        "acceleration": Column(
-            motion.acceleration(t), "m/s2", "acceleration of the pin in the housing"
-        ),
-        "plate_force": Column(
-            motion.force("plate", t), "N", "friction force of the plate on the pin"
-        ),
-        "finger_force": Column(
-            motion.force("finger", t), "N", "friction force of the finger on the pin"
-        ),
+        "time": t,
+        "position": motion.position(t),
+        "velocity": motion.velocity(t),
+        "acceleration": motion.acceleration(t),
+        "plate_force": motion.force("plate", t),
+        "finger_force": motion.force("finger", t),
     }
     if not motion.drive.finger.rigid:
-        found["stretch"] = Column(motion.stretch(t), "m", "stretch of the finger's skin")
-        found["stretch_rate"] = Column(motion.stretch_rate(t), "m/s", "stretch rate of the skin")
+        found |= {"stretch": motion.stretch(t), "stretch_rate": motion.stretch_rate(t)}
     given = motion.release.mouse_velocity
     if isinstance(given, Profile) and given.changes:
-        found["plate_velocity"] = Column(
-            motion.plate_velocity(t), "m/s", "velocity of the plate in the housing"
-        )
+        found["plate_velocity"] = motion.plate_velocity(t)
     return found
+
+
+def _series(name: str) -> dict[str, str]:
+    """The attributes of a column."""
+    return {"units": SERIES[name].unit, "long_name": SERIES[name].meaning}
 
 
 def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
@@ -58,12 +50,13 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
     from pindrive import __version__
 
     data: dict[str, Any] = {
-        name: ("time", column.values, {"units": column.unit, "long_name": column.meaning})
+        name: ("time", column, _series(name))
         for name, column in columns(motion, t).items()
+        if name != "time"
     }
-    for name, unit in (("time", "s"), ("position", "m"), ("velocity", "m/s")):
+    for name in ("time", "position", "velocity"):
         values = np.array([getattr(event, name) for event in motion.events], dtype=np.float64)
-        data[f"event_{name}"] = ("event", values, {"units": unit})
+        data[f"event_{name}"] = ("event", values, {"units": SERIES[name].unit})
     for name in ("contact", "kind"):
         data[f"event_{name}"] = ("event", [str(getattr(e, name)) for e in motion.events])
     for name, value in motion.numbers().items():
@@ -81,8 +74,7 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
         "source": f"pindrive {__version__}",
         **_attributes(motion),
     }
-    time = ("time", t, {"units": "s", "long_name": "time since the release"})
-    return xr.Dataset(data, coords={"time": time}, attrs=origin)
+    return xr.Dataset(data, coords={"time": ("time", t, _series("time"))}, attrs=origin)
 
 
 def _attributes(motion: Motion) -> dict[str, float | list[float]]:

@@ -35,6 +35,8 @@ from pindrive.quantities.table import check, refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from os import PathLike
+    from pathlib import Path
 
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
@@ -80,8 +82,13 @@ class Motion:
         """How it ends, and after how long, in a line."""
         return (
             f"<Motion of {self.duration:.6g} s, {counted(len(self.events), 'event')}, "
-            f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s>"
+            f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s, "
+            f"{self.status.name}>"
         )
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     # ---- the motion over time --------------------------------------------------------------------
 
@@ -246,13 +253,16 @@ class Motion:
 
     # ---- for other programs ----------------------------------------------------------------------
 
-    def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
-        """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
+    def even_times(self, count: int = 1001) -> NDArray[np.float64]:
+        """`count` even times over [0, duration], s, shape (count,)."""
         if not count >= 2:
             raise ValueError(refusal("count", "at least 2", repr(count)))
-        even = np.linspace(0.0, self.duration, count)
+        return np.linspace(0.0, self.duration, count)
+
+    def sample_times(self, count: int = 1001) -> NDArray[np.float64]:
+        """`count` even times over [0, duration] and the events among them, s, shape (n,)."""
         events = self._table["end"]
-        return np.union1d(even, events[events <= self.duration])
+        return np.union1d(self.even_times(count), events[events <= self.duration])
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """The motion over time, its events and its numbers, with units, as an xarray Dataset.
@@ -268,6 +278,24 @@ class Motion:
         if t.ndim != 1:
             raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
         made: xr.Dataset = lazy.call("pindrive.motion.dataset:dataset", self, t)
+        return made
+
+    def to_csv(self, path: str | PathLike[str], rate: float | str = 1000.0) -> Path:
+        """Write the motion at even times as CSV, and its events to a file of their own.
+
+        Args:
+            path: the file of samples, whose header names columns and SI units. The events go beside
+                it: those of "m.csv" to "m-events.csv". Both are whole or not there.
+            rate: samples a second, Hz, from 1e-6 to 1e12, the first at 0 s.
+
+        Returns:
+            The path of the events.
+
+        Raises:
+            ValueError: a rate out of its range; more than 10 000 000 samples; a file that is there
+                and holds something else, or one that cannot be written.
+        """
+        made: Path = lazy.call("pindrive.files.export:to_csv", self, path, rate)
         return made
 
     def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:

@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from pindrive import _core
+from pindrive import _core, lazy
+from pindrive.lazy import xr
 from pindrive.motion.results import flattened
+from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.table import refusal
+from pindrive.quantities.results import SERIES
+from pindrive.quantities.status import Status
+from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.motion.drive import Drive
@@ -93,8 +98,60 @@ class Sensitivity:
         self.gaps = {d.name: d.gap for d in self._derivatives if d.gap}
 
     def __repr__(self) -> str:
-        """The parameters, and those without all derivatives."""
-        return f"<Sensitivity to {', '.join(self.parameters)}; gaps: {self.gaps or 'none'}>"
+        """The parameters, in a line."""
+        return f"<Sensitivity to {', '.join(self.parameters)}, {self.status.name}>"
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where a derivative does not exist; `gaps` says which and why."""
+        return Status.incomplete if self.gaps else Status.ok
+
+    @property
+    def duration(self) -> float:
+        """That of the motion, s."""
+        return self._motion.duration
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """How large each parameter is, SI; of one that is zero, how large its like are."""
+        return tuple(derivative.size for derivative in self._derivatives)
+
+    def plot(self) -> Figure:
+        """How far a part of each parameter moves the pin, over time, as a figure."""
+        figure: Figure = lazy.call("pindrive.plot.motion_sensitivity:plot_motion_sensitivity", self)
+        return figure
+
+    def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
+        """All derivatives with their units.
+
+        Args:
+            times: s, shape (n,); 1001 even ones unless given.
+
+        Returns:
+            `position` and `velocity` over (parameter, time), `event_time` over (parameter, event),
+            and each number over `parameter`, SI units of the quantity, over those of the parameter
+            in the coordinate `parameter_unit`; NaN where a derivative does not exist.
+        """
+        t = np.linspace(0.0, self.duration, 1001) if times is None else np.asarray(times, float)
+        data: dict[str, Any] = {
+            name: (("parameter", "time"), values, {"units": SERIES[name].unit})
+            for name, values in (("position", self.position(t)), ("velocity", self.velocity(t)))
+        }
+        data["event_time"] = (("parameter", "event"), self.event_times, {"units": "s"})
+        for name, slopes in self.numbers.items():
+            quantity = QUANTITIES[name]
+            attributes = {"units": quantity.unit, "long_name": f"derivative: {quantity.meaning}"}
+            data[name.replace(".", "_")] = ("parameter", [*slopes.values()], attributes)
+        coords = {
+            "parameter": [*self.parameters],
+            "parameter_unit": ("parameter", [_unit(name) for name in self.parameters]),
+            "time": ("time", t, {"units": "s"}),
+        }
+        return xr.Dataset(data, coords=coords, attrs={"status": self.status.name})
 
     def position(self, t: ArrayLike, side: Side = "right") -> NDArray[np.float64]:
         """∂x/∂p at fixed times t (s), shape (parameters, *t.shape)."""
@@ -154,7 +211,7 @@ class _Derivative:
     def __init__(self, motion: Simulated, name: str) -> None:
         numbers = motion.core_numbers
         along, size = _direction(motion, name)
-        self.name, self._size = name, size
+        self.name, self.size = name, size
         self._motion = motion
         self._own = _core.simulate(*numbers)
         self.core = _core.differentiate(numbers, along)
@@ -191,7 +248,7 @@ class _Derivative:
             if ends and not self._same_ending:
                 return False
             # The neighbours' numbers lie where the derivative says that they do.
-            size = max(abs(slopes[name]), abs(at[name] / self._size))
+            size = max(abs(slopes[name]), abs(at[name] / self.size))
             changes = [(numbers[name] - at[name]) / step for step, numbers in around]
             return all(abs(change - slopes[name]) <= _KINK * size for change in changes)
 
@@ -273,6 +330,17 @@ def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
     if motion.release.velocity is None:
         along = _replaced(along, (8,), _start_slope(numbers[5], along[5]) + along[8])
     return along, size
+
+
+def _unit(given: str) -> str:
+    """The SI unit of a parameter."""
+    name = re.sub(r"^(plate|finger)_", r"\1.", given)
+    table, _, column = name.partition("[")
+    if not column:
+        return QUANTITIES[name if name in QUANTITIES else given].unit
+    part = column.partition("].")[2]
+    across = QUANTITIES[COLUMNS[QUANTITIES[table].rows_of][0]]
+    return across.unit if across.name.endswith(part) else QUANTITIES[table].unit
 
 
 def _places(numbers: CoreNumbers, given: str) -> list[Place]:

@@ -278,7 +278,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "cut-off of the low-pass that smooths a raw recording of a mouse, where 3 dB are lost",
         between(0.1, 1e5),
         20.0,
-        "hands move below 10 Hz; twice that takes 0.13 % off the peak speed of a stroke of 0.15 s",
+        "assumed: hands move below 10 Hz; it takes 0.13 % off the peak of a stroke of 0.15 s",
         "scan",
         optional=True,
         remark="20 Hz unless given",
@@ -315,6 +315,7 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "white around the text or the lines of a page",
         between(0.0, 10.0),
         0.005,
+        "assumed",
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(

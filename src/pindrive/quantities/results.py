@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from pindrive.quantities.drive import PAPER
-from pindrive.quantities.quantity import (
-    Quantity,
-)
+from pindrive.quantities.quantity import Quantity, between
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
@@ -154,3 +152,29 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
 """The largest residual of each law, relative to the size of its terms."""
 
 OUTPUTS: Final[tuple[Quantity, ...]] = TRANSIENT + ENDING + ENERGY + CERTIFICATE
+
+RATE: Final = Quantity(
+    "rate",
+    "f",
+    "Hz",
+    "how many even samples a second a file of a motion has",
+    between(1e-6, 1e12),
+    1000.0,
+)
+"""Of files over time."""
+
+SERIES: Final[dict[str, Quantity]] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("time", "t", "s", "time since the release"),
+        Quantity("position", "x", "m", "deflection of the pin from the spring's rest"),
+        Quantity("velocity", "x'", "m/s", "velocity of the pin in the housing"),
+        Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
+        Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
+        Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
+        Quantity("stretch", "s", "m", "stretch of the finger's skin"),
+        Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
+        Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
+    )
+}
+"""What is known of a motion at a time, by the names of the columns of its files and datasets."""

@@ -18,14 +18,16 @@ __all__ = ["End", "SimulationError", "Status", "flag_attributes"]
 class Status(IntEnum):
     """Whether a motion or a scan was followed to its end, and what stopped it or kept it away.
 
-    The values below `refused` are those of `Status` in model.hpp: there are numbers, up to where
-    the simulation stopped. From `refused` on there is no motion.
+    The values below `incomplete` are those of `Status` in model.hpp: there are numbers, up to where
+    the simulation stopped. From `refused` on there is no motion. A result made from many motions,
+    or of derivatives, is `incomplete` where some of them do not exist.
     """
 
     ok = 0
     too_many_events = 1
     standstill = 2
     stopped = 3
+    incomplete = 14
     refused = 15
     bad_mass = 16
     bad_stiffness = 17
@@ -70,6 +72,7 @@ _EXPLANATIONS = {
         "report the drive"
     ),
     Status.stopped: "was interrupted; run it again",
+    Status.incomplete: "has parts that do not exist; the result says which and why",
     Status.refused: "cannot exist: its values contradict each other",
 }
 

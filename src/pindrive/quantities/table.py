@@ -18,7 +18,7 @@ from pindrive.quantities.quantity import (
     Quantity,
     Rows,
 )
-from pindrive.quantities.results import OUTPUTS
+from pindrive.quantities.results import OUTPUTS, RATE
 
 if TYPE_CHECKING:
     pass
@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
-QUANTITIES: Final[dict[str, Quantity]] = {q.name: q for q in INPUTS + PARTS + OUTPUTS + DEVICE}
+QUANTITIES: Final[dict[str, Quantity]] = {
+    q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, RATE, *DEVICE)
+}
 
 
 class Refusal(str):

@@ -41,8 +41,6 @@ class Elasticities:
     """The time over which they hold, s: it does not change with the keys."""
     gaps: Mapping[str, str]
     """Why, for each key with numbers that have no derivative."""
-    status: Status
-    """Of the motion of which they are the derivatives."""
     name: str = ""
     """Of the study."""
 
@@ -50,6 +48,15 @@ class Elasticities:
         """Of how many numbers and keys, in a line."""
         numbers, keys = counted(len(self.table), "number"), counted(len(self.keys), "key")
         return f"<Elasticities of {numbers} to {keys}, {self.status.name}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where keys have no derivatives; `gaps` says why."""
+        return Status.incomplete if self.gaps else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
@@ -116,9 +123,7 @@ def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -
         return sum(slope[name] * change for name, change in changes[key].items()) / value
 
     table = {number: {key: elasticity(number, key) for key in keys} for number in numbers}
-    return Elasticities(
-        tuple(keys), numbers, table, motion.duration, gaps, motion.status, plan.name
-    )
+    return Elasticities(tuple(keys), numbers, table, motion.duration, gaps, plan.name)
 
 
 def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, float]:

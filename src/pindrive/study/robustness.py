@@ -17,7 +17,7 @@ from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate, follow
 from pindrive.study.outputs import attributes
 from pindrive.study.refusals import RefusedPoints, exist, refusals
-from pindrive.study.sensitivity import Ranges, left_out, ranges_of
+from pindrive.study.sensitivity import Ranges, ranges_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -114,14 +114,16 @@ class Robustness:
     def __repr__(self) -> str:
         """How many designs, and how many meet the specification, in a line."""
         met = f"{self.all_met.text} meet the specification" if self.all_met else "no specification"
-        return (
-            f"<Robustness of {counted(self.designs, 'design')}: {met}, {left_out(self.refusals)}>"
-        )
+        return f"<Robustness of {counted(self.designs, 'design')}: {met}, {self.status.name}>"
 
     @property
     def status(self) -> Status:
-        """`refused` where draws cannot exist and were left out, as `refusals` says; else `ok`."""
-        return Status.refused if self.refusals else Status.ok
+        """`incomplete` where draws cannot exist and were left out; `refusals` says why."""
+        return Status.incomplete if self.refusals else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """How the watched numbers spread, with the limits, as a figure that a notebook shows."""

@@ -101,12 +101,16 @@ class Influence:
         """Of how many numbers and keys, from how many points, in a line."""
         numbers, keys = counted(len(self.over), "number"), counted(len(self.keys), "key")
         points = counted(self.points, "point")
-        return f"<Sobol' indices of {numbers} over {keys}, {points}, {left_out(self.refusals)}>"
+        return f"<Sobol' indices of {numbers} over {keys}, {points}, {self.status.name}>"
 
     @property
     def status(self) -> Status:
-        """`refused` where points cannot exist and were left out, as `refusals` says; else `ok`."""
-        return Status.refused if self.refusals else Status.ok
+        """`incomplete` where points cannot exist and were left out; `refusals` says why."""
+        return Status.incomplete if self.refusals else Status.ok
+
+    def _repr_html_(self) -> str:
+        """A table with units and a small picture, as a notebook shows it."""
+        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
@@ -133,12 +137,6 @@ class Influence:
         coords = {"number": numbers, "key": [*self.keys]}
         title = {"title": f"Sobol' indices of {self.name}"} if self.name else {}
         return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status.name})
-
-
-def left_out(refusals: Sequence[RefusedPoints]) -> str:
-    """How many points or draws cannot exist, for a line: "ok", or "3 points refused"."""
-    total = sum(refusal.count for refusal in refusals)
-    return f"{counted(total, 'point')} refused" if total else "ok"
 
 
 def askable(plan: Plan) -> tuple[str, ...]:

@@ -1,0 +1,136 @@
+"""What a notebook shows of a result: one line, a table with units, a picture, and nothing else."""
+
+from __future__ import annotations
+
+from base64 import b64decode
+from html.parser import HTMLParser
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import pindrive as pd
+from command import EXAMPLE
+from pindrive.quantities.quantity import significant
+
+
+class Parts(HTMLParser):
+    """The rows of the tables, the picture, and what is not closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.rows: list[list[str]] = []
+        self.pictures: list[dict[str, Any]] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "img":
+            self.pictures.append(dict(attrs))
+            return
+        self.open.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+
+
+@pytest.fixture(scope="module")
+def motion() -> pd.Motion:
+    finger = pd.Contact("5 mN", "7.5 mN", stiffness="1000 N/m")
+    drive = pd.Drive(
+        mass="10 g", stiffness=100.0, damping=0.4, plate=pd.Contact(0.02), finger=finger
+    )
+    return pd.simulate(drive, pd.Release("100 mm/s", "1.5 mm"))
+
+
+@pytest.fixture(scope="module")
+def results(motion: pd.Motion) -> dict[str, Any]:
+    device = pd.load_device(EXAMPLE)
+    study = pd.Study(device, tolerances={"mass": {"uniform": ["9 g", "11 g"]}}, name="<b>&")
+    reader = pd.load_device(READER, ["array.columns=2", "array.rows=1"])
+    scan = pd.scan(reader, pd.Page(grating=[0.008]))
+    return {
+        "motion": motion,
+        "sensitivity": motion.sensitivity(["mass", "plate_kinetic", "mouse_velocity"]),
+        "scan": scan,
+        "judgement": scan.evaluate(),
+        "robustness": pd.robustness(study, count=50),
+        "local sensitivity": pd.local_sensitivity(study),
+        "sobol": pd.sobol(study, rows=128),
+    }
+
+
+READER = EXAMPLE.parent / "tactile-reader.toml"
+RESULTS = (
+    *("motion", "sensitivity", "scan", "judgement", "robustness", "local sensitivity", "sobol"),
+)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_has_the_same_faces(name: str, results: dict[str, Any]) -> None:
+    result = results[name]
+    line = repr(result)
+    assert line.startswith("<") and line.endswith(">") and "\n" not in line and len(line) < 200
+    assert isinstance(result.status, pd.Status)
+    data = result.to_dataset()
+    assert data.data_vars
+    text = result._repr_html_()
+    parts = Parts(text)
+    assert parts.open == []
+    assert parts.rows[0] == ["number", "value", "unit", "meaning"]
+    assert len(parts.rows) > 2 and all(len(row) == 4 for row in parts.rows)
+    assert not any(row[1] in ("nan", "-", "") for row in parts.rows)
+    (picture,) = parts.pictures
+    kind, _, encoded = picture["src"].partition(",")
+    assert kind == "data:image/png;base64"
+    with Image.open(BytesIO(b64decode(encoded))) as image:
+        assert abs(image.width - int(picture["width"])) <= 1
+        assert np.ptp(np.asarray(image.convert("L"))) > 200
+    for word in ("http", "<script", 'src="/'):
+        assert word not in text
+    assert "<b>&" not in text
+
+
+def test_the_table_has_the_numbers_in_the_units_that_a_person_reads(motion: pd.Motion) -> None:
+    rows = {row[0]: row[1:] for row in Parts(motion._repr_html_()).rows}
+    settling = motion.transient.settling_time
+    assert rows["transient_settling_time"][:2] == [significant(1e3 * settling), "ms"]
+    assert rows["ending_position"][:2] == [significant(1e3 * motion.ending.position), "mm"]
+    assert rows["status"][0] == "ok"
+    assert rows["ending"][0] == "decaying"
+    assert rows["transient_finger_reversals"][0] == str(motion.transient.finger.reversals)
+    assert rows["transient_rest_time"][0] == "infinite"
+    assert rows["transient_settled"][0] == "yes"
+    assert "ending_amplitude" not in rows  # it has none
+    x = motion.to_dataset().position.values
+    ends = f"{significant(1e3 * x.min())} to {significant(1e3 * x.max())}"
+    assert rows["position"][:2] == [f"{ends} (time {len(x)})", "mm"]
+
+
+def test_the_derivatives_of_a_motion_as_data_and_as_a_figure(motion: pd.Motion) -> None:
+    found = motion.sensitivity(["mass", "plate_kinetic", "mouse_velocity"])
+    times = np.linspace(0.0, 0.05, 6)
+    data = found.to_dataset(times)
+    assert np.array_equal(data.position, found.position(times), equal_nan=True)
+    assert data.parameter_unit.values.tolist() == ["kg", "N", "m/s"]
+    slopes = found.numbers["transient.swing"]
+    assert data.transient_swing.sel(parameter="mass") == slopes["mass"]
+    assert data.transient_swing.attrs["units"] == "m"
+    axes = found.plot().axes[0]
+    curves = {line.get_label(): line for line in axes.lines}
+    curve = curves["mass"]
+    t = np.asarray(curve.get_xdata())
+    assert t[-1] == pytest.approx(1e3 * motion.duration)
+    moved = 1e3 * motion.drive.mass * found.position(1e-3 * t)[0]
+    np.testing.assert_allclose(np.asarray(curve.get_ydata()), moved, rtol=1e-9, equal_nan=True)
+    assert axes.get_xlabel() == "$t$ (ms)" and "(mm)" in axes.get_ylabel()
