@@ -168,7 +168,7 @@ def test_draws_that_cannot_exist_are_said_in_the_status(mouse: DeviceFile) -> No
     )
     found = pd.robustness(study, count=300)
     assert found.status is pd.Status.incomplete
-    assert repr(found).endswith(f", {found.refused} points refused>")
+    assert "incomplete" in repr(found)
     assert 0 < found.refused < 300
 
 

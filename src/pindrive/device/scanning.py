@@ -117,7 +117,7 @@ class PinScan:
         """The pin's motion, over the time since `begin`.
 
         Raises:
-            SimulationError: it had to be given up.
+            SimulationError: the simulation had to be given up.
         """
         kept = vars(self)  # cached_property of Python 3.11 lets one thread at a time compute
         if "_motion" not in kept:

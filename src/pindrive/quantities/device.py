@@ -259,7 +259,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "cut-off of the low-pass that smooths a raw recording of a mouse, where 3 dB are lost",
         between(0.1, 1e5),
         20.0,
-        "hands move below 10 Hz; twice that takes 0.13 % off the peak speed of a stroke of 0.15 s",
+        "assumed: hands move below 10 Hz; it takes 0.13 % off the peak of a stroke of 0.15 s",
         "scan",
         absent=20.0,
     ),

@@ -17,7 +17,7 @@ from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import evaluate, follow
 from pindrive.study.outputs import attributes
 from pindrive.study.refusals import RefusedPoints, exist, refusals
-from pindrive.study.sensitivity import Ranges, left_out, ranges_of
+from pindrive.study.sensitivity import Ranges, ranges_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -114,9 +114,7 @@ class Robustness:
     def __repr__(self) -> str:
         """How many designs, and how many meet the specification, in a line."""
         met = f"{self.all_met.text} meet the specification" if self.all_met else "no specification"
-        return (
-            f"<Robustness of {counted(self.designs, 'design')}: {met}, {left_out(self.refusals)}>"
-        )
+        return f"<Robustness of {counted(self.designs, 'design')}: {met}, {self.status.name}>"
 
     @property
     def status(self) -> Status:

@@ -102,7 +102,7 @@ class Influence:
         """Of how many numbers and keys, from how many points, in a line."""
         numbers, keys = counted(len(self.over), "number"), counted(len(self.keys), "key")
         points = counted(self.points, "point")
-        return f"<Sobol' indices of {numbers} over {keys}, {points}, {left_out(self.refusals)}>"
+        return f"<Sobol' indices of {numbers} over {keys}, {points}, {self.status.name}>"
 
     @property
     def status(self) -> Status:
@@ -138,12 +138,6 @@ class Influence:
         coords = {"number": numbers, "key": [*self.keys]}
         title = {"title": f"Sobol' indices of {self.name}"} if self.name else {}
         return xr.Dataset(data, coords=coords, attrs={**title, "status": self.status.name})
-
-
-def left_out(refusals: Sequence[RefusedPoints]) -> str:
-    """How many points or draws cannot exist, for a line: "ok", or "3 points refused"."""
-    total = sum(refusal.count for refusal in refusals)
-    return f"{counted(total, 'point')} refused" if total else "ok"
 
 
 def askable(plan: Plan) -> tuple[str, ...]:
