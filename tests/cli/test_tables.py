@@ -16,6 +16,7 @@ from pindrive.device import Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.evaluation.resolution import SpeedLimit, Trial
+from pindrive.evaluation.results import Cue
 from pindrive.files.device import load, motion_of
 from pindrive.quantities.table import QUANTITIES
 from table_reading import numbers, printed, table
@@ -148,7 +149,7 @@ def test_what_became_of_the_lines(judged: Judgement) -> None:
 
 
 def test_cues_are_counted(judged: Judgement) -> None:
-    cues = ("none", "felt", "direction", "sure", "sure")
+    cues: tuple[Cue, ...] = ("none", "felt", "direction", "sure", "sure")
     shown = [
         replace(line, begin=replace(line.begin, cue=cue))
         for line, cue in zip(judged.shown, cues, strict=False)
