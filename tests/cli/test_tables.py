@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite, isnan
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pindrive import Motion, Release, simulate
@@ -14,6 +16,7 @@ from pindrive.device import Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.evaluation.resolution import SpeedLimit, Trial
+from pindrive.evaluation.results import Cue
 from pindrive.files.device import load_device, motion_of
 from pindrive.quantities.table import QUANTITIES
 from table_reading import numbers, printed, table
@@ -146,6 +149,17 @@ def test_what_became_of_the_lines(judged: Judgement) -> None:
     assert numbers(first)[-1] == counts["judged.echoes"]
 
 
+def test_cues_are_counted(judged: Judgement) -> None:
+    cues: tuple[Cue, ...] = ("none", "felt", "direction", "sure", "sure")
+    shown = [
+        replace(line, begin=replace(line.begin, cue=cue))
+        for line, cue in zip(judged.shown, cues, strict=False)
+    ]
+    assert len(shown) == len(cues)
+    counts = replace(judged, lines=tuple(shown)).counts
+    assert (counts["judged.direction"], counts["judged.sure"]) == (3, 2)
+
+
 def test_lines_shown(judged: Judgement) -> None:
     heads, *rows = table(judgement_report(judged), "Lines shown to the finger")
     assert heads[1:4] == ["least", "median", "most"]
@@ -164,6 +178,10 @@ def test_lines_shown(judged: Judgement) -> None:
             assert row[4] == quantity.display_unit
     least, median, most = judged.spread("line.lag_off")
     assert least < median < most, "a test that can tell them apart"
+    lags = np.array([line.numbers["line.lag_off"] for line in judged.shown])
+    known = lags[~np.isnan(lags)]
+    assert (least, median, most) == (known.min(), np.median(known), known.max())
+    assert median != known.mean()
 
 
 def test_speeds() -> None:

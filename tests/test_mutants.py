@@ -1,0 +1,57 @@
+"""The list of mutants is one of the code as it is, and what runs them tells life from death."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import mutants
+from mutants import Mutant, Runner
+
+UNITS = "tests/quantities/test_units.py::test_a_unit_is_what_it_is_defined_as"
+PERCENT = Mutant("percent", "quantities/units.py", "percent = 0.01", "percent = 1", (UNITS,))
+
+
+@pytest.fixture(scope="module")
+def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
+    made = Runner(tmp_path_factory.mktemp("mutants"))
+    yield made
+    made.close()
+
+
+def test_every_text_is_once_in_its_file() -> None:
+    every = mutants.mutants()
+    assert mutants.problems(every) == []
+    assert len(every) >= 80
+
+
+def test_a_mutant_that_is_none_is_an_error() -> None:
+    gone = replace(PERCENT, text="percent = 0.02")
+    nowhere = replace(PERCENT, name="other", tests=("tests/test_none.py",))
+    assert mutants.problems([gone, nowhere]) == [
+        "percent: its text is 0 times in quantities/units.py, not once",
+        "other: there is no tests/test_none.py",
+    ]
+
+
+def test_what_is_spoiled_dies_and_what_is_not_lives(runner: Runner) -> None:
+    assert runner.control([UNITS]) == ""
+    verdict, said = runner.verdict(PERCENT)
+    assert (verdict, "FAILED" in said) == ("dies", True)
+    harmless = replace(PERCENT, text="to the last bit.", instead="to the very last bit.")
+    assert runner.verdict(harmless)[0] == "lives"
+    broken = replace(PERCENT, text="def to_si(", instead="def to si(")
+    assert runner.verdict(broken)[0] == "error"
+    unknown = replace(PERCENT, tests=(UNITS + "_not",))
+    assert runner.verdict(unknown)[0] == "error"
+    source = Path(mutants.SOURCE, PERCENT.file).read_text("utf-8")
+    assert PERCENT.text in source, "the source is left alone"
+
+
+def test_files_take_turns() -> None:
+    found = [replace(PERCENT, name=name, file=name[0]) for name in ("a1", "a2", "a3", "b1", "c1")]
+    names = [mutant.name for mutant in mutants.spread(found)]
+    assert names == ["a1", "b1", "c1", "a2", "a3"]
