@@ -1,0 +1,118 @@
+"""A number has one name and one unit on every face: table, Python, datasets, files, commands."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import pytest
+
+from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
+from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray
+from pindrive.evaluation import Criteria
+from pindrive.files.template import NUMBERS
+from pindrive.motion.batch import _ARGUMENTS
+from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.quantity import Quantity
+from pindrive.quantities.results import ENDING, ENERGY, SERIES, TRANSIENT
+from pindrive.quantities.table import QUANTITIES
+from pindrive.study.design import variable
+from pindrive.study.outputs import OUTPUTS, known_output
+
+DRIVE = Drive(
+    mass=0.01,
+    stiffness=100.0,
+    damping=0.4,
+    plate=Contact(0.02),
+    finger=Contact(0.005, stiffness=1000.0),
+)
+BRAKE = Profile([0.0, 0.1], [0.06, 0.0])
+
+
+def parameters(made: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    """What it takes that is a number, by its names in Python."""
+    parts = ("self", "plate", "finger", "coil", "places", "spots", "curve", "drive", "release")
+    found = inspect.signature(made).parameters
+    return {name: p for name, p in found.items() if name not in parts}
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        *(Drive, Drive.with_damping_ratio, Release, simulate, ControlBlock, Electromagnet),
+        *(Electromagnet.from_times, Coil, PinArray, PinArray.grid, Criteria),
+    ],
+)
+def test_arguments_in_python_are_names_of_the_table(made: Callable[..., Any]) -> None:
+    names = parameters(made)
+    assert names
+    assert {*names} <= {*QUANTITIES}
+
+
+@pytest.mark.parametrize(
+    "made", [ControlBlock, Electromagnet, Electromagnet.from_times, Coil, PinArray.grid, Criteria]
+)
+def test_defaults_in_python_are_those_of_the_table(made: Callable[..., Any]) -> None:
+    """But for counts: a grid is of one pin unless more are asked for, in a device file of 16."""
+    differ = {}
+    for name, parameter in parameters(made).items():
+        if name in ("columns", "rows"):
+            continue
+        default = QUANTITIES[name].default
+        given = parameter.default
+        if given is not inspect.Parameter.empty and default is not None and given != default:
+            differ[name] = (given, default)
+    assert differ == {}
+
+
+def test_a_contact_is_its_part_of_the_table() -> None:
+    for field in fields(Contact):
+        for side in ("plate", "finger"):
+            key = f"{side}.{field.name}"
+            assert key in QUANTITIES or key == "plate.stiffness"  # the plate is rigid
+
+
+def test_what_a_batch_varies_has_the_names_of_device_files() -> None:
+    in_files = {variable(key) for key in NUMBERS if key.partition(".")[0] != "scan"}
+    assert {*_ARGUMENTS} <= in_files
+    for name, quantity in _ARGUMENTS.items():
+        assert quantity.name.replace(".", "_") == name
+
+
+def test_numbers_have_one_name_and_one_unit_in_every_dataset() -> None:
+    motion = simulate(DRIVE, Release(BRAKE, 1.5e-3))
+    batch = simulate_batch(DRIVE, Release(0.06, 1.5e-3), energy=True)
+    data = motion.to_dataset()
+    derived = motion.sensitivity(["mass"]).to_dataset()
+    for quantity in (*TRANSIENT, *ENDING, *ENERGY):
+        name = quantity.name.replace(".", "_")
+        assert quantity.name in motion.numbers()
+        for dataset in (data, batch):
+            attributes = dataset[name].attrs
+            assert attributes.get("units", "") == quantity.unit
+            assert attributes["long_name"] == quantity.meaning
+        if name in derived:
+            assert derived[name].attrs["units"] == quantity.unit
+        assert name in OUTPUTS
+        for given in (quantity.name, name):
+            assert known_output(given, "outputs") == name
+    for name, argument in _ARGUMENTS.items():
+        if name in batch.coords:
+            assert batch[name].attrs.get("units", "") == argument.unit
+    assert {*data.dims} == {"time", "event"}
+
+
+def test_columns_over_time_are_in_the_table_alone() -> None:
+    assert [*SERIES] == [quantity.name for quantity in SERIES.values()]
+    data = simulate(DRIVE, Release(BRAKE, 1.5e-3)).to_dataset([0.0, 0.01])
+    for name, quantity in SERIES.items():
+        assert data[name].attrs["units"] == quantity.unit
+
+
+def test_the_rows_of_what_changes_are_in_the_table() -> None:
+    rows: list[Quantity] = [q for q in QUANTITIES.values() if q.rows_of]
+    assert rows
+    for quantity in rows:
+        assert all(column in QUANTITIES for column in COLUMNS[quantity.rows_of])
