@@ -40,10 +40,11 @@ def with_files_read(
         folder: of that file, to which a path is relative.
         place: where keys were written.
     """
-    found = {name: dict(table) for name, table in tables.items()}
-    problems = []
+    found, problems = dict(tables), []
     for key, file in files_named(tables, folder).items():
         table, _, name = key.partition(".")
+        if found[table] is tables[table]:
+            found[table] = dict(tables[table])
         try:
             found[table][name] = _rows(file, key, tables)
         except ValueError as error:

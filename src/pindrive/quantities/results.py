@@ -166,6 +166,7 @@ RATE: Final = Quantity(
     "how many even samples a second a file of a motion has",
     between(1e-6, 1e12),
     1000.0,
+    "assumed",
 )
 """Of files over time."""
 
