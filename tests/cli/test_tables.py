@@ -32,9 +32,9 @@ def motion() -> Motion:
 @pytest.fixture(scope="module")
 def judged() -> Judgement:
     drive = load_device(EXAMPLES / "tactile-reader.toml", whole=True).drive
-    device = Device(drive=drive, array=PinArray.grid(2, 2, 0.004))
+    device = Device(drive=drive, array=PinArray.grid(3, 2, 0.004))
     scene = Scene.from_grating([0.004, 0.0015], count=2, margin=0.008, height=0.008)
-    path = lines([scene.lines[0]], 0.004, 0.028, speed=0.15, return_speed=0.15, pause=0.05)
+    path = lines([scene.lines[0]], 0.005, 0.027, speed=0.15, return_speed=0.15, pause=0.05)
     return judge(scan(device, scene, path))
 
 
@@ -115,7 +115,7 @@ def test_pins_of_a_scan(judged: Judgement) -> None:
         *("pin.peak_displacement", "pin.peak_skin_force", "pin.peak_stretch"),
     ]
     assert [QUANTITIES[name].display_unit for name in names] == units[2 : 2 + len(names)]
-    assert len(body) == len(done.pins) == 4
+    assert len(body) == len(done.pins) == 6
     for row, pin in zip(body, done.pins, strict=True):
         assert row[0] == str(pin.number)
         assert numbers(row[1]) == pytest.approx(
