@@ -77,14 +77,17 @@ def test_the_core_stands_alone() -> None:
         "array",
         "cmath",
         "cstddef",
+        "cstdint",
+        "cstring",
         "iterator",
         "limits",
         "type_traits",
         "utility",
     }
+    vectors = {"lanes.hpp": {"emmintrin.h", "immintrin.h"}}  # where the compiler has them
     for name, text in headers.items():
         code = re.sub(r"//.*", "", text)
-        assert set(re.findall(r"#include <(.*)>", code)) <= allowed, name
+        assert set(re.findall(r"#include <(.*)>", code)) <= allowed | vectors.get(name, set()), name
         assert not re.search(r"\b(new|delete|malloc|throw|try)\b", code), name
 
 

@@ -58,7 +58,7 @@ def test_each_bar_is_as_high_as_its_designs_are_many(found: Robustness, figure: 
         assert axes.get_xlabel().endswith(unit)
         bars = [p for p in axes.patches if p.get_gid() is None]
         values = 1e3 * found.values[name]
-        edges = np.array([bar.get_x() for bar in bars] + [bars[-1].get_x() + bars[-1].get_width()])  # type: ignore[attr-defined]
+        edges = np.array([bar.get_x() for bar in bars] + [values.max()])  # type: ignore[attr-defined]
         heights = [bar.get_height() for bar in bars]  # type: ignore[attr-defined]
         assert heights == np.histogram(values, edges)[0].tolist()
         assert sum(heights) == COUNT

@@ -89,7 +89,8 @@ def test_each_point_is_the_release_it_says(mouse: DeviceFile) -> None:
         from pindrive.files.device import motion_of
 
         motion = motion_of(pd.load_device(MOUSE, {"mass": mass}))
-        assert float(data.transient_settling_time[i]) == motion.transient.settling_time
+        settling_time = motion.transient.settling_time
+        assert float(data.transient_settling_time[i]) == pytest.approx(settling_time, rel=1e-12)
 
 
 def test_a_file_of_points_is_kept_and_gone_on_with(mouse: DeviceFile, tmp_path: Path) -> None:

@@ -33,6 +33,7 @@ OPTIONS: Final[dict[str, tuple[str, ...]]] = {
     ),
     "Files": (
         *("output", "plot", "pin", "film", "slow", "lines", "csv", "netcdf", "json", "samples"),
+        "rate",
         *("out", "docs", "force"),
     ),
     "Help": ("version", "install_completion", "show_completion", "help"),

@@ -258,7 +258,7 @@ class Motion:
         """Times and directions of the crossings of a level over [0, duration], exactly.
 
         A crossing leads from one side of the level to the other. Touching it is none; a quantity
-        that rests at the level and goes on crosses it where it comes to rest.
+        that rests at the level and then continues crosses it where it comes to rest.
 
         Args:
             which: "position", "velocity" or "acceleration".
