@@ -490,7 +490,8 @@ void bind_batch(nb::module_& m) {
       "events"_a, "width"_a = 0,
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
-      "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, plate load). A "
+      "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, "
+      "plate load). A "
       "point that breaks one of the bounds (the least value, the largest, and one beside them or "
       "NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its "
       "status says which, its numbers are NaN. The column of events is there if asked for; "
