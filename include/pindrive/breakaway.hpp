@@ -9,13 +9,14 @@
 namespace pindrive {
 
 /// The instant at which a segment begins: the pin, the friction on it and the inputs, and which
-/// rigid contacts it is at rest against.
+/// rigid contacts it is at rest against, to rounding.
 template <class T>
 struct Beginning {
   T x, v, plate_force, finger_force;
   Line<T> plate_velocity;
   T load;
   bool rests_on_plate, rests_on_finger;
+  bool plate_began, finger_began;  ///< to do what they do
 };
 
 /// What contacts that slip from rest could have carried beyond what they would have had to, N; 0 where
@@ -36,8 +37,9 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const T of_finger = plate && finger ? -side * drive.finger.kinetic : now.finger_force;
   const T of_plate = plate && finger ? side * drive.plate.kinetic * now.load : now.plate_force;
   T spare{0};
-  if (plate) spare = at_plate - abs(pull - of_finger);
-  if (finger) spare = std::max(spare, at_finger - abs(pull - inertia - of_plate));
+  if (plate && now.plate_began) spare = at_plate - abs(pull - of_finger);
+  if (finger && now.finger_began)
+    spare = std::max(spare, at_finger - abs(pull - inertia - of_plate));
   return std::max(spare, T(0));
 }
 

@@ -385,8 +385,8 @@ class Certifier {
     const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
     const Beginning<T> now{
-        s.x,      s.v,      s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
-        on_plate, on_finger};
+        s.x,      s.v,       s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
+        on_plate, on_finger, plate,         finger};
     worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
   }
 

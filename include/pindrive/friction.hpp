@@ -122,6 +122,13 @@ struct Touch {
     return slope != 0 ? -slope * load.value * (acceleration - surface.rate)
                       : -along(does().state, branch().force) * load.rate;
   }
+  /// How large the terms of that rate are: its slope is known to rounding only.
+  T force_rate_size(T rate, T acceleration) const {
+    using std::abs;
+    if (!sliding() || branch().slope == 0) return abs(rate);
+    const T unsure = branch().rounding * load.value * abs(acceleration - surface.rate);
+    return abs(rate) + unsure / rounding<T>;
+  }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
     using std::abs;

@@ -84,6 +84,21 @@ class Guards {
     return limit;
   }
 
+  /// Whether what comes to zero before τ stays there until then, to rounding.
+  bool stay_until(const Oscillator<T>& oscillator, T tau, T force_roundoff) const {
+    using std::abs;
+    return std::all_of(begin(), end(), [&](const Guard<T>& guard) {
+      if (!(guard.zero < tau)) return true;
+      const Path<T>& path = guard.path;
+      const T roundoff = guard.bound == Bound::none
+                             ? force_roundoff
+                             : rounding<T> * (abs(path.start) + abs(path.value));
+      const T rate = path.rates(oscillator, oscillator.after(guard.zero), guard.zero).first;
+      return rate * (tau - guard.zero) >= -2 * roundoff &&
+             abs(path.at(oscillator, tau)) <= roundoff;
+    });
+  }
+
  private:
   /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
   /// of a velocity v only the one below: it comes to zero before the other.

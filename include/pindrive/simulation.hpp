@@ -135,7 +135,7 @@ class Simulation {
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
     const T rate = other.force_rate(state_.v, a);
     const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
-    size = abs(spring) + abs(damper) + abs(rate);
+    size = abs(spring) + abs(damper) + other.force_rate_size(rate, a);
     return {force, T(0), T(0), spring + damper - rate, stiffness * a};
   }
 
@@ -253,7 +253,11 @@ class Simulation {
     const T row = row_ - time_, serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     const T first = guards_.earliest(flow.oscillator, time_, limit);
-    return row < never && row - first <= rounding<T> * (time_ + row) ? row : first;
+    const bool at_row =
+        row < never &&
+        (row - first <= rounding<T> * (time_ + row) ||
+         (limit == row && guards_.stay_until(flow.oscillator, row, state_.roundoff)));
+    return at_row ? row : first;
   }
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
@@ -275,6 +279,8 @@ class Simulation {
     plate_.surface.value = plate_.surface.at(tau);
     plate_.load.value = plate_.load.at(tau);
     if (row) look_ahead();
+    for (; row && row_ < never && row_ - time_ <= rounding<T> * row_; look_ahead())
+      segment.end = time_ = row_;  // rows that differ by the rounding of a time are one
     Reached reached;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
