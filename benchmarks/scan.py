@@ -1,7 +1,7 @@
 """Time of a scan: sixteen pins over ten seconds of hand motion along two lines of text.
 
 What is timed is the simulation: reading the scene under each spot, switching the coils, and each
-pin's whole motion. Making the page and measuring what the pins did are told beside it.
+pin's whole motion. Making the page and measuring what the pins did are timed apart.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ struct LastState {
   MaskOf<V> put_off;     ///< it meets the plate again, which was not to be followed
 };
 
-/// The numbers of MODEL.md §6 that a plain release has; what it has not is NaN.
+/// The numbers of docs/theory.md, section 6, that a plain release has; what it has not is NaN.
 struct PlainNumber {
   enum Name : signed char {
     peak_displacement,

@@ -78,7 +78,7 @@ def test_growth_in_a_falling_region_and_where_it_ends() -> None:
 
 @pytest.mark.parametrize("damping", [0.08, 0.32, 0.64])
 def test_the_papers_extrema_with_the_missing_cosine(damping: float) -> None:
-    """Equations (7), (8), (13) to (17), (19) and (20) of the paper, mended as theory.md says."""
+    """Equations (7), (8), (13) to (17), (19) and (20) of the paper, corrected as theory.md says."""
     x0, x_d = 1.5e-3, 2e-4
     of = drive(Contact(kinetic=STIFFNESS * x_d), damping=damping)
     alpha = -damping / (2 * MASS)
