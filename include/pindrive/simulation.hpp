@@ -275,12 +275,11 @@ class Simulation {
     if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
     if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
     const bool row = tau == row_ - time_;
-    segment.end = time_ = row ? row_ : time_ + tau;
+    time_ = row ? row_ : time_ + tau;
     plate_.surface.value = plate_.surface.at(tau);
     plate_.load.value = plate_.load.at(tau);
     if (row) look_ahead();
-    for (; row && row_ < never && row_ - time_ <= rounding<T> * row_; look_ahead())
-      segment.end = time_ = row_;  // rows that differ by the rounding of a time are one
+    segment.end = time_;
     Reached reached;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
@@ -303,10 +302,14 @@ class Simulation {
     return reached;
   }
 
+  /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
   void look_ahead() {
-    plate_.surface = inputs_.mouse_velocity.from(time_);
-    plate_.load = inputs_.plate_load.from(time_);
-    row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
+    for (;; time_ = row_) {
+      plate_.surface = inputs_.mouse_velocity.from(time_);
+      plate_.load = inputs_.plate_load.from(time_);
+      row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
+      if (row_ - time_ > rounding<T> * time_) return;
+    }
   }
 
   const Drive<T, Surface>& drive_;
