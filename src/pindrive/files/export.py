@@ -21,6 +21,7 @@ from pindrive.files.output import (
     MOTION_CSV,
     SCAN_CSV,
     SCAN_EVENTS_CSV,
+    Kind,
     Output,
     naming,
     writing,
@@ -32,7 +33,7 @@ from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from pindrive.device.scanning import Scan
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
+    from pindrive.motion.results import Event
 
 AT_ONCE: Final = 1 << 16
 """Rows that are made into text together: more take memory and save no time."""
@@ -71,16 +73,13 @@ def even_times(begin: float, end: float, rate: float, curves: int = 1) -> NDArra
 
 def to_csv(motion: Motion, path: str | PathLike[str], rate: float) -> Path:
     """What `Motion.to_csv` does; the path of the events."""
-    target = Path(path)
-    events = events_path(target)
     times = even_times(0.0, motion.duration, rate)
-    outputs = [Output(target, MOTION_CSV), Output(events, EVENTS_CSV)]
-    with writing(outputs) as parts:
-        with naming(target):
-            write_csv(motion, parts[target], times)
-        with naming(events):
-            write_events(motion, parts[events])
-    return events
+    return _with_events(
+        Path(path),
+        (MOTION_CSV, EVENTS_CSV),
+        lambda part: write_csv(motion, part, times),
+        lambda part: write_events(motion, part),
+    )
 
 
 def write_csv(motion: Motion, path: Path, times: NDArray[np.float64]) -> None:
@@ -96,24 +95,19 @@ def write_events(motion: Motion, path: Path) -> None:
     """Write the events of a motion, SI, a row each; of a cycle, one round."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        names = ("position", "velocity")
-        writer.writerow([heading("time"), "contact", "kind", *map(heading, names)])
-        for event in motion.events:
-            writer.writerow([event.time, event.contact, event.kind, event.position, event.velocity])
+        writer.writerow(_event_headings())
+        writer.writerows(map(_event_row, motion.events))
 
 
 def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
     """What `Scan.to_csv` does; the path of the events."""
-    target = Path(path)
-    events = events_path(target)
-    outputs = [Output(target, SCAN_CSV), Output(events, SCAN_EVENTS_CSV)]
     times = even_times(scan.path.begin, scan.path.end, rate, len(scan.pins))
-    with writing(outputs) as parts:
-        with naming(target):
-            write_scan_csv(scan, parts[target], times)
-        with naming(events):
-            write_scan_events(scan, parts[events])
-    return events
+    return _with_events(
+        Path(path),
+        (SCAN_CSV, SCAN_EVENTS_CSV),
+        lambda part: write_scan_csv(scan, part, times),
+        lambda part: write_scan_events(scan, part),
+    )
 
 
 def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
@@ -131,11 +125,34 @@ def write_scan_events(scan: Scan, path: Path) -> None:
     """Write the events of each pin, pin after pin, on the path's clock, a row each."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        names = ("position", "velocity")
-        writer.writerow(["pin", heading("time"), "contact", "kind", *map(heading, names)])
+        writer.writerow(["pin", *_event_headings()])
         for pin in scan.pins:
-            for e in pin.events:
-                writer.writerow([pin.number, e.time, e.contact, e.kind, e.position, e.velocity])
+            writer.writerows([pin.number, *_event_row(event)] for event in pin.events)
+
+
+def _with_events(
+    target: Path,
+    kinds: tuple[Kind, Kind],
+    write_samples: Callable[[Path], None],
+    write_events: Callable[[Path], None],
+) -> Path:
+    """Write a file of samples, and one of events beside it: both or neither; the latter's path."""
+    events = events_path(target)
+    outputs = [Output(path, kind) for path, kind in zip((target, events), kinds, strict=True)]
+    with writing(outputs) as parts:
+        with naming(target):
+            write_samples(parts[target])
+        with naming(events):
+            write_events(parts[events])
+    return events
+
+
+def _event_headings() -> list[str]:
+    return [heading("time"), "contact", "kind", heading("position"), heading("velocity")]
+
+
+def _event_row(event: Event) -> list[Any]:
+    return [event.time, event.contact, event.kind, event.position, event.velocity]
 
 
 def heading(name: str) -> str:
