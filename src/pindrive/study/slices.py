@@ -227,7 +227,7 @@ class View:
 
     @property
     def told(self) -> dict[str, float]:
-        """What of the device is told beside a picture: what its file must say, or says otherwise.
+        """The device's values that a picture states: those without a default, or that differ from it.
 
         Of a study of releases all that was not varied.
         """
