@@ -16,6 +16,7 @@ __all__ = [
     "ImageDraw",
     "ImageFont",
     "ImageOps",
+    "NotebookHtml",
     "attach",
     "call",
     "features",
@@ -115,3 +116,12 @@ def call(target: str, *arguments: Any) -> Any:
     """The result of a function or class that is named as "module:name"."""
     module, _, name = target.partition(":")
     return getattr(_loaded(module), name)(*arguments)
+
+
+class NotebookHtml:
+    """A result that a notebook shows as a table with units and a small picture."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        return str(call("pindrive.plot.notebook:html", self))

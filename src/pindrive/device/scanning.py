@@ -191,7 +191,7 @@ class PinScan:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Scan:
+class Scan(lazy.NotebookHtml):
     """What a device did while a hand moved it over a scene."""
 
     device: Device
@@ -207,10 +207,6 @@ class Scan:
         """What was scanned, for how long, by how many pins, in a line."""
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
         return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def evaluate(self, criteria: object = None) -> Any:
         """What the finger was shown against what is printed, line by line.

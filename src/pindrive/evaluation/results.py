@@ -143,7 +143,7 @@ class Echo:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Judgement:
+class Judgement(lazy.NotebookHtml):
     """What the finger was shown in a scan."""
 
     scan: Scan
@@ -163,10 +163,6 @@ class Judgement:
     def status(self) -> Status:
         """That of the scan."""
         return self.scan.status
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self, pin: int | None = None) -> Figure:
         """The scan and one pin of it, from 0, as `Scan.plot` draws them."""

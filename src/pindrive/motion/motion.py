@@ -56,7 +56,7 @@ _QUANTITIES: Final = ("position", "velocity", "acceleration")
 """In the order of `Quantity` in crossings.hpp."""
 
 
-class Motion:
+class Motion(lazy.NotebookHtml):
     """What a pin does after its release, exactly: made by `simulate`.
 
     Attributes:
@@ -95,10 +95,6 @@ class Motion:
             f"{self.ending.kind}, settling time {self.transient.settling_time:.6g} s, "
             f"{self.status.name}>"
         )
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     # ---- the motion over time --------------------------------------------------------------------
 

@@ -80,7 +80,7 @@ class Simulated(Protocol):
     def stretch(self, t: ArrayLike, side: Side) -> object: ...
 
 
-class Sensitivity:
+class Sensitivity(lazy.NotebookHtml):
     """Derivatives of a motion, SI units of the quantity per SI unit of the parameter.
 
     Attributes:
@@ -100,10 +100,6 @@ class Sensitivity:
     def __repr__(self) -> str:
         """The parameters, in a line."""
         return f"<Sensitivity to {', '.join(self.parameters)}, {self.status.name}>"
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     @property
     def status(self) -> Status:

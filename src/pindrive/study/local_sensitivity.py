@@ -29,7 +29,7 @@ _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Elasticities:
+class Elasticities(lazy.NotebookHtml):
     """By how many per cent each number changes when a key grows by one per cent."""
 
     keys: tuple[str, ...]
@@ -53,10 +53,6 @@ class Elasticities:
     def status(self) -> Status:
         """`incomplete` where keys have no derivatives; `gaps` says why."""
         return Status.incomplete if self.gaps else Status.ok
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """The elasticities as a table of colours, numbers down and keys across."""

@@ -89,7 +89,7 @@ class WorstCase:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Robustness:
+class Robustness(lazy.NotebookHtml):
     """What `robustness` found."""
 
     ranges: Ranges
@@ -120,10 +120,6 @@ class Robustness:
     def status(self) -> Status:
         """`incomplete` where draws cannot exist and were left out; `refusals` says why."""
         return Status.incomplete if self.refusals else Status.ok
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """How the watched numbers spread, with the limits, as a figure that a notebook shows."""

@@ -83,7 +83,7 @@ def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Influence:
+class Influence(lazy.NotebookHtml):
     """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
 
     keys: tuple[str, ...]
@@ -108,10 +108,6 @@ class Influence:
     def status(self) -> Status:
         """`incomplete` where points cannot exist and were left out; `refusals` says why."""
         return Status.incomplete if self.refusals else Status.ok
-
-    def _repr_html_(self) -> str:
-        """A table with units and a small picture, as a notebook shows it."""
-        return str(lazy.call("pindrive.plot.notebook:html", self))
 
     def plot(self) -> Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
