@@ -227,7 +227,7 @@ class View:
 
     @property
     def told(self) -> dict[str, float]:
-        """The device's values that a picture states: those without a default, or that differ from it.
+        """The device's values that a picture states: without a default, or other than it.
 
         Of a study of releases all that was not varied.
         """
