@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "cases.hpp"
 #include "pindrive/batch.hpp"
 
 namespace pd = pindrive;
@@ -160,7 +161,7 @@ bool persists(Case c) {
 
 /// critical_test [COUNT [SEED]]
 int main(int argc, char** argv) {
-  const long count = argc > 1 ? std::strtol(argv[1], nullptr, 10) : 100000;
+  const long count = argc > 1 ? std::strtol(argv[1], nullptr, 10) : cases(100000);
   Draw draw(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 298);
   long failures = 0, coincidences = 0;
   double largest = 0;

@@ -11,6 +11,7 @@
 
 #include "../fuzz/draw.hpp"
 #include "../fuzz/judge.hpp"
+#include "cases.hpp"
 
 namespace pd = pindrive;
 
@@ -138,7 +139,7 @@ void judge(const pd::Motion<double>& motion, double until, const std::string& na
 int main() {
   std::vector<pd::Segment<double>> segments;
   int judged = 0, cycles = 0;
-  for (std::uint64_t number = 0; number < 3000; ++number) {
+  for (std::uint64_t number = 0; number < cases(3000); ++number) {
     const fuzz::Case c = fuzz::Draw(5, number).next();
     const fuzz::Given given(c);
     const auto outcome = fuzz::run(given, segments);
@@ -167,5 +168,5 @@ int main() {
     expect(same, "case " + std::to_string(number) + ": events of a cycle come again");
   }
   std::printf("%d motions, %d of them cycles, %d failures\n", judged, cycles, failures);
-  return failures == 0 && judged > 2000 && cycles >= 10 ? 0 : 1;
+  return failures == 0 && judged > cases(2000) && cycles >= cases(10) ? 0 : 1;
 }

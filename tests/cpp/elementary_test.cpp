@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+#include "cases.hpp"
+
 #ifdef PINDRIVE_QUADRUPLE
 #include <quadmath.h>
 using Long = __float128;
@@ -164,7 +166,7 @@ bool packs_agree(int which, const std::vector<double>& a, const std::vector<doub
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200'000;
+  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : cases(200'000);
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   const std::vector<double> edges{0.0,     -0.0,   1.0,     -1.0,   inf,   -inf,  nan,  5e-324,
                                   -5e-324, 1e-308, -745.13, 709.78, 709.8, -800., 800., 1e300};

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "_kernel.hpp"
+#include "cases.hpp"
 #include "pindrive/batch.hpp"
 
 namespace pd = pindrive;
@@ -262,7 +263,7 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t size = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 100'000;
+  const std::size_t size = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : cases(100'000);
   const auto seed = static_cast<unsigned>(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 12);
   bool good = true;
   // In pieces, so that the memory does not grow with their number.

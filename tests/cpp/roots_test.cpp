@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "cases.hpp"
+
 namespace pd = pindrive;
 
 namespace {
@@ -45,7 +47,7 @@ int main() {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const double ratios[] = {0, 1e-3, 0.1, 0.7, 1 - 1e-9, 1, 1 + 1e-9, 1.5, 20, -0.02, -0.3, -1.2};
   int failures = 0, roots_seen = 0;
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < cases(6000); ++i) {
     const double ratio = ratios[i % 12];
     const double omega0 = std::pow(10, 2 * uniform(random));
     const pd::Oscillator<double> oscillator(1, 2 * ratio * omega0, omega0 * omega0);
@@ -82,6 +84,6 @@ int main() {
       ++failures;
     }
   }
-  std::printf("%d roots in 6000 paths, %d failures\n", roots_seen, failures);
+  std::printf("%d roots in %d paths, %d failures\n", roots_seen, cases(6000), failures);
   return failures == 0 ? 0 : 1;
 }

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "cases.hpp"
 #include "pindrive/certify.hpp"
 #include "pindrive/simulate.hpp"
 #include "pindrive/transient.hpp"
@@ -41,7 +42,7 @@ int main() {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   double worst_time = 0, worst_position = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < cases(20000); ++i) {
     const double mass = between(2e-3, 2e-2), stiffness = between(20, 400);
     const double ratio = i % 4 == 0 ? 0 : i % 4 == 1 ? between(0.01, 0.9) : between(0, 3);
     const double plate = between(5e-3, 0.1), finger = i % 3 == 0 ? 0 : between(1e-3, 0.05);
@@ -72,7 +73,7 @@ int main() {
       worst_position = std::max(worst_position, double(std::abs(one[k].flow.position.start - x)));
     }
   }
-  std::printf("20000 motions: times within %.1e s, positions within %.1e m\n", worst_time,
-              worst_position);
+  std::printf("%d motions: times within %.1e s, positions within %.1e m\n", cases(20000),
+              worst_time, worst_position);
   return worst_time < 1e-11 && worst_position < 1e-13 ? 0 : 1;
 }

@@ -13,6 +13,7 @@
 
 #include "../fuzz/draw.hpp"
 #include "../fuzz/judge.hpp"
+#include "cases.hpp"
 
 #ifndef PINDRIVE_HARD
 #define PINDRIVE_HARD "tests/hard"  // from the root
@@ -54,7 +55,7 @@ void parting_surfaces() {
   };
   double worst = 0, swapped_off = 0;
   int ties = 0;
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < cases(100'000); ++i) {
     // In small whole numbers and halves, so that limits are met exactly in a good part of them.
     const double mass = one_of({1, 2}), stiffness = one_of({1, 4}),
                  w = one_of({-2, -1, -0.5, 0.5, 1, 2});
@@ -74,19 +75,19 @@ void parting_surfaces() {
     swapped_off = std::max(swapped_off, std::abs(a - w - b));
   }
   expect(worst == 0, "parting surfaces: the one solution, " + std::to_string(ties) + " at a limit");
-  expect(ties > 10'000, "... of which many are at a limit");
+  expect(ties > cases(10'000), "... of which many are at a limit");
   expect(swapped_off == 0, "... whichever of the two is called the plate");
 }
 
 void no_mode_without_time() {
   std::size_t instants = 0, stopped = 0;
   Segments segments;
-  for (std::uint64_t number = 0; number < 100'000; ++number) {
+  for (std::uint64_t number = 0; number < cases(100'000); ++number) {
     const auto verdict = fuzz::simulated(fuzz::Draw(1, number).next(), segments);
     instants += verdict.instants;
     stopped += verdict.status != pd::Status::ok ? 1 : 0;
   }
-  expect(stopped == 0, "100 000 random drives: in each a mode is consistent at every instant");
+  expect(stopped == 0, "random drives: in each a mode is consistent at every instant");
   expect(instants <= 3, "... and " + std::to_string(instants) + " modes last no time");
 }
 
