@@ -31,28 +31,24 @@ class Simulation {
     using std::isnan;
     state_.x_size = abs(state_.x);
     look_ahead();
-    const T v = state_.v, u = v - plate_.surface.value;
-    Mode mode{touch(drive.plate, u), touch(drive.finger, v)};
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
-    if (drive.finger.present() && !drive.finger.rigid() && (given || v == 0))
-      mode.finger = ContactState::elastic_stick;
-    if (slips(mode.plate)) mode.plate_branch = drive.plate.branch_of(along(mode.plate, u));
-    if (slips(mode.finger)) mode.finger_branch = drive.finger.branch_of(along(mode.finger, v));
-    select(mode, {});
+    plate_.begin(state_.v, false);
+    finger_.begin(state_.v, given);
+    select({});
   }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
+    Segment<T> segment;
     for (long long events = 1;; ++events) {
-      Segment<T> segment = begin();
+      begin(segment);
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
       if (!finished) {
-        const Mode before = segment.mode;
-        select(before, jump(segment, tau));
-        const Mode after = mode();
+        select(jump(segment, tau));
+        const Mode before = segment.mode, after = mode();
         segment.event = {change(before.plate, after.plate), change(before.finger, after.finger)};
         if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
       } else if (tau == never) {
@@ -79,32 +75,29 @@ class Simulation {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Side = Touch<T, Surface>;
 
-  static ContactState touch(const Surface& contact, T u) {
-    return contact.present() ? static_cast<ContactState>((u > 0) - (u < 0)) : ContactState::absent;
-  }
-
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
   /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
-  void select(const Mode& before, const Reached& reached) {
+  void select(const Reached& reached) {
     using std::abs;
     const T damper = drive_.damping * state_.v;
-    plate_.ask(before.plate, before.plate_branch, reached.plate, state_);
-    finger_.ask(before.finger, before.finger_branch, reached.finger, state_);
+    plate_.ask(reached.plate, state_);
+    finger_.ask(reached.finger, state_);
     inertia_ = drive_.mass * plate_.surface.rate;
     pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
         rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
                        plate_.size(state_.v) + finger_.size(state_.v));
-    const bool finger_first = before.finger == ContactState::stick && before.plate != before.finger;
+    const bool finger_first =
+        finger_.before == ContactState::stick && plate_.before != ContactState::stick;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
     const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
     if (i == 1 && sticks(first, second, 0, reached.limit)) return;
     if (j == 1 && sticks(second, first, i, reached.limit)) return;
     for (int k = i; k < first.count; ++k)
       for (int l = j; l < second.count; ++l) {
-        first.chosen = k;
-        second.chosen = l;
+        first.does = first.options[k];
+        second.does = second.options[l];
         if (sets_out(reached.limit)) return;
       }
     outcome_.status = Status::inconsistent;
@@ -112,9 +105,9 @@ class Simulation {
 
   /// Whether a contact sticks while the other one does one of its options.
   bool sticks(Side& on, Side& other, int option, int limit) {
-    on.chosen = 0;
+    on.does = on.options[0];
     for (; option < other.count; ++option) {
-      other.chosen = option;
+      other.does = other.options[option];
       if (holds(on, other, limit)) return true;
     }
     return false;
@@ -192,7 +185,8 @@ class Simulation {
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
-      if (apart != 0 || !side.rests(state_.v)) return side.goes_inside(state_, apart);
+      if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
+        return side.goes_inside(state_, apart);
       T size;
       const Path<T> needed = demand_from(T(0), side, other, size);
       const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
@@ -203,19 +197,26 @@ class Simulation {
   }
 
   Mode mode() const {
-    return {plate_.does().state, finger_.does().state, plate_.does().branch, finger_.does().branch};
+    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
   }
 
   /// The segment of the mode that was selected, and its guards.
-  Segment<T> begin() {
-    Segment<T> segment{time_, never, mode(), {}, flow(), {}, plate_.surface, {}, {}};
+  void begin(Segment<T>& segment) {
+    plate_.take_up();
+    finger_.take_up();
+    segment.begin = time_;
+    segment.end = never;
+    segment.mode = mode();
+    segment.event = {};
+    segment.flow = flow();
+    segment.moved = {};
+    segment.plate_velocity = plate_.surface;
     segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
     segment.finger_force = finger_.stuck() && !plate_.stuck()
                                ? stick_force_
                                : finger_.force_along(segment.flow, state_);
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
-    return segment;
   }
 
   Flow<T> flow() const {
@@ -268,12 +269,11 @@ class Simulation {
     const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
     const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
     state_.x = position.at(moved, tau);
-    state_.v = segment.flow.velocity.at(moved, tau);
     state_.x_size =
         std::max(std::max(state_.x_size, abs(state_.x)),
                  std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
     if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
-    if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
+    if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
     plate_.surface.value = plate_.surface.at(tau);
@@ -281,6 +281,7 @@ class Simulation {
     if (row) look_ahead();
     segment.end = time_;
     Reached reached;
+    bool on_bound = false;  // which sets the velocity
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
@@ -288,8 +289,9 @@ class Simulation {
       if (guard.bound != Bound::none) {
         (guard.plate ? reached.plate : reached.finger) = guard.bound;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
-        state_.v = side.surface.value + along(side.does().state, speed);
-        if (guard.bound == Bound::lower && side.does().branch == 0)
+        state_.v = side.surface.value + side.does.sense * speed;
+        on_bound = true;
+        if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit;
@@ -298,7 +300,10 @@ class Simulation {
       }
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
-    if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+    if (on_finger || on_plate)
+      state_.v = on_finger ? T(0) : plate_.surface.value;
+    else if (!on_bound)
+      state_.v = segment.flow.velocity.at(moved, tau);
     return reached;
   }
 
