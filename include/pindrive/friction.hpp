@@ -30,6 +30,24 @@ struct State {
   T roundoff{0};  ///< forces that differ by less are one, N
 };
 
+/// The force of a contact on the pin in a mode: constant − drag x' − stiffness (x − x₀), N.
+template <class T>
+struct Force {
+  Line<T> constant{};
+  T drag{0}, stiffness{0};
+  T rounding{0};  ///< how well the drag is known, N s/m
+
+  Path<T> along(const Flow<T>& flow) const {
+    Path<T> path = constant;
+    if (drag != 0) path = path + (-drag) * flow.velocity;
+    if (stiffness != 0) {
+      path = path + (-stiffness) * flow.position;
+      path.start = constant.value;
+    }
+    return path;
+  }
+};
+
 /// Whether a guard at its zero dips below it by no more than its roundoff.
 template <class T>
 bool touches(T rate, T curvature, T roundoff) {
@@ -47,15 +65,15 @@ struct Touch {
     T sense{0};  ///< in which it slips: 1, −1 or 0
   };
 
+  explicit Touch(const Surface& given) : contact(given) {}
+
   const Surface contact;
-  Line<T> surface, load;
-  Option does;
+  Line<T> surface{}, load{T(1), T(0)};
+  Option does{};
   ContactState before{};
-  std::array<Option, 3> options;
+  std::array<Option, 3> options{};
   int count{0};
   T friction{0};  ///< how large its friction is at its sliding speed, N
-  Line<T> constant;
-  T drag{0};
 
   static Option slip(T sense, Bound at, int branch = 0) {
     return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch, sense};
@@ -154,39 +172,17 @@ struct Touch {
     return (contact.static_limit + rounded) * load.value + friction;
   }
 
-  /// Takes up what it does from here on: R = −s (F + c (s u − from)) λ with u = x' − surface is
-  /// `constant` − `drag` x'.
-  void take_up() {
-    drag = T(0);
-    if (!sliding()) return;
+  /// Its force along a mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.
+  Force<T> force_along_mode(const State<T>& s) const {
+    if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
+    if (!sliding()) return {};
     const Branch<T> range = branch();
     const T force = -does.sense * (range.force - range.slope * range.from);
-    constant = {force * load.value, force * load.rate};
-    if (range.slope == 0) return;
-    drag = range.slope * load.value;
-    constant = {constant.value + drag * surface.value, constant.rate + drag * surface.rate};
-  }
-  /// Adds its force to m x'' + c x' + κ (x − x₀) = pull, and what is rounding of c to `known`.
-  void add_to(T& damping, T& known, T& stiffness, Line<T>& pull, const State<T>& s) const {
-    if (elastic()) {
-      stiffness += contact.stiffness;
-      pull.value -= s.skin;
-    } else if (sliding()) {
-      pull = {pull.value + constant.value, pull.rate + constant.rate};
-      damping += drag;
-      known += branch().rounding * load.value;
-    }
-  }
-  /// Its force along a flow, unless it sticks, N.
-  Path<T> force_along(const Flow<T>& flow, const State<T>& s) const {
-    if (elastic()) {
-      Path<T> force = -contact.stiffness * flow.position;
-      force.start = -s.skin;
-      return force;
-    }
-    if (!sliding()) return {};
-    const Path<T> force = constant;
-    return drag != 0 ? force + (-drag) * flow.velocity : force;
+    const T drag = range.slope * load.value;
+    return {{force * load.value + drag * surface.value, force * load.rate + drag * surface.rate},
+            drag,
+            T(0),
+            range.rounding * load.value};
   }
 
   /// Whether the force that it carried until now goes on without a jump, after a stick force has

@@ -25,8 +25,8 @@ class Simulation {
         half_period_(plain_.zeros(T(0), T(1)).first),
         half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
         state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
-        plate_{drive.plate, {}, {}},
-        finger_{drive.finger, {}, {T(1), T(0)}} {
+        plate_(drive.plate),
+        finger_(drive.finger) {
     using std::abs;
     using std::isnan;
     state_.x_size = abs(state_.x);
@@ -48,9 +48,12 @@ class Simulation {
       const bool finished = !(time_ + tau < inputs_.duration);
       if (!finished) {
         select(jump(segment, tau));
-        const Mode before = segment.mode, after = mode();
-        segment.event = {change(before.plate, after.plate), change(before.finger, after.finger)};
-        if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
+        const auto &plate = plate_.does, &finger = finger_.does;
+        segment.event = {change(plate_.before, plate.state), change(finger_.before, finger.state)};
+        if (!(row_ < never)) {
+          const Mode after{plate.state, finger.state, plate.branch, finger.branch};
+          returns_.meet(drive_, segment, after, state_, outcome_);
+        }
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
@@ -196,51 +199,45 @@ class Simulation {
     return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
   }
 
-  Mode mode() const {
-    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
-  }
-
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
-    plate_.take_up();
-    finger_.take_up();
+    const Force<T> plate = plate_.force_along_mode(state_), finger = finger_.force_along_mode(state_);
     segment.begin = time_;
     segment.end = never;
-    segment.mode = mode();
+    segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
     segment.event = {};
-    segment.flow = flow();
+    segment.flow = flow(plate, finger);
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
-    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
-    segment.finger_force = finger_.stuck() && !plate_.stuck()
-                               ? stick_force_
-                               : finger_.force_along(segment.flow, state_);
+    segment.plate_force = plate_.stuck() ? stick_force_ : plate.along(segment.flow);
+    segment.finger_force =
+        finger_.stuck() && !plate_.stuck() ? stick_force_ : finger.along(segment.flow);
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
   }
 
-  Flow<T> flow() const {
+  Flow<T> flow(const Force<T>& plate, const Force<T>& finger) const {
     using std::abs;
     const State<T>& s = state_;
     if (plate_.stuck() || finger_.stuck())
       return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
-    T damping = drive_.damping, stiffness = drive_.stiffness;
-    T known = 2 * std::numeric_limits<T>::epsilon() * damping;  // how well the damping is
-    Line<T> pull{inertia_ - stiffness * s.x, T(0)};
-    plate_.add_to(damping, known, stiffness, pull, s);
-    finger_.add_to(damping, known, stiffness, pull, s);
+    T damping = drive_.damping + plate.drag + finger.drag;
+    const T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
+    const T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
+    const T rate = plate.constant.rate + finger.constant.rate;
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
+      const T known = 2 * std::numeric_limits<T>::epsilon() * drive_.damping + plate.rounding + finger.rounding;
       if (abs(damping) <= known) damping -= plain(damping);
       oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
     }
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (abs(pull.value) <= s.roundoff && s.v == 0 && pull.rate == 0)
+    if (abs(pull) <= s.roundoff && s.v == 0 && rate == 0)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
-    const T drift = pull.rate / stiffness;
+    const T drift = rate / stiffness;
     const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
-                                    : pull.value - damping * drift;
+                                    : pull - damping * drift;
     return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
