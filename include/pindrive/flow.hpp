@@ -308,4 +308,22 @@ struct Flow {
   }
 };
 
+/// A force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
+template <class T>
+struct Force {
+  Line<T> constant{};
+  T drag{0}, stiffness{0};
+  T rounding{0};  ///< how well the drag is known, N s/m
+
+  Path<T> along(const Flow<T>& flow) const {
+    Path<T> path = constant;
+    if (drag != 0) path = path + (-drag) * flow.velocity;
+    if (stiffness != 0) {
+      path = path + (-stiffness) * flow.position;
+      path.start = constant.value;
+    }
+    return path;
+  }
+};
+
 }  // namespace pindrive

@@ -15,12 +15,6 @@ namespace pindrive::detail {
 /// stick at its stick limit, the upper one.
 enum class Bound : signed char { none, lower, upper };
 
-/// What the last event reached exactly: a bound by a sliding speed, its limit by a stick force.
-struct Reached {
-  Bound plate{Bound::none}, finger{Bound::none};
-  int limit{0};  ///< the side of that force
-};
-
 /// The pin at an instant.
 template <class T>
 struct State {
@@ -28,24 +22,6 @@ struct State {
   T skin{0};      ///< force in an elastic stick, N
   T x_size{0};    ///< the largest that the position is a sum of, m
   T roundoff{0};  ///< forces that differ by less are one, N
-};
-
-/// The force of a contact on the pin in a mode: constant − drag x' − stiffness (x − x₀), N.
-template <class T>
-struct Force {
-  Line<T> constant{};
-  T drag{0}, stiffness{0};
-  T rounding{0};  ///< how well the drag is known, N s/m
-
-  Path<T> along(const Flow<T>& flow) const {
-    Path<T> path = constant;
-    if (drag != 0) path = path + (-drag) * flow.velocity;
-    if (stiffness != 0) {
-      path = path + (-stiffness) * flow.position;
-      path.start = constant.value;
-    }
-    return path;
-  }
 };
 
 /// Whether a guard at its zero dips below it by no more than its roundoff.
@@ -70,13 +46,15 @@ struct Touch {
   const Surface contact;
   Line<T> surface{}, load{T(1), T(0)};
   Option does{};
-  ContactState before{};
+  ContactState before{};       ///< what it did until the last event, …
+  Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
   std::array<Option, 3> options{};
   int count{0};
   T friction{0};  ///< how large its friction is at its sliding speed, N
 
   static Option slip(T sense, Bound at, int branch = 0) {
-    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch, sense};
+    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
+            sense};
   }
   bool may_stick() const { return options[0].state == ContactState::stick; }
   bool sliding() const { return does.sense != 0; }
@@ -90,18 +68,14 @@ struct Touch {
   void begin(T v, bool stretched) {
     const T u = v - surface.value, size = u < 0 ? -u : u;
     if (!contact.present()) return;
-    if (!contact.rigid() && (stretched || v == 0))
-      does.state = ContactState::elastic_stick;
-    else if (u != 0)
-      does = slip(u > 0 ? T(1) : T(-1), Bound::none, contact.branch_of(size));
-    else
-      does.state = ContactState::stick;
+    const bool elastic = !contact.rigid() && (stretched || v == 0);
+    does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
+    if (!elastic && u != 0) does = slip(u / size, Bound::none, contact.branch_of(size));
   }
 
-  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. `reached` is
-  /// the end of its branch that its speed has just reached; another speed that is not inside its
-  /// branch is at the end of it.
-  void ask(Bound reached, const State<T>& s) {
+  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. A speed that has
+  /// reached no bound and is not inside its branch is at the end of it.
+  void ask(const State<T>& s) {
     before = does.state;
     count = 1;
     const T u = s.v - surface.value;
@@ -112,25 +86,25 @@ struct Touch {
                 : speed >= range.to    ? Bound::upper
                 : speed > range.from   ? Bound::none
                                        : Bound::lower;
+      reached = Bound::none;
       options[0] = does;
       if (does.at == Bound::none) {
         friction = range.at(speed) * load.value;
         return;
       }
       if (does.at == Bound::upper || does.branch > 0) {
-        options[1] = does.at == Bound::upper
-                         ? Option{before, Bound::lower, does.branch + 1, does.sense}
-                         : Option{before, Bound::upper, does.branch - 1, does.sense};
+        const bool faster = does.at == Bound::upper;
+        options[1] = {before, faster ? Bound::lower : Bound::upper, does.branch + (faster ? 1 : -1),
+                      does.sense};
         count = 2;
         // At a breakpoint it is one number, whichever branch follows.
         friction = contact.branch(std::max(does.branch, options[1].branch)).force * load.value;
         return;
       }
     }
-    friction = contact.kinetic * load.value;
+    friction = contact.branch(0).force * load.value;
     // Skin grips with the force that it has.
-    if (sliding())
-      does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
+    if (sliding()) does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
     const T across = does.sense > 0 ? T(-1) : T(1);
     does = options[0] = {does.state, Bound::none, 0, T(0)};
     if (does.state == ContactState::stick) {
@@ -148,8 +122,7 @@ struct Touch {
 
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const { return elastic() ? -s.skin : -does.sense * friction; }
-  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not come
-  /// together.
+  /// … and how fast it changes on a pin of this acceleration; its load changes where no slope is.
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
     if (!sliding()) return T(0);
@@ -172,8 +145,8 @@ struct Touch {
     return (contact.static_limit + rounded) * load.value + friction;
   }
 
-  /// Its force along a mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.
-  Force<T> force_along_mode(const State<T>& s) const {
+  /// Its force in its mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.
+  Force<T> law(const State<T>& s) const {
     if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
     if (!sliding()) return {};
     const Branch<T> range = branch();
@@ -185,8 +158,7 @@ struct Touch {
             range.rounding * load.value};
   }
 
-  /// Whether the force that it carried until now goes on without a jump, after a stick force has
-  /// come to its limit on the given side.
+  /// Whether its force goes on without a jump after a stick force has come to its limit on a side.
   bool continues(int limit) const {
     if (before == does.state) return true;
     if (contact.kinetic != contact.static_limit) return false;

@@ -124,7 +124,8 @@ class Guards {
   }
 
   std::array<Guard<T>, 6> list_;
-  int count_{0}, below_{-1}, above_{-1};  ///< the last two: of the velocity, from below and from above
+  int count_{0}, below_{-1},
+      above_{-1};  ///< the last two: of the velocity, from below and from above
 };
 
 }  // namespace pindrive::detail

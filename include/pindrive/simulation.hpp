@@ -35,7 +35,7 @@ class Simulation {
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
     plate_.begin(state_.v, false);
     finger_.begin(state_.v, given);
-    select({});
+    select();
   }
 
   template <class Sink>
@@ -47,7 +47,8 @@ class Simulation {
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
       if (!finished) {
-        select(jump(segment, tau));
+        jump(segment, tau);
+        select();
         const auto &plate = plate_.does, &finger = finger_.does;
         segment.event = {change(plate_.before, plate.state), change(finger_.before, finger.state)};
         if (!(row_ < never)) {
@@ -62,14 +63,15 @@ class Simulation {
         segment.moved = segment.flow.after(segment.end - segment.begin);
       }
       outcome_.until = segment.end;
-      if (!goes_on(sink, segment)) {
-        outcome_.status = Status::stopped;
-        return outcome_;
-      }
-      if (finished || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
-      if (standing > standstill_limit) outcome_.status = Status::standstill;
-      if (events == event_limit) outcome_.status = Status::too_many_events;
+      if (!goes_on(sink, segment))
+        outcome_.status = Status::stopped;
+      else if (finished || outcome_.cycles())
+        return outcome_;
+      else if (events == event_limit)
+        outcome_.status = Status::too_many_events;
+      else if (standing > standstill_limit)
+        outcome_.status = Status::standstill;
       if (outcome_.status != Status::ok) return outcome_;
     }
   }
@@ -81,11 +83,11 @@ class Simulation {
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
   /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
-  void select(const Reached& reached) {
+  void select() {
     using std::abs;
     const T damper = drive_.damping * state_.v;
-    plate_.ask(reached.plate, state_);
-    finger_.ask(reached.finger, state_);
+    plate_.ask(state_);
+    finger_.ask(state_);
     inertia_ = drive_.mass * plate_.surface.rate;
     pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
@@ -95,30 +97,30 @@ class Simulation {
         finger_.before == ContactState::stick && plate_.before != ContactState::stick;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
     const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
-    if (i == 1 && sticks(first, second, 0, reached.limit)) return;
-    if (j == 1 && sticks(second, first, i, reached.limit)) return;
+    if (i == 1 && sticks(first, second, 0)) return;
+    if (j == 1 && sticks(second, first, i)) return;
     for (int k = i; k < first.count; ++k)
       for (int l = j; l < second.count; ++l) {
         first.does = first.options[k];
         second.does = second.options[l];
-        if (sets_out(reached.limit)) return;
+        if (sets_out()) return;
       }
     outcome_.status = Status::inconsistent;
   }
 
   /// Whether a contact sticks while the other one does one of its options.
-  bool sticks(Side& on, Side& other, int option, int limit) {
+  bool sticks(Side& on, Side& other, int option) {
     on.does = on.options[0];
     for (; option < other.count; ++option) {
       other.does = other.options[option];
-      if (holds(on, other, limit)) return true;
+      if (holds(on, other)) return true;
     }
     return false;
   }
 
   /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
-  bool continues(int limit) const {
-    return limit != 0 && plate_.continues(limit) && finger_.continues(limit);
+  bool continues() const {
+    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_);
   }
 
   /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
@@ -136,7 +138,7 @@ class Simulation {
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other, int limit) {
+  bool holds(const Side& on, const Side& other) {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
@@ -145,7 +147,7 @@ class Simulation {
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
     const T force = demand(on, other.force(state_));
-    const int at_limit = continues(limit) ? limit : 0;
+    const int at_limit = continues() ? limit_ : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
@@ -167,24 +169,23 @@ class Simulation {
 
   /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
   /// exactly zero: it sets out along with that surface.
-  bool sets_out(int limit) {
+  bool sets_out() {
     using std::abs;
     tangential_ = false;
     guards_.clear();
     const T plate = plate_.force(state_), finger = finger_.force(state_);
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
-    const auto relative = [&](const Side& side, T own, T of_other) {  // times the mass
+    const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
       const T force = own - demand(side, of_other);
-      const bool lets_go = side.before == ContactState::stick && continues(limit);
+      const bool lets_go = side.before == ContactState::stick && continues();
       if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
       return force;
     };
-    const T of_plate = relative(plate_, plate, finger),
-            of_finger = relative(finger_, finger, plate);
+    const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
@@ -196,12 +197,12 @@ class Simulation {
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
-    return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
+    return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
   }
 
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
-    const Force<T> plate = plate_.force_along_mode(state_), finger = finger_.force_along_mode(state_);
+    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.begin = time_;
     segment.end = never;
     segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
@@ -228,7 +229,8 @@ class Simulation {
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
-      const T known = 2 * std::numeric_limits<T>::epsilon() * drive_.damping + plate.rounding + finger.rounding;
+      const T known =
+          2 * std::numeric_limits<T>::epsilon() * drive_.damping + plate.rounding + finger.rounding;
       if (abs(damping) <= known) damping -= plain(damping);
       oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
     }
@@ -259,13 +261,14 @@ class Simulation {
   }
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
-  Reached jump(Segment<T>& segment, T tau) {
+  void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
     const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
     state_.x = position.at(moved, tau);
+    state_.v = segment.flow.velocity.at(moved, tau);
     state_.x_size =
         std::max(std::max(state_.x_size, abs(state_.x)),
                  std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
@@ -277,31 +280,25 @@ class Simulation {
     plate_.load.value = plate_.load.at(tau);
     if (row) look_ahead();
     segment.end = time_;
-    Reached reached;
-    bool on_bound = false;  // which sets the velocity
+    limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
-      const Side& side = guard.plate ? plate_ : finger_;
+      Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
-        (guard.plate ? reached.plate : reached.finger) = guard.bound;
+        side.reached = guard.bound;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
         state_.v = side.surface.value + side.does.sense * speed;
-        on_bound = true;
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit;
       } else if (!row) {
-        reached.limit = guard.side;
+        limit_ = guard.side;
       }
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
-    if (on_finger || on_plate)
-      state_.v = on_finger ? T(0) : plate_.surface.value;
-    else if (!on_bound)
-      state_.v = segment.flow.velocity.at(moved, tau);
-    return reached;
+    if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
   }
 
   /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
@@ -323,6 +320,7 @@ class Simulation {
   T time_{0}, row_{never};  ///< now, and of the next row of an input, s
   State<T> state_;
   Side plate_, finger_;   ///< in the mode that was selected
+  int limit_{0};          ///< the side of a stick force that has just come to its limit
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …

@@ -108,8 +108,12 @@ struct Walk {
     stretches.push_back({s.begin, s.end, rate, at});
   }
   /// Just before a time, or from it on.
-  Instant before(double t) const { return last([&](const Stretch& s) { return s.begin < t; })(t); }
-  Instant from(double t) const { return last([&](const Stretch& s) { return s.begin <= t; })(t); }
+  Instant before(double t) const {
+    return last([&](const Stretch& s) { return s.begin < t; })(t);
+  }
+  Instant from(double t) const {
+    return last([&](const Stretch& s) { return s.begin <= t; })(t);
+  }
   /// What has grown by e has grown by this power of it between two times.
   double growth(double begin, double end) const {
     double sum = 0;
@@ -143,11 +147,12 @@ Course course(double rounding, Simulate&& simulate, Walk* walk) {
 
 Course new_course(const fuzz::Given& given, double rounding, Walk* walk = nullptr) {
   return course(
-      rounding,
-      [&](auto&& add) { return pindrive::simulate(given.drive, given.inputs, add); }, walk);
+      rounding, [&](auto&& add) { return pindrive::simulate(given.drive, given.inputs, add); },
+      walk);
 }
 
-Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding, Walk* walk = nullptr) {
+Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding,
+                  Walk* walk = nullptr) {
   const auto branches = [](const auto& rows) {
     std::vector<so::Region<double>> branches;
     branches.reserve(rows.size());
@@ -173,12 +178,13 @@ Course old_course(const fuzz::Case& c, const fuzz::Given& given, double rounding
 }
 
 enum Kind { elastic_limit, stick_limit, no_force, touch, row, growth, ending, unexplained };
-constexpr std::array<const char*, 8> names{"elastic limit", "stick limit", "no force", "touch",
-                                           "row",           "growth",      "ending",   "unexplained"};
+constexpr std::array<const char*, 8> names{
+    "elastic limit", "stick limit", "no force", "touch", "row", "growth", "ending", "unexplained"};
 
 /// The first difference of two courses.
 struct Difference {
-  double begin, other;     ///< when one motion is in another phase, and the other one comes to its next, s
+  double begin,
+      other;  ///< when one motion is in another phase, and the other one comes to its next, s
   Phase old_next, new_next;
   bool at_end;  ///< only how they end differs
 };
@@ -198,7 +204,8 @@ bool differ(const Course& old, const Course& now, double tolerance, Difference& 
   }
   // Whether a vibration that has died out has another event far beyond the duration is no difference.
   const bool ends_alike = old.end == now.end || old.end == 0 || now.end == 0;
-  found = {until, until, {old.until, {old.status, old.end}}, {now.until, {now.status, now.end}}, true};
+  found = {
+      until, until, {old.until, {old.status, old.end}}, {now.until, {now.status, now.end}}, true};
   return old.status != now.status || !ends_alike;
 }
 
@@ -209,8 +216,12 @@ class Explanation {
  public:
   Explanation(const fuzz::Case& c, const Course& old, const Course& now, const Walk& of_old,
               const Walk& of_new, const Difference& difference)
-      : c_(c), courses_{&old, &now}, walks_{&of_old, &of_new}, difference_(difference),
-        t_(difference.begin), unit_(std::sqrt(c.mass / c.stiffness)) {
+      : c_(c),
+        courses_{&old, &now},
+        walks_{&of_old, &of_new},
+        difference_(difference),
+        t_(difference.begin),
+        unit_(std::sqrt(c.mass / c.stiffness)) {
     level_.fill(fuzz::never);
     plate_ = fuzz::Given::profile(c.mouse_velocity).from(t_);
     load_ = fuzz::Given::profile(c.plate_load).from(t_).value;
@@ -249,7 +260,9 @@ class Explanation {
       if (level_[k] <= to_rounding) return static_cast<Kind>(k);
     return unexplained;
   }
-  double level(Kind kind) const { return kind == unexplained ? *std::min_element(level_.begin(), level_.end() - 1) : level_[kind]; }
+  double level(Kind kind) const {
+    return kind == unexplained ? *std::min_element(level_.begin(), level_.end() - 1) : level_[kind];
+  }
 
  private:
   void meet(Kind kind, double level) {
@@ -270,14 +283,16 @@ class Explanation {
     if (contact == 1 && before[0].state[1] == 3 && before[1].state[1] == 3 &&
         (after[0] == 3) != (after[1] == 3))
       meet(elastic_limit, std::max(std::abs(c_.limit[1] - std::abs(before[0].force[1])),
-                                   std::abs(c_.limit[1] - std::abs(before[1].force[1]))) / f_size_);
+                                   std::abs(c_.limit[1] - std::abs(before[1].force[1]))) /
+                              f_size_);
     for (int i = 0; i < 2; ++i) goes_on(contact, i, after[i]);
   }
 
   /// Whether a stick of the contact would carry its limit.
   void at_rest(int contact, const Instant& at, const std::array<Instant, 2>& before) {
     double speed = relative(contact, at, t_);
-    if (t_ > 0) speed = std::max({speed, relative(contact, before[0], t_), relative(contact, before[1], t_)});
+    if (t_ > 0)
+      speed = std::max({speed, relative(contact, before[0], t_), relative(contact, before[1], t_)});
     const double w = contact == 0 ? plate_.rate : 0.0;
     const double pull = c_.stiffness * at.x + c_.damping * at.v - c_.mass * (plate_.rate - w);
     const int other = 1 - contact;
@@ -285,8 +300,10 @@ class Explanation {
       const double rest = std::max(speed, std::abs(limit - std::abs(pull - of_other)) / f_size_);
       meet(limit <= to_rounding * f_size_ ? no_force : stick_limit, rest);
     };
-    if (at.state[0] == 0 && at.state[1] == 0) judge(0, capacity(0) + capacity(1));
-    else judge(at.force[other], capacity(contact));
+    if (at.state[0] == 0 && at.state[1] == 0)
+      judge(0, capacity(0) + capacity(1));
+    else
+      judge(at.force[other], capacity(contact));
     const double kinetic = c_.curve[other].value[0] * (other == 0 ? load_ : 1);
     if (relative(other, at, t_) > to_rounding || at.state[other] == 3) return;
     for (const double of_other : {kinetic, -kinetic}) judge(of_other, capacity(contact));
@@ -301,7 +318,8 @@ class Explanation {
     for (const auto& s : walks_[motion]->stretches) {
       if (s.end <= t_ || s.begin > t_ + 20 * unit_) continue;
       if (s.at(s.begin).state[contact] != state_after) break;
-      const double begin = std::max(s.begin, t_), end = std::min({s.end, c_.duration, begin + 20 * unit_});
+      const double begin = std::max(s.begin, t_),
+                   end = std::min({s.end, c_.duration, begin + 20 * unit_});
       for (int i = 0; i <= 64; ++i) {
         const double t = begin + (end - begin) * i / 64;
         dip = std::max(dip, -state_after * (s.at(t).v - surface(contact, t)) / v_size_);
@@ -322,13 +340,18 @@ class Explanation {
           };
           if (!event(i) || event(1 - i)) continue;
           const Instant now = walks_[1 - i]->before(at);
-          const double load = fuzz::Given::profile(c_.plate_load).from(std::nextafter(at, 0.0)).at(at - std::nextafter(at, 0.0));
+          const double load = fuzz::Given::profile(c_.plate_load)
+                                  .from(std::nextafter(at, 0.0))
+                                  .at(at - std::nextafter(at, 0.0));
           double carried = 0, limit = 0;
           for (int contact = 0; contact < 2; ++contact) {
             const bool sticks = now.state[contact] == 0;
             if (slips(now.state[contact])) meet(row, relative(contact, now, at));
             if (sticks) limit += c_.limit[contact] * (contact == 0 ? load : 1);
-            if (sticks || now.state[contact] == 3) meet(row, std::abs((contact == 0 ? load : 1) * c_.limit[contact] - std::abs(now.force[contact])) / f_size_);
+            if (sticks || now.state[contact] == 3)
+              meet(row, std::abs((contact == 0 ? load : 1) * c_.limit[contact] -
+                                 std::abs(now.force[contact])) /
+                            f_size_);
             if (sticks) carried += now.force[contact];
           }
           if (limit > 0) meet(row, std::abs(limit - std::abs(carried)) / f_size_);
@@ -345,7 +368,8 @@ class Explanation {
   void endings() {
     const std::array<int, 2> ends{courses_[0]->end, courses_[1]->end};
     std::array<Instant, 2> last;
-    const double when = std::max(walks_[0]->stretches.back().begin, walks_[1]->stretches.back().begin);
+    const double when =
+        std::max(walks_[0]->stretches.back().begin, walks_[1]->stretches.back().begin);
     for (int i = 0; i < 2; ++i) last[i] = walks_[i]->from(when);
     const auto still = [&](const Instant& at) {
       return std::max(std::abs(at.v) / v_size_, c_.mass * std::abs(at.a) / f_size_);
@@ -353,8 +377,10 @@ class Explanation {
     const auto either = [&](int one, int other) {
       return std::min(ends[0], ends[1]) == one && std::max(ends[0], ends[1]) == other;
     };
-    if (either(3, 4)) meet(ending, std::max(relative(0, last[0], when), relative(0, last[1], when)));
-    if (either(1, 2) || either(1, 3) || either(1, 6) || either(2, 6)) meet(ending, std::max(still(last[0]), still(last[1])));
+    if (either(3, 4))
+      meet(ending, std::max(relative(0, last[0], when), relative(0, last[1], when)));
+    if (either(1, 2) || either(1, 3) || either(1, 6) || either(2, 6))
+      meet(ending, std::max(still(last[0]), still(last[1])));
   }
 
   const fuzz::Case& c_;
@@ -392,9 +418,9 @@ void compare(std::uint64_t seed, long long number, Totals& totals) {
   if (kind != unexplained && std::getenv("ALL") == nullptr) return;
   static std::mutex one_line;
   const std::lock_guard<std::mutex> lock(one_line);
-  std::printf("%lld %s %.1e: old (%d %d) at %.17g, new (%d %d) at %.17g\n", number, names[kind], why.level(kind),
-              d.old_next.state[0], d.old_next.state[1], d.old_next.begin, d.new_next.state[0],
-              d.new_next.state[1], d.new_next.begin);
+  std::printf("%lld %s %.1e: old (%d %d) at %.17g, new (%d %d) at %.17g\n", number, names[kind],
+              why.level(kind), d.old_next.state[0], d.old_next.state[1], d.old_next.begin,
+              d.new_next.state[0], d.new_next.state[1], d.new_next.begin);
   std::fflush(stdout);
 }
 
