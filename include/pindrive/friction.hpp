@@ -57,7 +57,7 @@ struct Touch {
             sense};
   }
   bool may_stick() const { return options[0].state == ContactState::stick; }
-  bool sliding() const { return does.sense != 0; }
+  bool sliding() const { return slips(does.state); }
   bool stuck() const { return does.state == ContactState::stick; }
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
   Branch<T> branch() const { return contact.branch(does.branch); }
