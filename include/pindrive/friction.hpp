@@ -103,7 +103,7 @@ struct Touch {
       }
     }
     friction = contact.branch(0).force * load.value;
-    // Skin grips with the force that it has.
+    // A compliant contact sticks with the force that it has.
     if (sliding()) does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
     const T across = does.sense > 0 ? T(-1) : T(1);
     does = options[0] = {does.state, Bound::none, 0, T(0)};

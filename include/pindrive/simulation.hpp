@@ -23,7 +23,7 @@ class Simulation {
         inputs_(inputs),
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
-        half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
+        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}),
         state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
         plate_(drive.plate),
         finger_(drive.finger) {
@@ -124,11 +124,11 @@ class Simulation {
   }
 
   /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
-  T demand(const Side& on, T of_other) const {
+  T stick_force(const Side& on, T of_other) const {
     return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
   }
   /// … and how it changes; `size` is that of the terms of its slope.
-  Path<T> demand_from(T force, const Side& on, const Side& other, T& size) const {
+  Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
     using std::abs;
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
     const T rate = other.force_rate(state_.v, a);
@@ -146,12 +146,12 @@ class Simulation {
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
-    const T force = demand(on, other.force(state_));
+    const T force = stick_force(on, other.force(state_));
     const int at_limit = continues() ? limit_ : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
-    stick_force_ = demand_from(force, on, other, size);
+    stick_force_ = stick_force_from(force, on, other, size);
     guards_.clear();
     for (const int side : {1, -1}) {
       Path<T> left = Path<T>(most) + T(-side) * stick_force_;
@@ -177,9 +177,9 @@ class Simulation {
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
-      const T force = own - demand(side, of_other);
-      const bool lets_go = side.before == ContactState::stick && continues();
-      if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
+      const T force = own - stick_force(side, of_other);
+      const bool releases = side.before == ContactState::stick && continues();
+      if (!tangential_ && (abs(force) <= state_.roundoff || releases)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
@@ -192,7 +192,7 @@ class Simulation {
       if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
         return side.goes_inside(state_, apart);
       T size;
-      const Path<T> needed = demand_from(T(0), side, other, size);
+      const Path<T> needed = stick_force_from(T(0), side, other, size);
       const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
@@ -266,7 +266,7 @@ class Simulation {
     const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-    const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+    const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
     state_.x = position.at(moved, tau);
     state_.v = segment.flow.velocity.at(moved, tau);
     state_.x_size =
@@ -315,7 +315,7 @@ class Simulation {
   const Inputs<T, Input>& inputs_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
-  Transition<T> half_turn_;  ///< and how it has moved on there
+  Propagator<T> half_turn_;  ///< and how it has moved on there
 
   T time_{0}, row_{never};  ///< now, and of the next row of an input, s
   State<T> state_;

@@ -16,7 +16,7 @@ namespace pindrive {
 template <class T>
 struct ContactUse {
   T reversals{0};      ///< how often its sliding velocity came to zero
-  T time_stuck{0};     ///< or gripping, s
+  T time_stuck{0};     ///< elastically too, s
   T distance_slid{0};  ///< by the pin over the surface, m
   T dissipated{0};     ///< J
   T peak_force{0};     ///< largest friction force, N
@@ -297,7 +297,8 @@ class Measurement {
     const Segment<T>* segment = motion_.end();
     while (segment != motion_.begin() && go_on_()) {
       --segment;
-      if (segment->event.plate == Kind::none && segment->event.finger == Kind::none) continue;
+      if (segment->event.plate == Transition::none && segment->event.finger == Transition::none)
+        continue;
       const bool repeats = outcome.cycles() && !(segment->begin < outcome.cycle_begin);
       result.last_event_time = repeats ? never : segment->end;
       return;
@@ -480,10 +481,10 @@ class Measurement {
     if (force.constant()) {
       contact.dissipated += times * abs(force.start) * slid;
     } else {
-      const Path<T> level = surface;
+      const Path<T> of_surface = surface;
       contact.dissipated -=
           times *
-          product_integral(oscillator, force, segment.flow.velocity + T(-1) * level, from, to);
+          product_integral(oscillator, force, segment.flow.velocity + T(-1) * of_surface, from, to);
     }
   }
 
@@ -495,7 +496,7 @@ class Measurement {
     const T start = energy(segment.finger_force.at(oscillator, from));
     const T end = energy(segment.finger_force.at(oscillator, to));
     if (slips(segment.mode.finger)) return start - end;
-    if (!whole || segment.event.finger != Kind::slip) return T(0);
+    if (!whole || segment.event.finger != Transition::slip) return T(0);
     using std::abs;
     const T speed = abs(segment.flow.velocity.at(oscillator, to));
     return end - energy(finger.branch(finger.branch_of(speed)).at(speed));
