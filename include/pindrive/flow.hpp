@@ -318,10 +318,9 @@ struct Force {
   Path<T> along(const Flow<T>& flow) const {
     Path<T> path = constant;
     if (drag != 0) path = path + (-drag) * flow.velocity;
-    if (stiffness != 0) {
-      path = path + (-stiffness) * flow.position;
-      path.start = constant.value;
-    }
+    Path<T> moved = flow.position;
+    moved.start = T(0);
+    if (stiffness != 0) path = path + (-stiffness) * moved;
     return path;
   }
 };
