@@ -62,7 +62,7 @@ struct State {
   pindrive::simulate(point.drive, point.inputs, [&](const pindrive::Segment<double>& segment) {
     if (segment.end < point.inputs.duration) return;
     const double tau = point.inputs.duration - segment.begin;
-    const pindrive::Transition<double> moved = segment.after(tau);
+    const pindrive::Propagator<double> moved = segment.after(tau);
     last = {segment.flow.position.at(moved, tau), segment.flow.velocity.at(moved, tau)};
   });
   return last;

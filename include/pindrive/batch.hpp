@@ -20,8 +20,8 @@ struct Summary {
 template <class T>
 int events_at_end(const Segment<T>& segment) {
   const Event event = segment.event;
-  if (event.plate == event.finger) return event.plate == Kind::none ? 0 : 1;
-  return (event.plate == Kind::none ? 0 : 1) + (event.finger == Kind::none ? 0 : 1);
+  if (event.plate == event.finger) return event.plate == Transition::none ? 0 : 1;
+  return (event.plate == Transition::none ? 0 : 1) + (event.finger == Transition::none ? 0 : 1);
 }
 
 /// Follows one pin and measures its motion. `segments` is a container that the caller lends for the

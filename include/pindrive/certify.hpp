@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "pindrive/breakaway.hpp"
-#include "pindrive/guard.hpp"
 #include "pindrive/motion.hpp"
+#include "pindrive/positivity.hpp"
 #include "pindrive/quadrature.hpp"
 
 namespace pindrive {
@@ -21,13 +21,14 @@ namespace pindrive {
 /// energy in the motion.
 template <class T>
 struct Certificate {
-  T motion_law{0};    ///< m x'' + b x' + k x = R_plate + R_finger + m v_p'
-  T kinematics{0};    ///< x' and x'' are the derivatives of x; gripping skin stretches with the pin
+  T motion_law{0};  ///< m x'' + b x' + k x = R_plate + R_finger + m v_p'
+  T kinematics{
+      0};  ///< x' and x'' are the derivatives of x; an elastic stick stretches with the pin
   T friction_law{0};  ///< a sliding contact carries its kinetic friction
   T force_bound{0};   ///< a stuck contact carries no more than its static friction
-  T sliding_sign{0};  ///< friction opposes the sliding; no level was passed unseen
+  T sliding_sign{0};  ///< friction opposes the sliding; no guard came to zero unseen
   T sticking{0};      ///< a stuck contact does not slide
-  T continuity{0};    ///< x and x' do not jump, nor the skin but where its grip breaks
+  T continuity{0};    ///< x and x' do not jump, nor the skin but where it breaks away
   T transitions{0};   ///< a contact slips from rest only where it cannot stick
   T energy{0};        ///< what goes in, is stored and is dissipated adds up
   T dissipation{0};   ///< friction and damper take energy, never give
@@ -78,7 +79,7 @@ class Certifier {
 
   /// A guard, and the law that it breaks where it is negative.
   struct Watch {
-    Guard<T> guard;
+    PositivityBound<T> guard;
     T Certificate<T>::* law;
     T scale;
   };
@@ -97,7 +98,7 @@ class Certifier {
   /// The motion at an instant.
   struct State {
     T tau;
-    Transition<T> moved;
+    Propagator<T> moved;
     T x, v, a, plate_force, finger_force;
   };
 
@@ -120,30 +121,30 @@ class Certifier {
     const auto watch = [&](const Path<T>& path, T Certificate<T>::* law, T scale) {
       stage.watches[stage.count++] = {{flow.oscillator, path}, law, scale};
     };
-    const auto sliding = [&](const Contact<T>& contact, ContactState slide, int index,
-                             Line<T> surface) {
-      if (!slips(slide)) return;
+    const auto slipping = [&](const Contact<T>& contact, ContactState does, int index,
+                              Line<T> surface) {
+      if (!slips(does)) return;
       const Branch<T> branch =
           contact.branch(std::clamp(index, 0, std::max(contact.branches - 1, 0)));
-      const Path<T> level = surface;
-      Path<T> above = T(sign(slide)) * (flow.velocity + T(-1) * level), below = T(-1) * above;
+      const Path<T> of_surface = surface;
+      Path<T> above = T(sign(does)) * (flow.velocity + T(-1) * of_surface), below = T(-1) * above;
       above.start -= branch.from;
       below.start += branch.to;
       watch(above, &Certificate<T>::sliding_sign, v_scale_);
       if (branch.to < never) watch(below, &Certificate<T>::sliding_sign, v_scale_);
     };
-    const auto holding = [&](const Path<T>& force, const Path<T>& limit) {
+    const auto sticking = [&](const Path<T>& force, const Path<T>& limit) {
       watch(limit + force, &Certificate<T>::force_bound, force_scale_);
       watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
     };
-    sliding(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
-    sliding(drive_.finger, mode.finger, mode.finger_branch, {});
+    slipping(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
+    slipping(drive_.finger, mode.finger, mode.finger_branch, {});
     if (mode.both_stuck()) {
-      holding(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
+      sticking(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
     } else {
-      if (mode.plate == ContactState::stick) holding(segment.plate_force, at_plate);
+      if (mode.plate == ContactState::stick) sticking(segment.plate_force, at_plate);
       if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
-        holding(segment.finger_force, at_finger);
+        sticking(segment.finger_force, at_finger);
     }
     return stage;
   }
@@ -151,7 +152,7 @@ class Certifier {
   State state(const Stage& stage, T tau) const {
     const Segment<T>& segment = stage.segment;
     const Flow<T>& flow = segment.flow;
-    const auto moved = stage.waves && tau > 0 ? flow.oscillator.after(tau) : Transition<T>{};
+    const auto moved = stage.waves && tau > 0 ? flow.oscillator.after(tau) : Propagator<T>{};
     return {tau,
             moved,
             flow.position.at(moved, tau),
@@ -252,7 +253,7 @@ class Certifier {
 
   void panel(const Stage& stage, const State& from, const State& to, bool brief, Errors& errors) {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
-    std::array<typename Guard<T>::Flatness, 4> flatness;
+    std::array<typename PositivityBound<T>::Flatness, 4> flatness;
     for (int i = 0; i < stage.count; ++i)
       flatness[i] =
           stage.watches[i].guard.flatness(oscillator, from.moved, from.tau, to.tau - from.tau);
@@ -312,10 +313,10 @@ class Certifier {
       raise(errors.velocity, stage.finger_rate.at(s.moved, s.tau) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
                           drive_.stiffness * s.x - s.plate_force - s.finger_force);
-    const auto contact = [&](const Contact<T>& law, ContactState slide, T u, T force, T load) {
-      if (slips(slide))
-        raise(errors.friction, force + sign(slide) * load * kinetic(law, abs(u)));
-      else if (slide == ContactState::stick)
+    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
+      if (slips(does))
+        raise(errors.friction, force + sign(does) * load * kinetic(law, abs(u)));
+      else if (does == ContactState::stick)
         raise(errors.sticking, u);
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
@@ -354,7 +355,7 @@ class Certifier {
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
-    const bool skin_slips = soft() && event.finger == Kind::slip;
+    const bool skin_slips = soft() && event.finger == Transition::slip;
     if (soft() && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
     if (skin_slips) {
@@ -371,9 +372,9 @@ class Certifier {
     const Segment<T>& segment = stage.segment;
     if (!brief_) instant_ = segment.begin;
     brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_;
-    const auto began = [&](ContactState slide, ContactState& was, T& since) {
-      if (slide != was) since = segment.begin;
-      was = slide;
+    const auto began = [&](ContactState does, ContactState& was, T& since) {
+      if (does != was) since = segment.begin;
+      was = does;
       return since >= instant_;
     };
     const bool plate = began(segment.mode.plate, plate_, plate_since_);

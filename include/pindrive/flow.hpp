@@ -7,7 +7,7 @@
 /// where y and y' are value and slope of the free oscillation at τ = 0, p is the slope of the line,
 /// and Φ, Ψ are the responses of the free oscillator to a unit displacement and a unit velocity.
 /// Each derivative of x has the same form. Written as a change from the start, a quantity that is
-/// set exactly at an event (a velocity at its level) stays exact there.
+/// set exactly at an event (a velocity at that of a surface) stays exact there.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace pindrive {
 
 /// How the free oscillator has moved on after a time τ.
 template <class T>
-struct Transition {
+struct Propagator {
   T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
   T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
 };
@@ -83,7 +83,7 @@ class Oscillator {
   T bend(T value, T slope) const { return 2 * alpha_ * slope - omega0_squared_ * value; }
 
   /// Φ(τ) − 1 and Ψ(τ) for finite τ ≥ 0.
-  Transition<T> after(T tau) const {
+  Propagator<T> after(T tau) const {
     using std::abs;
     using std::cos;
     using std::expm1;
@@ -104,7 +104,7 @@ class Oscillator {
   }
 
   /// The same for half a period: where a velocity has come from zero to zero again.
-  Transition<T> half_turn() const {
+  Propagator<T> half_turn() const {
     using std::exp;
     return {-1 - exp(alpha_ * half_period()), T(0)};
   }
@@ -137,7 +137,7 @@ class Oscillator {
   static constexpr T extinct = T(700);  ///< e^−700 is about the smallest double
 
   /// The power series of Ψ and of Φ − 1 = −ω₀² ∫Ψ: their first moments without cancellation.
-  Transition<T> soon_after(T tau) const {
+  Propagator<T> soon_after(T tau) const {
     const T damp = 2 * alpha_ * tau, pull = omega0_squared_ * tau * tau;
     T before{0}, term = tau;
     T gain = tau, integral = tau * tau / 2;
@@ -201,7 +201,7 @@ class Oscillator {
     return {value, value - 1};
   }
 
-  Transition<T> damped(T tau, T cosine_change, T sine) const {
+  Propagator<T> damped(T tau, T cosine_change, T sine) const {
     const auto [decay, decay_change] = exponential(alpha_ * tau);
     const T gain = decay * sine;
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
@@ -220,13 +220,13 @@ struct Path {
   T curvature{0};  ///< of a pin that is carried by an accelerating plate
 
   /// What it has changed by since τ = 0.
-  T change(const Transition<T>& moved, T tau) const {
+  T change(const Propagator<T>& moved, T tau) const {
     return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
   }
   T change(const Oscillator<T>& oscillator, T tau) const {
-    return oscillates() ? change(oscillator.after(tau), tau) : change(Transition<T>{}, tau);
+    return oscillates() ? change(oscillator.after(tau), tau) : change(Propagator<T>{}, tau);
   }
-  T at(const Transition<T>& moved, T tau) const { return start + change(moved, tau); }
+  T at(const Propagator<T>& moved, T tau) const { return start + change(moved, tau); }
   T at(const Oscillator<T>& oscillator, T tau) const { return start + change(oscillator, tau); }
 
   Path derivative(const Oscillator<T>& oscillator) const {
@@ -236,7 +236,7 @@ struct Path {
     T first, second, third;
   };
   /// Its first three derivatives at τ.
-  Rates rates(const Oscillator<T>& oscillator, const Transition<T>& moved, T tau) const {
+  Rates rates(const Oscillator<T>& oscillator, const Propagator<T>& moved, T tau) const {
     const T wave = value + value * moved.decline + slope * moved.gain;
     const T rate = slope + slope * moved.decline + oscillator.bend(value, slope) * moved.gain;
     const T bend = oscillator.bend(wave, rate);
@@ -244,7 +244,7 @@ struct Path {
   }
   /// The same path with its time counted from τ on.
   Path from(const Oscillator<T>& oscillator, T tau) const {
-    const Transition<T> moved = oscillator.after(tau);
+    const Propagator<T> moved = oscillator.after(tau);
     const T wave = value + value * moved.decline + slope * moved.gain;
     const T bend = oscillator.bend(value, slope);
     return {at(moved, tau), wave, slope + slope * moved.decline + bend * moved.gain,
@@ -296,8 +296,8 @@ struct Flow {
   Path<T> acceleration() const { return velocity.derivative(oscillator); }
 
   /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
-  Transition<T> after(T tau) const {
-    return velocity.oscillates() ? oscillator.after(tau) : Transition<T>{};
+  Propagator<T> after(T tau) const {
+    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>{};
   }
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.
@@ -305,6 +305,23 @@ struct Flow {
     using std::hypot;
     const T y = position.value;
     return hypot(y, (position.slope - oscillator.alpha() * y) / oscillator.omega());
+  }
+};
+
+/// A force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
+template <class T>
+struct Force {
+  Line<T> constant{};
+  T drag{0}, stiffness{0};
+  T rounding{0};  ///< how well the drag is known, N s/m
+
+  Path<T> along(const Flow<T>& flow) const {
+    Path<T> path = constant;
+    if (drag != 0) path = path + (-drag) * flow.velocity;
+    Path<T> moved = flow.position;
+    moved.start = T(0);
+    if (stiffness != 0) path = path + (-stiffness) * moved;
+    return path;
   }
 };
 

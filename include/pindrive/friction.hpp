@@ -2,6 +2,7 @@
 /// (docs/theory.md, section 4).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,12 +14,6 @@ namespace pindrive::detail {
 /// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
 /// stick at its stick limit, the upper one.
 enum class Bound : signed char { none, lower, upper };
-
-/// What the last event reached exactly: a bound by a sliding speed, its limit by a stick force.
-struct Reached {
-  Bound plate{Bound::none}, finger{Bound::none};
-  int limit{0};  ///< the side of that force
-};
 
 /// The pin at an instant.
 template <class T>
@@ -43,84 +38,97 @@ struct Touch {
     ContactState state{ContactState::absent};
     Bound at{Bound::none};
     int branch{0};
+    T sense{0};  ///< in which it slips: 1, −1 or 0
   };
 
+  explicit Touch(const Surface& given) : contact(given) {}
+
   const Surface contact;
-  Line<T> surface, load;
-  ContactState before{};
+  Line<T> surface{}, load{T(1), T(0)};
+  Option does{};
+  ContactState before{};       ///< what it did until the last event, …
+  Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
   std::array<Option, 3> options{};
-  int count{0}, chosen{0};
+  int count{0};
+  T friction{0};  ///< how large its friction is at its sliding speed, N
 
-  const Option& does() const { return options[chosen]; }
+  static Option slip(T sense, Bound at, int branch = 0) {
+    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
+            sense};
+  }
   bool may_stick() const { return options[0].state == ContactState::stick; }
-  bool sliding() const { return slips(does().state); }
-  bool stuck() const { return does().state == ContactState::stick; }
-  bool elastic() const { return !Surface::plain && does().state == ContactState::elastic_stick; }
-  Branch<T> branch() const { return contact.branch(does().branch); }
+  bool sliding() const { return slips(does.state); }
+  bool stuck() const { return does.state == ContactState::stick; }
+  bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
+  Branch<T> branch() const { return contact.branch(does.branch); }
   /// Whether nothing but its relative acceleration tells where it goes.
-  bool rests(T v) const { return does().at != Bound::none && (!elastic() || v == 0); }
+  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0); }
 
-  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. `reached` is
-  /// the end of its branch that its speed has just reached; another speed that is not inside its
-  /// branch is at the end of it.
-  void ask(ContactState state, int branch, Bound reached, const State<T>& s) {
-    before = state;
+  /// What it does at the start: it slips unless its surface has the velocity of the pin.
+  void begin(T v, bool stretched) {
+    const T u = v - surface.value, size = u < 0 ? -u : u;
+    if (!contact.present()) return;
+    const bool elastic = !contact.rigid() && (stretched || v == 0);
+    does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
+    if (!elastic && u != 0) does = slip(u / size, Bound::none, contact.branch_of(size));
+  }
+
+  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. A speed that has
+  /// reached no bound and is not inside its branch is at the end of it.
+  void ask(const State<T>& s) {
+    before = does.state;
     count = 1;
-    chosen = 0;
     const T u = s.v - surface.value;
-    const auto across = static_cast<ContactState>(state == ContactState::slip_forward ? -1 : 1);
-    if (slips(state)) {
-      const Branch<T> range = contact.branch(branch);
-      const T speed = along(state, u);
-      const Bound at = reached != Bound::none ? reached
-                       : speed >= range.to    ? Bound::upper
-                       : speed > range.from   ? Bound::none
-                                              : Bound::lower;
-      options[0] = {state, at, branch};
-      if (at == Bound::none) return;
-      if (at == Bound::upper || branch > 0) {
-        options[1] = at == Bound::upper ? Option{state, Bound::lower, branch + 1}
-                                        : Option{state, Bound::upper, branch - 1};
-        count = 2;
+    if (sliding()) {
+      const Branch<T> range = branch();
+      const T speed = does.sense * u;
+      does.at = reached != Bound::none ? reached
+                : speed >= range.to    ? Bound::upper
+                : speed > range.from   ? Bound::none
+                                       : Bound::lower;
+      reached = Bound::none;
+      options[0] = does;
+      if (does.at == Bound::none) {
+        friction = range.at(speed) * load.value;
         return;
       }
-      // Skin grips with the force that it has.
-      state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
+      if (does.at == Bound::upper || does.branch > 0) {
+        const bool faster = does.at == Bound::upper;
+        options[1] = {before, faster ? Bound::lower : Bound::upper, does.branch + (faster ? 1 : -1),
+                      does.sense};
+        count = 2;
+        // At a breakpoint it is one number, whichever branch follows.
+        friction = contact.branch(std::max(does.branch, options[1].branch)).force * load.value;
+        return;
+      }
     }
-    options[0] = {state, Bound::none, 0};
-    if (state == ContactState::stick) {
-      options[1] = {across, Bound::lower, 0};
-      options[2] = {opposite(across), Bound::lower, 0};
+    friction = contact.branch(0).force * load.value;
+    // A compliant contact sticks with the force that it has.
+    if (sliding()) does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
+    const T across = does.sense > 0 ? T(-1) : T(1);
+    does = options[0] = {does.state, Bound::none, 0, T(0)};
+    if (does.state == ContactState::stick) {
+      options[1] = slip(across, Bound::lower);
+      options[2] = slip(-across, Bound::lower);
       count = 3;
-    } else if (!Surface::plain && state == ContactState::elastic_stick) {
-      const int side = s.skin > 0 ? 1 : -1;
+    } else if (elastic()) {
+      const T side = s.skin > 0 ? T(1) : T(-1);
       if (side * s.skin < contact.static_limit || side * u < 0) return;
-      options[0].at = Bound::upper;
-      options[1] = {static_cast<ContactState>(side), u == 0 ? Bound::lower : Bound::none, 0};
+      does.at = options[0].at = Bound::upper;
+      options[1] = slip(side, u == 0 ? Bound::lower : Bound::none);
       count = 2;
     }
   }
 
-  /// Kinetic friction at its sliding speed. Where that is at the end of a branch it is one number,
-  /// whichever branch follows.
-  T kinetic(T v) const {
-    if (contact.branches == 0) return contact.kinetic;
-    if (does().at == Bound::none) return branch().at(along(does().state, v - surface.value));
-    return contact.branch(does().branch + (does().at == Bound::upper ? 1 : 0)).force;
-  }
   /// Its force on the pin, unless it sticks, N, …
-  T force(const State<T>& s) const {
-    if (elastic()) return -s.skin;
-    return sliding() ? -along(does().state, kinetic(s.v)) * load.value : T(0);
-  }
-  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not come
-  /// together.
+  T force(const State<T>& s) const { return elastic() ? -s.skin : -does.sense * friction; }
+  /// … and how fast it changes on a pin of this acceleration; its load changes where no slope is.
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
     if (!sliding()) return T(0);
     const T slope = branch().slope;
     return slope != 0 ? -slope * load.value * (acceleration - surface.rate)
-                      : -along(does().state, branch().force) * load.rate;
+                      : -does.sense * branch().force * load.rate;
   }
   /// How large the terms of that rate are: its slope is known to rounding only.
   T force_rate_size(T rate, T acceleration) const {
@@ -134,61 +142,38 @@ struct Touch {
     using std::abs;
     if (contact.branches == 0 || !sliding()) return contact.static_limit * load.value;
     const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
-    return (contact.static_limit + abs(kinetic(v)) + rounded) * load.value;
+    return (contact.static_limit + rounded) * load.value + friction;
   }
 
-  /// R = −s (F + c (s u − from)) λ with u = x' − surface: without c x', N, and c.
-  Line<T> constant_force(T& drag) const {
-    const Branch<T> range = branch();
-    const T force = -along(does().state, range.force - range.slope * range.from);
-    drag = T(0);
-    if (range.slope == 0) return {force * load.value, force * load.rate};
-    drag = range.slope * load.value;
-    return {force * load.value + drag * surface.value, force * load.rate + drag * surface.rate};
-  }
-  /// Adds its force to m x'' + c x' + κ (x − x₀) = pull, and what is rounding of c to `known`.
-  void add_to(T& damping, T& known, T& stiffness, Line<T>& pull, const State<T>& s) const {
-    if (elastic()) {
-      stiffness += contact.stiffness;
-      pull.value -= s.skin;
-    } else if (sliding()) {
-      T drag;
-      const Line<T> force = constant_force(drag);
-      pull = {pull.value + force.value, pull.rate + force.rate};
-      damping += drag;
-      known += branch().rounding * load.value;
-    }
-  }
-  /// Its force along a flow, unless it sticks, N.
-  Path<T> force_along(const Flow<T>& flow, const State<T>& s) const {
-    if (elastic()) {
-      Path<T> force = -contact.stiffness * flow.position;
-      force.start = -s.skin;
-      return force;
-    }
+  /// Its force in its mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.
+  Force<T> law(const State<T>& s) const {
+    if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
     if (!sliding()) return {};
-    T drag;
-    const Path<T> force = constant_force(drag);
-    return drag != 0 ? force + (-drag) * flow.velocity : force;
+    const Branch<T> range = branch();
+    const T force = -does.sense * (range.force - range.slope * range.from);
+    const T drag = range.slope * load.value;
+    return {{force * load.value + drag * surface.value, force * load.rate + drag * surface.rate},
+            drag,
+            T(0),
+            range.rounding * load.value};
   }
 
-  /// Whether the force that it carried until now goes on without a jump, after a stick force has
-  /// come to its limit on the given side.
+  /// Whether its force goes on without a jump after a stick force has come to its limit on a side.
   bool continues(int limit) const {
-    if (before == does().state) return true;
+    if (before == does.state) return true;
     if (contact.kinetic != contact.static_limit) return false;
-    return before == ContactState::stick ? sign(does().state) == -limit
+    return before == ContactState::stick ? does.sense == -limit
                                          : before == ContactState::elastic_stick;
   }
 
   /// Whether what is at an end of its range goes, or stays, inside, by the first derivative of its
   /// relative velocity that is not zero. Without any it stays; but it would not slip.
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
-    if (does().at == Bound::none) return true;
+    if (does.at == Bound::none) return true;
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
-      const T inwards = along(does().state, does().at == Bound::lower ? decides : -decides);
-      return inwards > 0 || (inwards == 0 && (does().at == Bound::upper || does().branch > 0));
+      const T inwards = does.sense * (does.at == Bound::lower ? decides : -decides);
+      return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
     const T inside = s.skin > 0 ? T(-1) : T(1);
     if (s.v == 0) return inside * decides >= 0;

@@ -27,7 +27,10 @@ struct Guard {
 template <class T>
 class Guards {
  public:
-  void clear() { count_ = 0; }
+  void clear() {
+    count_ = 0;
+    below_ = above_ = -1;
+  }
 
   /// Adds a guard that may come to zero: it oscillates or falls.
   void add(const Path<T>& path, Bound bound, bool plate, int side = 0) {
@@ -44,14 +47,14 @@ class Guards {
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();
     const Path<T>& v = segment.flow.velocity;
-    const T to = along(side.does().state, T(1)), speed = to * (v.start - side.surface.value);
-    const Path<T> above{side.does().at == Bound::lower ? T(0) : speed - range.from, to * v.value,
+    const T to = side.does.sense, speed = to * (v.start - side.surface.value);
+    const Path<T> above{side.does.at == Bound::lower ? T(0) : speed - range.from, to * v.value,
                         to * v.slope, to * (v.drift - side.surface.rate)};
-    add_nearer(above, Bound::lower, plate, v.start);
+    add_nearer(above, Bound::lower, plate, to > 0, v.start);
     if (!(range.to < std::numeric_limits<T>::infinity())) return;
     Path<T> below = T(-1) * above;
-    below.start = side.does().at == Bound::upper ? T(0) : range.to - speed;
-    add_nearer(below, Bound::upper, plate, v.start);
+    below.start = side.does.at == Bound::upper ? T(0) : range.to - speed;
+    add_nearer(below, Bound::upper, plate, to < 0, v.start);
   }
 
   const Guard<T>* begin() const { return list_.data(); }
@@ -100,28 +103,29 @@ class Guards {
   }
 
  private:
-  /// Adds the distance of a speed from a bound, of two that run at a constant distance beyond the rounding
-  /// of a velocity v only the one below: it comes to zero before the other.
-  void add_nearer(const Path<T>& path, Bound bound, bool plate, T v) {
+  /// Adds the distance of a speed from a bound: one that falls as the velocity v does (or rises). Of two that
+  /// run at a constant distance beyond the rounding of v only the one below: it comes to zero first.
+  void add_nearer(const Path<T>& path, Bound bound, bool plate, bool falls, T v) {
     using std::abs;
-    for (int i = 0; i < count_; ++i) {
-      const Path<T>& q = list_[i].path;
-      if (list_[i].bound == Bound::none || q.value != path.value || q.slope != path.slope ||
-          q.drift != path.drift)
-        continue;
-      const T apart = path.start - q.start;
-      const T one = rounding<T> * (std::max(path.start, q.start) + abs(v));
+    int& nearest = falls ? below_ : above_;
+    if (nearest >= 0 && list_[nearest].path.drift == path.drift) {
+      Guard<T>& other = list_[nearest];
+      const T apart = path.start - other.path.start;
+      const T one = rounding<T> * (std::max(path.start, other.path.start) + abs(v));
       if (apart > one) return;
       if (apart < -one) {
-        list_[i] = {path, bound, plate, 0};
+        other = {path, bound, plate, 0};
         return;
       }
     }
+    const int index = count_;
     add(path, bound, plate);
+    if (count_ > index) nearest = index;
   }
 
   std::array<Guard<T>, 6> list_;
-  int count_{0};
+  int count_{0}, below_{-1},
+      above_{-1};  ///< the last two: of the velocity, from below and from above
 };
 
 }  // namespace pindrive::detail

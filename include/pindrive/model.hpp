@@ -197,21 +197,23 @@ struct Mode {
 };
 
 /// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
-/// sliding reverses. Nothing where only an input or a friction curve has its next row.
-enum class Kind : signed char { none, stick, slip, cross };
+/// sliding reverses. Nothing where only an input has its next row or a friction curve its breakpoint.
+enum class Transition : signed char { none, stick, slip, cross };
 
 struct Event {
-  Kind plate{Kind::none}, finger{Kind::none};
+  Transition plate{Transition::none}, finger{Transition::none};
 };
 
-inline Kind change(ContactState before, ContactState after) {
-  if (before == after) return Kind::none;
-  if (slips(before) == slips(after)) return Kind::cross;
-  return slips(before) ? Kind::stick : Kind::slip;
+inline Transition change(ContactState before, ContactState after) {
+  if (before == after) return Transition::none;
+  if (slips(before) == slips(after)) return Transition::cross;
+  return slips(before) ? Transition::stick : Transition::slip;
 }
 
 /// Whether the sliding velocity came to zero.
-inline bool stops(Kind kind) { return kind == Kind::stick || kind == Kind::cross; }
+inline bool stops(Transition transition) {
+  return transition == Transition::stick || transition == Transition::cross;
+}
 
 /// One mode from begin to end (infinite for one that lasts for ever), with its friction.
 template <class T>
@@ -220,13 +222,13 @@ struct Segment {
   Mode mode;
   Event event;  ///< at the end
   Flow<T> flow;
-  Transition<T> moved;                ///< of its oscillation, from begin to a finite end
+  Propagator<T> moved;                ///< of its oscillation, from begin to a finite end
   Line<T> plate_velocity;             ///< m/s
   Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
                                       ///< is what they carry together
 
   /// How its oscillation has moved on after τ.
-  Transition<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
+  Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }
 };
 
 /// How a motion ends.

@@ -31,7 +31,7 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
 }
 
 /// Finds the state to which a motion between constant inputs comes back: it looks at releases from
-/// the plate, and where the pin slides faster than a row of the plate's curve.
+/// the plate, and where the pin slides past a breakpoint of the plate's curve.
 template <class T>
 class Return {
  public:
@@ -42,16 +42,16 @@ class Return {
             Outcome<T>& outcome) {
     const Mode before = ended.mode;
     const bool release = before.plate == ContactState::stick && after.plate != ContactState::stick;
-    if (release) hold_begin_ = ended.begin;
+    if (release) stick_begin_ = ended.begin;
     if (!release && after.plate_branch <= before.plate_branch) return;
-    const Visit now{ended.end, hold_begin_, state, after, release};
+    const Visit now{ended.end, stick_begin_, state, after, release};
     if (visits_ > 0 && same(drive, now)) {
       outcome.end = release || kept_.released ? End::stick_slip : End::limit_cycle;
       outcome.period = now.time - kept_.time;
       outcome.cycle_begin = outcome.steady_since = kept_.time;
       // It began where the first carried phase joined the one that it repeats.
       if (release && after.finger != ContactState::elastic_stick)
-        outcome.steady_since = std::max(kept_.hold_begin, kept_.time - (now.time - hold_begin_));
+        outcome.steady_since = std::max(kept_.stick_begin, kept_.time - (now.time - stick_begin_));
     }
     kept_.released = kept_.released || release;
     if (visits_ == next_) {
@@ -63,7 +63,7 @@ class Return {
 
  private:
   struct Visit {
-    T time, hold_begin;  ///< when, and when the plate last took the pin along, s
+    T time, stick_begin;  ///< when, and when the plate last took the pin along, s
     State<T> state;
     Mode mode;
     bool released;  ///< by the plate; kept: since then, too
@@ -84,7 +84,7 @@ class Return {
            alike(kept_.state.skin, now.state.skin, drive.finger.static_limit);
   }
 
-  T hold_begin_{0};
+  T stick_begin_{0};
   Visit kept_{};
   long long visits_{0}, next_{0};  ///< so far, and when the one that is kept is renewed
 };

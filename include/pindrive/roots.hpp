@@ -31,7 +31,7 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   T tau = guess > low && guess < high ? guess : low + (high - low) / 2;
   T step = high - low, step_before = step;
   for (;;) {
-    const Transition<T> moved = oscillator.after(tau);
+    const Propagator<T> moved = oscillator.after(tau);
     const T value = path.at(moved, tau);
     (side * value > 0 ? low : high) = tau;
     const auto rates = path.rates(oscillator, moved, tau);

@@ -23,38 +23,38 @@ class Simulation {
         inputs_(inputs),
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
-        half_turn_(plain_.oscillates() ? plain_.half_turn() : Transition<T>{}),
+        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}),
         state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
-        plate_{drive.plate, {}, {}},
-        finger_{drive.finger, {}, {T(1), T(0)}} {
+        plate_(drive.plate),
+        finger_(drive.finger) {
     using std::abs;
     using std::isnan;
     state_.x_size = abs(state_.x);
     look_ahead();
-    const T v = state_.v, u = v - plate_.surface.value;
-    Mode mode{touch(drive.plate, u), touch(drive.finger, v)};
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
-    if (drive.finger.present() && !drive.finger.rigid() && (given || v == 0))
-      mode.finger = ContactState::elastic_stick;
-    if (slips(mode.plate)) mode.plate_branch = drive.plate.branch_of(along(mode.plate, u));
-    if (slips(mode.finger)) mode.finger_branch = drive.finger.branch_of(along(mode.finger, v));
-    select(mode, {});
+    plate_.begin(state_.v, false);
+    finger_.begin(state_.v, given);
+    select();
   }
 
   template <class Sink>
   Outcome<T> run(Sink&& sink) {
     int standing = 0;
+    Segment<T> segment;
     for (long long events = 1;; ++events) {
-      Segment<T> segment = begin();
+      begin(segment);
       const T tau = earliest(segment.flow);
       const bool finished = !(time_ + tau < inputs_.duration);
       if (!finished) {
-        const Mode before = segment.mode;
-        select(before, jump(segment, tau));
-        const Mode after = mode();
-        segment.event = {change(before.plate, after.plate), change(before.finger, after.finger)};
-        if (!(row_ < never)) returns_.meet(drive_, segment, after, state_, outcome_);
+        jump(segment, tau);
+        select();
+        const auto &plate = plate_.does, &finger = finger_.does;
+        segment.event = {change(plate_.before, plate.state), change(finger_.before, finger.state)};
+        if (!(row_ < never)) {
+          const Mode after{plate.state, finger.state, plate.branch, finger.branch};
+          returns_.meet(drive_, segment, after, state_, outcome_);
+        }
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
@@ -63,14 +63,15 @@ class Simulation {
         segment.moved = segment.flow.after(segment.end - segment.begin);
       }
       outcome_.until = segment.end;
-      if (!goes_on(sink, segment)) {
-        outcome_.status = Status::stopped;
-        return outcome_;
-      }
-      if (finished || outcome_.cycles()) return outcome_;
       standing = segment.end > segment.begin ? 0 : standing + 1;
-      if (standing > standstill_limit) outcome_.status = Status::standstill;
-      if (events == event_limit) outcome_.status = Status::too_many_events;
+      if (!goes_on(sink, segment))
+        outcome_.status = Status::stopped;
+      else if (finished || outcome_.cycles())
+        return outcome_;
+      else if (events == event_limit)
+        outcome_.status = Status::too_many_events;
+      else if (standing > standstill_limit)
+        outcome_.status = Status::standstill;
       if (outcome_.status != Status::ok) return outcome_;
     }
   }
@@ -79,58 +80,55 @@ class Simulation {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Side = Touch<T, Surface>;
 
-  static ContactState touch(const Surface& contact, T u) {
-    return contact.present() ? static_cast<ContactState>((u > 0) - (u < 0)) : ContactState::absent;
-  }
-
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
   /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
-  void select(const Mode& before, const Reached& reached) {
+  void select() {
     using std::abs;
     const T damper = drive_.damping * state_.v;
-    plate_.ask(before.plate, before.plate_branch, reached.plate, state_);
-    finger_.ask(before.finger, before.finger_branch, reached.finger, state_);
+    plate_.ask(state_);
+    finger_.ask(state_);
     inertia_ = drive_.mass * plate_.surface.rate;
     pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
         rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
                        plate_.size(state_.v) + finger_.size(state_.v));
-    const bool finger_first = before.finger == ContactState::stick && before.plate != before.finger;
+    const bool finger_first =
+        finger_.before == ContactState::stick && plate_.before != ContactState::stick;
     Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
     const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
-    if (i == 1 && sticks(first, second, 0, reached.limit)) return;
-    if (j == 1 && sticks(second, first, i, reached.limit)) return;
+    if (i == 1 && sticks(first, second, 0)) return;
+    if (j == 1 && sticks(second, first, i)) return;
     for (int k = i; k < first.count; ++k)
       for (int l = j; l < second.count; ++l) {
-        first.chosen = k;
-        second.chosen = l;
-        if (sets_out(reached.limit)) return;
+        first.does = first.options[k];
+        second.does = second.options[l];
+        if (sets_out()) return;
       }
     outcome_.status = Status::inconsistent;
   }
 
   /// Whether a contact sticks while the other one does one of its options.
-  bool sticks(Side& on, Side& other, int option, int limit) {
-    on.chosen = 0;
+  bool sticks(Side& on, Side& other, int option) {
+    on.does = on.options[0];
     for (; option < other.count; ++option) {
-      other.chosen = option;
-      if (holds(on, other, limit)) return true;
+      other.does = other.options[option];
+      if (holds(on, other)) return true;
     }
     return false;
   }
 
   /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
-  bool continues(int limit) const {
-    return limit != 0 && plate_.continues(limit) && finger_.continues(limit);
+  bool continues() const {
+    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_);
   }
 
   /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
-  T demand(const Side& on, T of_other) const {
+  T stick_force(const Side& on, T of_other) const {
     return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
   }
   /// … and how it changes; `size` is that of the terms of its slope.
-  Path<T> demand_from(T force, const Side& on, const Side& other, T& size) const {
+  Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
     using std::abs;
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
     const T rate = other.force_rate(state_.v, a);
@@ -140,7 +138,7 @@ class Simulation {
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other, int limit) {
+  bool holds(const Side& on, const Side& other) {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
@@ -148,12 +146,12 @@ class Simulation {
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
-    const T force = demand(on, other.force(state_));
-    const int at_limit = continues(limit) ? limit : 0;
+    const T force = stick_force(on, other.force(state_));
+    const int at_limit = continues() ? limit_ : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
-    stick_force_ = demand_from(force, on, other, size);
+    stick_force_ = stick_force_from(force, on, other, size);
     guards_.clear();
     for (const int side : {1, -1}) {
       Path<T> left = Path<T>(most) + T(-side) * stick_force_;
@@ -171,75 +169,77 @@ class Simulation {
 
   /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
   /// exactly zero: it sets out along with that surface.
-  bool sets_out(int limit) {
+  bool sets_out() {
     using std::abs;
     tangential_ = false;
     guards_.clear();
     const T plate = plate_.force(state_), finger = finger_.force(state_);
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
-    const auto relative = [&](const Side& side, T own, T of_other) {  // times the mass
+    const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
-      const T force = own - demand(side, of_other);
-      const bool lets_go = side.before == ContactState::stick && continues(limit);
-      if (!tangential_ && (abs(force) <= state_.roundoff || lets_go)) {
+      const T force = own - stick_force(side, of_other);
+      const bool releases = side.before == ContactState::stick && continues();
+      if (!tangential_ && (abs(force) <= state_.roundoff || releases)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
       return force;
     };
-    const T of_plate = relative(plate_, plate, finger),
-            of_finger = relative(finger_, finger, plate);
+    const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
-      if (apart != 0 || !side.rests(state_.v)) return side.goes_inside(state_, apart);
+      if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
+        return side.goes_inside(state_, apart);
       T size;
-      const Path<T> needed = demand_from(T(0), side, other, size);
+      const Path<T> needed = stick_force_from(T(0), side, other, size);
       const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
-    return leaves(plate_, finger_, of_plate) && leaves(finger_, plate_, of_finger);
-  }
-
-  Mode mode() const {
-    return {plate_.does().state, finger_.does().state, plate_.does().branch, finger_.does().branch};
+    return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
   }
 
   /// The segment of the mode that was selected, and its guards.
-  Segment<T> begin() {
-    Segment<T> segment{time_, never, mode(), {}, flow(), {}, plate_.surface, {}, {}};
-    segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
-    segment.finger_force = finger_.stuck() && !plate_.stuck()
-                               ? stick_force_
-                               : finger_.force_along(segment.flow, state_);
+  void begin(Segment<T>& segment) {
+    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
+    segment.begin = time_;
+    segment.end = never;
+    segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+    segment.event = {};
+    segment.flow = flow(plate, finger);
+    segment.moved = {};
+    segment.plate_velocity = plate_.surface;
+    segment.plate_force = plate_.stuck() ? stick_force_ : plate.along(segment.flow);
+    segment.finger_force =
+        finger_.stuck() && !plate_.stuck() ? stick_force_ : finger.along(segment.flow);
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
-    return segment;
   }
 
-  Flow<T> flow() const {
+  Flow<T> flow(const Force<T>& plate, const Force<T>& finger) const {
     using std::abs;
     const State<T>& s = state_;
     if (plate_.stuck() || finger_.stuck())
       return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
-    T damping = drive_.damping, stiffness = drive_.stiffness;
-    T known = 2 * std::numeric_limits<T>::epsilon() * damping;  // how well the damping is
-    Line<T> pull{inertia_ - stiffness * s.x, T(0)};
-    plate_.add_to(damping, known, stiffness, pull, s);
-    finger_.add_to(damping, known, stiffness, pull, s);
+    T damping = drive_.damping + plate.drag + finger.drag;
+    const T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
+    const T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
+    const T rate = plate.constant.rate + finger.constant.rate;
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
+      const T known =
+          2 * std::numeric_limits<T>::epsilon() * drive_.damping + plate.rounding + finger.rounding;
       if (abs(damping) <= known) damping -= plain(damping);
       oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
     }
     // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (abs(pull.value) <= s.roundoff && s.v == 0 && pull.rate == 0)
+    if (abs(pull) <= s.roundoff && s.v == 0 && rate == 0)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
-    const T drift = pull.rate / stiffness;
+    const T drift = rate / stiffness;
     const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
-                                    : pull.value - damping * drift;
+                                    : pull - damping * drift;
     return Flow<T>::free(oscillator, s.x, s.v, acceleration_, -from_rest / stiffness, drift);
   }
 
@@ -261,45 +261,44 @@ class Simulation {
   }
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
-  Reached jump(Segment<T>& segment, T tau) {
+  void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-    const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+    const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
     state_.x = position.at(moved, tau);
     state_.v = segment.flow.velocity.at(moved, tau);
     state_.x_size =
         std::max(std::max(state_.x_size, abs(state_.x)),
                  std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
     if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
-    if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
+    if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
     plate_.surface.value = plate_.surface.at(tau);
     plate_.load.value = plate_.load.at(tau);
     if (row) look_ahead();
     segment.end = time_;
-    Reached reached;
+    limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
-      const Side& side = guard.plate ? plate_ : finger_;
+      Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
-        (guard.plate ? reached.plate : reached.finger) = guard.bound;
+        side.reached = guard.bound;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
-        state_.v = side.surface.value + along(side.does().state, speed);
-        if (guard.bound == Bound::lower && side.does().branch == 0)
+        state_.v = side.surface.value + side.does.sense * speed;
+        if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit;
       } else if (!row) {
-        reached.limit = guard.side;
+        limit_ = guard.side;
       }
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
-    return reached;
   }
 
   /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
@@ -316,11 +315,12 @@ class Simulation {
   const Inputs<T, Input>& inputs_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
-  Transition<T> half_turn_;  ///< and how it has moved on there
+  Propagator<T> half_turn_;  ///< and how it has moved on there
 
   T time_{0}, row_{never};  ///< now, and of the next row of an input, s
   State<T> state_;
   Side plate_, finger_;   ///< in the mode that was selected
+  int limit_{0};          ///< the side of a stick force that has just come to its limit
   T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
 
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …

@@ -46,8 +46,8 @@ MUTANTS = (
     Mutant(
         "slips where a tenth of the stick limit is left",
         "simulation.hpp",
-        "const T force = demand(on, other.force(state_));\n    const int at_limit",
-        "const T force = demand(on, other.force(state_)) / T(0.9);\n    const int at_limit",
+        "const T force = stick_force(on, other.force(state_));\n    const int at_limit",
+        "const T force = stick_force(on, other.force(state_)) / T(0.9);\n    const int at_limit",
     ),
     Mutant(
         "static friction of the sticking contact is its kinetic friction",
@@ -70,13 +70,13 @@ MUTANTS = (
     Mutant(
         "a changing load acts as if it were constant",
         "friction.hpp",
-        "if (range.slope == 0) return {force * load.value, force * load.rate};",
-        "if (range.slope == 0) return {force * load.value, T(0)};",
+        "force * load.rate + drag * surface.rate},",
+        "drag * surface.rate},",
     ),
     Mutant(
         "of two contacts the first is not asked whether it sticks",
         "simulation.hpp",
-        "if (i == 1 && sticks(first, second, 0, reached.limit)) return;",
+        "if (i == 1 && sticks(first, second, 0)) return;",
         "",
     ),
     Mutant(
@@ -100,20 +100,20 @@ MUTANTS = (
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
         "friction.hpp",
-        "contact.branch(does().branch + (does().at == Bound::upper ? 1 : 0)).force",
-        "contact.branch(does().branch + (does().at == Bound::upper ? 0 : 0)).force",
+        "contact.branch(std::max(does.branch, options[1].branch)).force",
+        "contact.branch(std::min(does.branch, options[1].branch)).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
         "friction.hpp",
-        ": Option{state, Bound::upper, branch - 1};",
-        ": Option{state, Bound::upper, branch};",
+        "does.branch + (faster ? 1 : -1),",
+        "does.branch + (faster ? 1 : 0),",
     ),
     Mutant(
         "skin grips with a thousandth more stretch",
         "simulation.hpp",
-        "state_.skin = along(finger_.does().state, drive_.finger.kinetic);",
-        "state_.skin = along(finger_.does().state, drive_.finger.kinetic) * T(1.001);",
+        "state_.skin = finger_.does.sense * drive_.finger.kinetic;",
+        "state_.skin = finger_.does.sense * drive_.finger.kinetic * T(1.001);",
     ),
     Mutant(
         "skin slips only while the plate holds the pin",

@@ -1,6 +1,6 @@
-// What Guard proves against dense scanning: no dip below zero escapes it, however short, and what
+// What PositivityBound proves against dense scanning: no dip below zero escapes it, however short, and what
 // it says is the lowest is nearly so; for paths that are made to touch zero between two times.
-#include "pindrive/guard.hpp"
+#include "pindrive/positivity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,12 @@ namespace pd = pindrive;
 
 namespace {
 
-using Guard = pd::Guard<double>;
+using PositivityBound = pd::PositivityBound<double>;
 
 constexpr double unseen = 1e-10;
 
 /// Over the whole of a panel at once, which certify walks in 17 steps.
-double lowest(const pd::Oscillator<double>& oscillator, const Guard& guard, double low,
+double lowest(const pd::Oscillator<double>& oscillator, const PositivityBound& guard, double low,
               double high) {
   const auto at = [&](double tau) { return guard.at(oscillator.after(tau), tau); };
   const auto flatness = guard.flatness(oscillator, oscillator.after(low), low, high - low);
@@ -50,7 +50,8 @@ int main() {
     const double size = std::abs(scan()) + 1;
     const double depth = size * std::pow(10, -5 + 3 * uniform(random));
     path.start -= scan() + (i % 3 == 0 ? -depth : depth);
-    const double least = scan(), found = lowest(oscillator, Guard(oscillator, path), low, high);
+    const double least = scan(),
+                 found = lowest(oscillator, PositivityBound(oscillator, path), low, high);
     // Nothing deeper than `unseen` escapes; a dip is told at all wherever there is one, and what
     // is told is a value that the path has.
     const double noise = 1e-12 * size;

@@ -9,19 +9,19 @@
 
 namespace pindrive {
 
-/// What must stay positive along a mode: a speed against a border, a capacity against a force.
+/// What must stay positive along a mode: a speed against a bound, a stick limit against a force.
 template <class T>
-class Guard {
+class PositivityBound {
  public:
-  Guard() = default;
-  Guard(const Oscillator<T>& oscillator, const Path<T>& path)
+  PositivityBound() = default;
+  PositivityBound(const Oscillator<T>& oscillator, const Path<T>& path)
       : path_(path), rate_(path.derivative(oscillator)) {}
 
   /// Its value and slope at a time.
-  struct Level {
+  struct Sample {
     T tau, value, slope;
   };
-  Level at(const Transition<T>& moved, T tau) const {
+  Sample at(const Propagator<T>& moved, T tau) const {
     return {tau, path_.at(moved, tau), rate_.at(moved, tau)};
   }
 
@@ -33,7 +33,7 @@ class Guard {
   /// below (|y| + |y'| min(τ, 1/ω₀)) e^(2ατ), without the growth where α <= 0: its energy
   /// (y'² + ω₀² y²)/2 changes by 2α y'². Where two real rates lie far apart, each wave is bounded by
   /// itself: the rounding of their sum would count as much of the fast one.
-  Flatness flatness(const Oscillator<T>& oscillator, const Transition<T>& moved, T from,
+  Flatness flatness(const Oscillator<T>& oscillator, const Propagator<T>& moved, T from,
                     T length) const {
     using std::abs;
     using std::exp;
@@ -65,7 +65,7 @@ class Guard {
   /// that, or than `unseen`. Proven where it is monotone, or where the cubic through both ends (by
   /// its Bernstein coefficients), less what the guard can differ from it, stays above; else halved, so
   /// many times in all. What is not proven by then may dip as deep as that bound.
-  T lowest(const Oscillator<T>& oscillator, const Level& a, const Level& b,
+  T lowest(const Oscillator<T>& oscillator, const Sample& a, const Sample& b,
            const Flatness& flatness, T unseen) const {
     int halvings = most_halvings;
     return lowest(oscillator, a, b, flatness, unseen, halvings);
@@ -75,7 +75,7 @@ class Guard {
   static constexpr int most_halvings = 4096;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  T lowest(const Oscillator<T>& oscillator, const Level& a, const Level& b,
+  T lowest(const Oscillator<T>& oscillator, const Sample& a, const Sample& b,
            const Flatness& flatness, T unseen, int& halvings) const {
     const T least = std::min(a.value, b.value), h = b.tau - a.tau;
     if (!(least >= -unseen)) return least;
@@ -88,7 +88,7 @@ class Guard {
     const T tau = a.tau + h / 2;
     if (--halvings < 0 || !(tau > a.tau && tau < b.tau) || !(bound > -never))
       return bound > -never ? bound : -never;
-    const Level middle = at(path_.oscillates() ? oscillator.after(tau) : Transition<T>{}, tau);
+    const Sample middle = at(path_.oscillates() ? oscillator.after(tau) : Propagator<T>{}, tau);
     return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings),
                     lowest(oscillator, middle, b, flatness, unseen, halvings));
   }

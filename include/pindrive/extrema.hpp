@@ -1,0 +1,66 @@
+/// The extrema of a quantity in a segment: in closed form, or by roots of its derivative.
+#pragma once
+
+#include <cmath>
+
+#include "pindrive/model.hpp"
+#include "pindrive/roots.hpp"
+
+namespace pindrive {
+
+/// Calls visit(τ, value) where a vibration without a line turns between two times. Times and values
+/// follow from its start: at `from` what is left of it may have fewer digits.
+template <class T, class Visitor>
+void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
+  using std::exp;
+  using std::floor;
+  const Path<T> slope = path.derivative(oscillator);
+  const int side = side_after_start(oscillator, slope);
+  const Zeros<T> zeros = oscillator.zeros(slope.value, slope.slope);
+  if (side == 0 || !(zeros.first < to)) return;
+  const T reach = side * oscillator.reach(slope.value, slope.slope);
+  T count = zeros.first > from ? T(0) : floor((from - zeros.first) / zeros.spacing);
+  for (T tau; (tau = zeros.at(count)) < to; count += T(1)) {
+    if (!(tau > from)) continue;
+    const bool even = count / 2 == floor(count / 2);
+    visit(tau, path.centre() + (even ? reach : -reach) * exp(oscillator.alpha() * tau));
+  }
+}
+
+/// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
+/// them.
+template <class T, class Visitor>
+void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, path.at(segment.after(from), from));
+  if (path.constant() || !(to > from)) return;
+  const Oscillator<T>& oscillator = segment.flow.oscillator;
+  if (path.straight() && oscillator.oscillates()) {
+    turns(oscillator, path, from, to, visit);
+  } else {
+    const Path<T> rest = from > 0 ? path.from(oscillator, from) : path;
+    const Path<T> slope = rest.derivative(oscillator);
+    const int side = side_after_start(oscillator, slope);
+    if (side != 0)
+      each_root(oscillator, slope, side, to - from, [&](T tau) {
+        visit(from + tau, rest.at(oscillator, tau));
+        return true;
+      });
+  }
+  visit(to, path.at(segment.after(to), to));
+}
+
+/// The same for a path on which only the highest and the lowest value are asked for: a vibration on
+/// a line has them within a period of an end, so what lies between need not be followed.
+template <class T, class Visitor>
+void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, T to,
+                        Visitor&& visit) {
+  const T period = segment.flow.oscillator.period();
+  if (!path.oscillates() || !(to - from > 2 * period)) {
+    extrema(segment, path, from, to, visit);
+    return;
+  }
+  extrema(segment, path, from, from + period, visit);
+  extrema(segment, path, to - period, to, visit);
+}
+
+}  // namespace pindrive

@@ -1,0 +1,74 @@
+// How a motion ends: in which modes it lasts for ever, and which states close a cycle.
+#include "pindrive/return.hpp"
+
+#include "check.hpp"
+
+namespace pd = pindrive;
+using check::expect;
+using pd::ContactState;
+using pd::End;
+
+namespace {
+
+using Flow = pd::Flow<double>;
+
+pd::Outcome<double> ending(const Flow& flow, ContactState plate = ContactState::slip_backward,
+                           double plate_velocity = 0.1) {
+  pd::Segment<double> last{};
+  last.begin = 2;
+  last.mode = {plate, ContactState::absent};
+  last.flow = flow;
+  last.plate_velocity = {plate_velocity, 0};
+  pd::Outcome<double> outcome;
+  pd::detail::end_with(last, outcome);
+  return outcome;
+}
+
+void endings() {
+  const pd::Oscillator<double> damped(0.01, 0.2, 100), undamped(0.01, 0, 100);
+  expect(ending(Flow::stuck(1e-3, {})).end == End::resting, "at rest on the finger it rests");
+  expect(ending(Flow::stuck(1e-3, {0.1, 0})).end == End::moving, "with the plate it does not");
+  expect(ending(Flow::free(damped, 1e-3, 0.0, -1.0, 1e-4, 0.0)).end == End::decaying,
+         "a damped vibration decays");
+  const auto free = ending(Flow::free(undamped, 1e-3, 0.0, -1.0, 1e-4, 0.0));
+  expect(free.end == End::free && free.steady_since == 2 &&
+             check::near(free.period, 0.0628318530717958648, 1e-14),
+         "one without damping is free, from its begin on");
+  expect(ending(Flow::free(undamped, 1e-3, 0.1, 0.0, 0.0, 0.0)).end == End::grazing,
+         "... or grazes the velocity of the plate that it left along with it");
+}
+
+/// Releases from the plate every 0.5 s, at x = 1 + offset·q^n mm.
+int rounds_until_cycle(double offset, double q) {
+  const pd::Drive<double> drive{0.01, 100, 0, {0.1, 0.2}, {}};
+  pd::detail::Return<double> returns;
+  pd::Outcome<double> outcome;
+  for (int i = 0; i < 200; ++i, offset *= q) {
+    pd::Segment<double> carried{};
+    carried.begin = 0.5 * i;
+    carried.end = 0.5 * i + 0.2;
+    carried.mode = {ContactState::stick, ContactState::absent};
+    const pd::Mode after{ContactState::slip_backward, ContactState::absent};
+    returns.meet(drive, carried, after, {1e-3 * (1 + offset), 0.1, 0, 1e-3, 0}, outcome);
+    if (!outcome.cycles()) continue;
+    expect(check::near(outcome.period, 0.5 * std::round(outcome.period / 0.5), 1e-12),
+           "the period of a cycle is a whole number of rounds");
+    return i;
+  }
+  return -1;
+}
+
+void cycles() {
+  expect(rounds_until_cycle(0, 1) == 1, "the second release like the first closes a cycle");
+  const int rounds = rounds_until_cycle(1e-2, 0.5);
+  expect(rounds > 25 && rounds < 80, "one that is approached does so when it has been reached");
+  expect(rounds_until_cycle(1e-9, 1.5) == -1, "states that part close none");
+}
+
+}  // namespace
+
+int main() {
+  endings();
+  cycles();
+  return check::status();
+}

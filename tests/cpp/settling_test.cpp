@@ -1,0 +1,61 @@
+// When a motion has settled, against samples: at that time it comes into the band, and it never leaves it again.
+#include "pindrive/settling.hpp"
+
+#include "check.hpp"
+
+namespace pd = pindrive;
+using check::expect;
+
+namespace {
+
+const pd::Inputs<double> inputs{0.0, 1e-3, 0};
+
+/// A pin that decays freely from 1 mm about 0, for a time or for ever.
+struct Decay {
+  Decay(double ratio, double duration) : drive{0.01, 100, 2 * ratio, {}, {}} {
+    segment.end = duration;
+    segment.mode = {pd::ContactState::absent, pd::ContactState::absent};
+    segment.flow = pd::Flow<double>::free({drive.mass, drive.damping, drive.stiffness}, 1e-3, 0.0,
+                                          -10.0, 1e-3, 0.0);
+    outcome.end = pd::End::decaying;
+    outcome.until = duration;
+  }
+  pd::Motion<double> motion() const { return {drive, inputs, &segment, 1, outcome}; }
+  double x(double t) const { return segment.flow.position.at(segment.flow.oscillator, t); }
+
+  pd::Drive<double> drive;
+  pd::Segment<double> segment{};
+  pd::Outcome<double> outcome;
+};
+
+}  // namespace
+
+int main() {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  bool enters = true, stays = true;
+  for (const double ratio : {0.003, 0.1, 0.5, 1.0, 3.0})
+    for (const double band : {0.3, 0.05, 0.002}) {
+      const Decay decay(ratio, never);
+      const pd::Motion<double> motion = decay.motion();
+      const double since = pd::Settling<double>(motion, never).within(0.0, band);
+      const double width = band * 1e-3;
+      enters = enters && std::abs(std::abs(decay.x(since)) - width) < 1e-12 * 1e-3;
+      for (int i = 1; i < 2000; ++i)
+        stays = stays && std::abs(decay.x(since + i * 1e-3 / ratio * 0.3)) <= width;
+    }
+  expect(enters, "it comes into the band when it has settled");
+  expect(stays, "... and stays there");
+
+  const Decay decay(0.1, never);
+  const pd::Motion<double> motion = decay.motion();
+  expect(std::isnan(pd::Settling<double>(motion, 0.05).within(0.0, 0.05)),
+         "what settles after the duration has not settled");
+  expect(pd::Settling<double>(motion, never).last_outside(0.0, 2e-3) == 0,
+         "what was never outside is settled from the start");
+  Decay moving(0.1, 0.02);
+  moving.outcome.end = pd::End::moving;
+  const pd::Motion<double> cut = moving.motion();
+  expect(std::isnan(pd::Settling<double>(cut, never).within(0.0, 0.05)),
+         "a motion whose ending is not known has no settling time");
+  return check::status();
+}
