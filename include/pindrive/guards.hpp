@@ -28,10 +28,15 @@ template <class T>
 class Guards {
  public:
   void clear() {
-    count_ = 0;
+    count_ = forces_ = 0;
     below_ = above_ = -1;
   }
 
+  /// Adds what contacts that stick could carry to a side, before the guards of speeds.
+  void add_force(const Path<T>& left, bool plate, int side) {
+    add(left, Bound::none, plate, side);
+    forces_ = count_;
+  }
   /// Adds a guard that may come to zero: it oscillates or falls.
   void add(const Path<T>& path, Bound bound, bool plate, int side = 0) {
     if (path.oscillates() || path.drift < 0 || path.curvature < 0)
@@ -63,9 +68,9 @@ class Guards {
   /// The earliest zero, or the limit if none comes before it. Times are `since` the start of the mode, and
   /// those that differ by less than the rounding of a time are one.
   T earliest(const Oscillator<T>& oscillator, T since, T limit) {
-    const Path<T>* falls = nullptr;  // to the middle of its oscillation
-    for (int i = 0; i < count_; ++i) {
-      Guard<T>& guard = list_[i];
+    const Path<T>* falls = nullptr;     // to the middle of its oscillation
+    for (int n = 0; n < count_; ++n) {  // speeds, then stick forces
+      Guard<T>& guard = list_[n + forces_ < count_ ? n + forces_ : n + forces_ - count_];
       const Path<T>& path = guard.path;
       if (path.oscillates() && path.straight()) {
         if (path.centre() == 0) {  // in closed form
@@ -85,6 +90,14 @@ class Guards {
       limit = std::min(limit, guard.zero);
     }
     return limit;
+  }
+
+  /// The first zero of a speed after a stick force's; infinite without either.
+  T speed_after_force(T tau) const {
+    T next = std::numeric_limits<T>::infinity();
+    for (int i = forces_; i < count_ && forces_ > 0; ++i)
+      if (list_[i].zero > tau) next = std::min(next, list_[i].zero);
+    return next;
   }
 
   /// Whether what comes to zero before τ stays there until then, to rounding.
@@ -124,8 +137,8 @@ class Guards {
   }
 
   std::array<Guard<T>, 6> list_;
-  int count_{0}, below_{-1},
-      above_{-1};  ///< the last two: of the velocity, from below and from above
+  int count_{0}, forces_{0};   ///< of them, those of a stick force
+  int below_{-1}, above_{-1};  ///< those of the velocity, from below and from above
 };
 
 }  // namespace pindrive::detail

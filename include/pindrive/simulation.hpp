@@ -162,7 +162,7 @@ class Simulation {
           left.drift = T(0);
         if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
       }
-      guards_.add(left, Bound::none, plate_.stuck(), side);
+      guards_.add_force(left, plate_.stuck(), side);
     }
     return true;
   }
@@ -248,16 +248,16 @@ class Simulation {
            (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
   }
 
-  /// The time to the earliest event. What happens at the row of an input to rounding happens there.
+  /// The time to the earliest event. What happens at the row of an input to rounding happens there; so does
+  /// what a stick force does where a speed comes to a bound: the force may turn there, as the speed is zero.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_, serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     const T first = guards_.earliest(flow.oscillator, time_, limit);
-    const bool at_row =
-        row < never &&
-        (row - first <= rounding<T> * (time_ + row) ||
-         (limit == row && guards_.stay_until(flow.oscillator, row, state_.roundoff)));
-    return at_row ? row : first;
+    if (row < never && row - first <= rounding<T> * (time_ + row)) return row;
+    const T next = std::min(guards_.speed_after_force(first), limit == row ? row : never);
+    const bool there = next < never && guards_.stay_until(flow.oscillator, next, state_.roundoff);
+    return there ? next : first;
   }
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
