@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import fields
 from math import pi
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
+
+if TYPE_CHECKING:
+    from pindrive.quantities.table import Number
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""
@@ -14,7 +17,7 @@ COPPER: Final = 1 / 58e6
 """Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@checked
 class Coil:
     """An electromagnet with two poles on a steel plate, by how it is made.
 
@@ -40,43 +43,19 @@ class Coil:
     Machinery", chapters 1 and 3.
     """
 
-    turns: float
-    pole_area: float
-    gap: float
-    wire_diameter: float
-    turn_length: float
-    supply_voltage: float
-    release_resistance: float
-    saturation_field: float
-    thermal_resistance: float
-    temperature_rise: float
+    turns: Number
+    pole_area: Number
+    gap: Number
+    wire_diameter: Number
+    turn_length: Number
+    supply_voltage: Number
+    release_resistance: Number = default("release_resistance")
+    saturation_field: Number = default("saturation_field")
+    thermal_resistance: Number = default("thermal_resistance")
+    temperature_rise: Number = default("temperature_rise")
 
-    def __init__(
-        self,
-        *,
-        turns: float | str,
-        pole_area: float | str,
-        gap: float | str,
-        wire_diameter: float | str,
-        turn_length: float | str,
-        supply_voltage: float | str,
-        release_resistance: float | str = 0.0,
-        saturation_field: float | str = 1.6,
-        thermal_resistance: float | str = 430.0,
-        temperature_rise: float | str = 20.0,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "turns", check("turns", turns))
-        put(self, "pole_area", check("pole_area", pole_area))
-        put(self, "gap", check("gap", gap))
-        put(self, "wire_diameter", check("wire_diameter", wire_diameter))
-        put(self, "turn_length", check("turn_length", turn_length))
-        put(self, "supply_voltage", check("supply_voltage", supply_voltage))
-        put(self, "release_resistance", check("release_resistance", release_resistance))
-        put(self, "saturation_field", check("saturation_field", saturation_field))
-        put(self, "thermal_resistance", check("thermal_resistance", thermal_resistance))
-        put(self, "temperature_rise", check("temperature_rise", temperature_rise))
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         for name in ("resistance", "inductance", "current", "field", "power"):
             check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
 
@@ -121,29 +100,16 @@ class Coil:
         return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
 
 
-COIL_NEEDS: Final = (
-    "turns",
-    "pole_area",
-    "gap",
-    "wire_diameter",
-    "turn_length",
-    "supply_voltage",
-)
+COIL: Final = tuple(field.name for field in fields(Coil))
+COIL_NEEDS: Final = tuple(name for name in COIL if default(name) is None)
 """What a coil must say."""
-COIL_MAY: Final = (
-    "release_resistance",
-    "saturation_field",
-    "thermal_resistance",
-    "temperature_rise",
-)
-"""What it may say besides."""
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """What is said instead of a coil."""
 
 
 def check_one_way(given: set[str], *, where: str = "", table: str = "") -> None:
     """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
-    made = [name for name in (*COIL_NEEDS, *COIL_MAY) if name in given]
+    made = [name for name in COIL if name in given]
     if not made:
         return
     direct = [name for name in DIRECT if name in given]

@@ -17,20 +17,21 @@ import numpy as np
 
 from pindrive.motion.friction import GRAVITY
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, checked, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.coil import Coil
     from pindrive.device.controller import Commands
+    from pindrive.quantities.table import Number, OptionalNumber
 
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this
 part of its deviation."""
 
 
-@dataclass(frozen=True, kw_only=True, init=False)
+@checked
 class Electromagnet:
     """What an electromagnet does to the plate.
 
@@ -50,50 +51,30 @@ class Electromagnet:
         ValueError: a value is no number or out of its range.
     """
 
-    hold_force: float
-    rise_constant: float
-    fall_constant: float
-    saturation: float
-    residual: float
-    pressing: float | None
-    deviation: float
-    coil: Coil | None
+    hold_force: Number = default("hold_force")
+    rise_constant: Number = default("rise_constant")
+    fall_constant: Number = default("fall_constant")
+    saturation: Number = default("saturation")
+    residual: Number = default("residual")
+    pressing: OptionalNumber = default("pressing")
+    deviation: Number = default("deviation")
+    coil: Coil | None = None
 
-    def __init__(
-        self,
-        *,
-        hold_force: float | str = 1.0,
-        rise_constant: float | str = 0.001,
-        fall_constant: float | str = 0.004,
-        saturation: float | str = 1.0,
-        residual: float | str = 0.0,
-        pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
-        coil: Coil | None = None,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "hold_force", check("hold_force", hold_force))
-        put(self, "rise_constant", check("rise_constant", rise_constant))
-        put(self, "fall_constant", check("fall_constant", fall_constant))
-        put(self, "saturation", check("saturation", saturation))
-        put(self, "residual", check("residual", residual))
-        put(self, "pressing", None if pressing is None else check("pressing", pressing))
-        put(self, "deviation", check("deviation", deviation))
-        put(self, "coil", coil)
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         check_residual(self.residual, self.hold_force)
 
     @classmethod
     def from_times(
         cls,
         *,
-        hold_force: float | str = 1.0,
-        rise_time: float | str = 0.003,
-        fall_time: float | str = 0.005,
-        saturation: float | str = 1.0,
-        residual: float | str = 0.0,
+        hold_force: float | str = default("hold_force"),
+        rise_time: float | str = default("rise_time"),
+        fall_time: float | str = default("fall_time"),
+        saturation: float | str = default("saturation"),
+        residual: float | str = default("residual"),
         pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
+        deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -126,9 +107,9 @@ class Electromagnet:
         cls,
         coil: Coil,
         *,
-        residual: float | str = 0.0,
+        residual: float | str = default("residual"),
         pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
+        deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how it is made.
 

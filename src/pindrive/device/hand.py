@@ -11,7 +11,7 @@ import numpy as np
 
 from pindrive.motion.drive import Profile
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -113,7 +113,7 @@ class HandPath:
         since = t - self.times[i]
         return i, since, since / (self.times[i + 1] - self.times[i])
 
-    def plate_velocity(self, axis: float = 0.0) -> Profile:
+    def plate_velocity(self, axis: float = default("axis")) -> Profile:
         """The velocity at which the plate passes under the mouse, over the time since `begin`.
 
         Args:
@@ -126,7 +126,7 @@ class HandPath:
         along = self.vx * cos(axis) + self.vy * sin(axis)
         return Profile((self.times - self.times[0]).tolist(), along.tolist())
 
-    def angles(self, axis: float = 0.0) -> tuple[float, float]:
+    def angles(self, axis: float = default("axis")) -> tuple[float, float]:
         """The angle between motion and drive axis, rad: the largest, and the mean over the way.
 
         From 0 to a right angle; where the hand moves at less than a tenth of its peak speed it is
@@ -163,7 +163,7 @@ def strokes(
     speeds: float | str | Sequence[float | str],
     *,
     pause: float | str = 0.0,
-    deviation: float | str = 1e-4,
+    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -219,7 +219,7 @@ def lines(
     speed: float | str,
     return_speed: float | str,
     pause: float | str = 0.0,
-    deviation: float | str = 1e-4,
+    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 

@@ -25,7 +25,7 @@ import numpy as np
 
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, check_whole, refusal
+from pindrive.quantities.table import check, check_whole, default, refusal
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class Scene:
         below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
         return np.where(inside, above * (1.0 - w) + below * w, 1.0)
 
-    def dark(self, threshold: float | str = 0.5) -> NDArray[np.bool_]:
+    def dark(self, threshold: float | str = default("threshold")) -> NDArray[np.bool_]:
         """Which pixels hold information: darker than the threshold, in [0, 1]."""
         return self.luminance < check("threshold", threshold)
 
@@ -151,9 +151,9 @@ class Scene:
         cls,
         text: str,
         *,
-        height: float | str = 0.010,
-        pixel: float | str = 1e-4,
-        margin: float | str = 0.005,
+        height: float | str = default("text_height"),
+        pixel: float | str = default("text.pixel"),
+        margin: float | str = default("margin"),
         line_pitch: float | str | None = None,
         font: str | PathLike[str] | None = None,
     ) -> Scene:
@@ -184,9 +184,9 @@ class Scene:
         pitches: Iterable[float | str],
         *,
         count: int = 4,
-        height: float | str = 0.010,
-        pixel: float | str = 1e-4,
-        margin: float | str = 0.005,
+        height: float | str = default("text_height"),
+        pixel: float | str = default("text.pixel"),
+        margin: float | str = default("margin"),
     ) -> Scene:
         """Groups of upright black lines, each half as wide as its pitch.
 

@@ -28,7 +28,7 @@ from pindrive.device.hand import HandPath, check_increasing
 from pindrive.lazy import signal
 from pindrive.quantities import budgets
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -51,9 +51,6 @@ GRID: Final = 0.15
 """So far from whole numbers of steps, of up to `SMALL_STEPS`, is no recording in steps."""
 HOLE: Final = 2.5
 """Intervals without a report in which the mouse rested."""
-RESOLUTION: Final = QUANTITIES["mouse_resolution"].default or 0.0
-CUTOFF: Final = QUANTITIES["smoothing_cutoff"].default or 0.0
-ACCELERATION: Final = QUANTITIES["hand_acceleration"].default or 0.0
 
 
 def through(
@@ -61,7 +58,7 @@ def through(
     x: ArrayLike,
     y: ArrayLike,
     *,
-    acceleration: float | str = ACCELERATION,
+    acceleration: float | str = default("hand_acceleration"),
     where: str = "",
     rows: Sequence[int] | None = None,
     about: str = "",
@@ -153,7 +150,9 @@ class Recording:
         check_increasing(self.t, [f"row {i}: t" for i in labels], self.where)
 
     @classmethod
-    def read(cls, path: str | PathLike[str], resolution: float = RESOLUTION) -> Recording:
+    def read(
+        cls, path: str | PathLike[str], resolution: float = default("mouse_resolution")
+    ) -> Recording:
         """A recording from a CSV, UTF-8, whose header is like `t [s], x [mm], y [mm]`.
 
         Args:
@@ -211,7 +210,7 @@ class Recording:
         whole = np.abs(counts - np.round(counts)) < GRID
         return step if whole.all() and len(counts) > 0.5 * len(ways) else None
 
-    def raw(self, acceleration: float = ACCELERATION) -> bool:
+    def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
         """Whether it is in steps so coarse that differences of its places are no speed.
 
         So it is where it is in counts; or where all places are whole numbers of one step, which
@@ -233,7 +232,7 @@ class Recording:
         way = np.hypot(np.diff(self.x), np.diff(self.y))
         return float((way / np.diff(self.t)).max())
 
-    def smoothed(self, cutoff: float = CUTOFF) -> Recording:
+    def smoothed(self, cutoff: float = default("smoothing_cutoff")) -> Recording:
         """The same at even times, without what is faster than a cut-off (Hz), as stated above.
 
         Raises:
@@ -260,7 +259,11 @@ class Recording:
             places.append(np.asarray(signal.sosfiltfilt(sections, taken, padlen=pad), np.float64))
         return Recording(even, places[0], places[1], None, self.where)
 
-    def path(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> HandPath:
+    def path(
+        self,
+        acceleration: float = default("hand_acceleration"),
+        cutoff: float = default("smoothing_cutoff"),
+    ) -> HandPath:
         """The hand's path: through its places or, of a raw recording, smoothed at `cutoff` (Hz).
 
         Raises:
@@ -281,7 +284,11 @@ class Recording:
         at = dict(acceleration=acceleration, where=f"{self.where}, smoothed")
         return through(smooth.t, smooth.x, smooth.y, about=about, **at)  # type: ignore[arg-type]
 
-    def words(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> str:
+    def words(
+        self,
+        acceleration: float = default("hand_acceleration"),
+        cutoff: float = default("smoothing_cutoff"),
+    ) -> str:
         """What it is and what is made of it, in a sentence or two."""
         step, speed = self.resolved, QUANTITIES["hand_speed"]
         lasts = float(self.t[-1] - self.t[0])
@@ -303,9 +310,9 @@ class Recording:
 def read_csv(
     path: str | PathLike[str],
     *,
-    acceleration: float | str = ACCELERATION,
-    resolution: float | str = RESOLUTION,
-    cutoff: float | str = CUTOFF,
+    acceleration: float | str = default("hand_acceleration"),
+    resolution: float | str = default("mouse_resolution"),
+    cutoff: float | str = default("smoothing_cutoff"),
 ) -> HandPath:
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 

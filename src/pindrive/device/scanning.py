@@ -35,7 +35,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import SimulationError, Status
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -269,7 +269,7 @@ class Scan(lazy.NotebookHtml):
         hand = np.stack(self.path.position(np.asarray(t, np.float64)), axis=-1)
         return np.asarray(hand + array.on_page(array.spots[pin : pin + 1]))
 
-    def to_csv(self, path: str | PathLike[str], rate: float | str = 1000.0) -> Path:
+    def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
         """Write each pin at even times as CSV: x, its velocity and acceleration, the forces on it.
 
         Args:

@@ -38,12 +38,8 @@ from pindrive.evaluation.perception import JudgedPin
 from pindrive.evaluation.results import Criteria, Line
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
-PART: Final = 0.5
-SLOWEST: Final = 0.005
-FASTEST: Final = 1.0
-"""What is tried, m/s: beyond both ends of what hands do (20-100 mm/s, arXiv 2505.11162)."""
 PHASES: Final = 4
 TRIED: Final = 32
 """Speeds in the grid."""
@@ -114,9 +110,9 @@ def largest_speeds(
     pitches: Sequence[float],
     *,
     width: float | None = None,
-    part: float = PART,
-    slowest: float = SLOWEST,
-    fastest: float = FASTEST,
+    part: float = default("speed.part"),
+    slowest: float = default("speed.slowest"),
+    fastest: float = default("speed.fastest"),
     criteria: Criteria | None = None,
     progress: Progress | None = None,
 ) -> tuple[SpeedLimit, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import isnan, nan
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -12,13 +12,13 @@ from pindrive import lazy
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import QUANTITIES, check
+from pindrive.quantities.table import checked, default
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from pindrive.device.scanning import Scan
-    from pindrive.quantities.status import Status
+    from pindrive.quantities.table import Number
 
 Fate = Literal["shown", "unseen", "merged", "faint"]
 Cue = Literal["none", "felt", "direction", "sure"]
@@ -27,14 +27,9 @@ CUES: Final[tuple[Cue, ...]] = ("none", "felt", "direction", "sure")
 FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
 
 
-def usual(name: str) -> float:
-    """The value of the literature, SI."""
-    return QUANTITIES[name].default or 0.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@checked
 class Criteria:
-    """What counts as felt, by the sources in `quantities_judge`; a user who measures replaces it.
+    """What counts as felt, by the sources in the table of quantities.
 
     Args:
         felt: motion that is felt as a pulse, m, greater than 0.
@@ -47,16 +42,11 @@ class Criteria:
         ValueError: a value is no number or out of its range.
     """
 
-    felt: float = usual("felt")
-    direction: float = usual("direction")
-    direction_sure: float = usual("direction_sure")
-    direction_speed: float = usual("direction_speed")
-    echo: float = usual("echo")
-
-    def __post_init__(self) -> None:
-        """Validate, and keep plain floats."""
-        for field in fields(self):
-            object.__setattr__(self, field.name, check(field.name, getattr(self, field.name)))
+    felt: Number = default("felt")
+    direction: Number = default("direction")
+    direction_sure: Number = default("direction_sure")
+    direction_speed: Number = default("direction_speed")
+    echo: Number = default("echo")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,7 +11,7 @@ from pindrive.files.template import NUMBERS, usual
 from pindrive.motion.drive import check_slopes, check_times
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import refusal
+from pindrive.quantities.table import default, refusal
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -127,4 +127,4 @@ def _given(tables: Tables, key: str) -> float:
             return number(value, quantity, usual(quantity), key, "")
     except ValueError:  # said where the tables are read
         pass
-    return quantity.default or 0.0
+    return float(default(quantity.name))

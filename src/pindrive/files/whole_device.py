@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pindrive.device.coil import COIL_MAY, COIL_NEEDS, Coil, check_one_way
+from pindrive.device.coil import COIL, COIL_NEEDS, DIRECT, Coil, check_one_way
 from pindrive.device.controller import ControlBlock, check_band
 from pindrive.device.device import Device, check_plate
 from pindrive.device.electromagnet import Electromagnet
@@ -20,7 +20,6 @@ from pindrive.files.schema import Place, Problems, Value, contact_of, table_of
 from pindrive.motion.drive import Drive
 from pindrive.quantities.table import refusal
 
-_COIL: Final = (*COIL_NEEDS, *COIL_MAY)
 _GRID: Final = ("columns", "rows", "pitch")
 
 
@@ -32,12 +31,12 @@ class Whole:
 
     def magnet(self) -> Electromagnet:
         """The electromagnet: by how it is made where the file says so, else by what it does."""
-        table = table_of(self.values, "magnet")
-        given = {name: value for name, value in table.items() if value is not None}
-        coil = {name: given.pop(name) for name in _COIL if name in given}
-        if coil:
-            return Electromagnet.from_coil(Coil(**coil), **given)
-        return Electromagnet.from_times(**given)
+        given = table_of(self.values, "magnet")
+        coil = {name: given.pop(name) for name in COIL}
+        if all(coil[name] is None for name in COIL_NEEDS):
+            return Electromagnet.from_times(**given)
+        around = {name: value for name, value in given.items() if name not in DIRECT}
+        return Electromagnet.from_coil(Coil(**coil), **around)
 
     def array(self) -> PinArray:
         """The pins: at given places, or a grid."""
@@ -62,10 +61,11 @@ class Whole:
         """The value of a key, SI, given or not; None where nothing was given and nothing holds."""
         table, _, name = key.partition(".")
         value = self.values[key]
-        if table == "magnet" and value is None:
+        if table == "magnet" and name in (*COIL, *DIRECT):
             magnet = self.magnet()
-            made = magnet.coil if name in _COIL else magnet
-            return None if made is None else getattr(made, name)
+            if name in COIL:
+                return None if magnet.coil is None else getattr(magnet.coil, name)
+            return value if magnet.coil is None else getattr(magnet, name)
         return None if name in _GRID and self.values["array.places"] is not None else value
 
     def problems(self, given: dict[str, Any], place: Place) -> list[str]:

@@ -11,11 +11,13 @@ from operator import lt
 from typing import TYPE_CHECKING, Any, cast, overload
 
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, refusal
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.quantities.table import Number
 
 __all__ = ["Contact", "Drive", "Profile"]
 
@@ -240,7 +242,7 @@ def check_slopes(
     raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@checked
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
 
@@ -257,28 +259,14 @@ class Drive:
         ValueError: a value is no number or out of its range.
     """
 
-    mass: float
-    stiffness: float
-    damping: float
+    mass: Number
+    stiffness: Number
+    damping: Number
     plate: Contact
     finger: Contact
 
-    def __init__(
-        self,
-        *,
-        mass: float | str,
-        stiffness: float | str,
-        damping: float | str,
-        plate: Contact,
-        finger: Contact,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "mass", check("mass", mass))
-        put(self, "stiffness", check("stiffness", stiffness))
-        put(self, "damping", check("damping", damping))
-        put(self, "plate", plate)
-        put(self, "finger", finger)
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         ratios = QUANTITIES["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios

@@ -14,7 +14,7 @@ from pindrive.motion.drive import (
     check_skin,
     check_stretch,
 )
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
 if TYPE_CHECKING:
     from pindrive.motion.results import CoreNumbers, Rows
@@ -51,9 +51,9 @@ class Release:
     def __init__(
         self,
         mouse_velocity: float | str | Profile,
-        displacement: float | str = 0.0,
+        displacement: float | str = default("displacement"),
         velocity: float | str | None = None,
-        plate_load: float | str | Profile = 1.0,
+        plate_load: float | str | Profile = default("plate_load"),
         skin_stretch: float | str | None = None,
     ) -> None:
         """Validate, and keep plain floats."""

@@ -293,8 +293,17 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "m",
         "white around the text or the lines of a page",
         between(0.0, 10.0),
-        0.005,
-        "assumed: half the height of the text",
+        source="assumed: half the height of the text",
+        absent=0.005,
+    ),
+    Quantity(
+        "text.pixel",
+        "p_s",
+        "m",
+        "size of a pixel of text and lines",
+        between(1e-7, 1.0),
+        source="assumed: 254 pixels an inch",
+        absent=1e-4,
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
@@ -316,10 +325,22 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
     ),
     Quantity(
-        "rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)
+        "rise_constant",
+        "τ_r",
+        "s",
+        "time constant of the rising current",
+        between(1e-9, 1e6),
+        source="assumed: a third of rise_time",
+        absent=0.001,
     ),
     Quantity(
-        "fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)
+        "fall_constant",
+        "τ_f",
+        "s",
+        "time constant of the falling current",
+        between(1e-9, 1e6),
+        source="assumed: four fifths of fall_time",
+        absent=0.004,
     ),
     Quantity(
         "friction_coefficient",

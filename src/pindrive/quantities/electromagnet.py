@@ -24,7 +24,8 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
         "magnet",
-        remark="1 N unless given, or what the coil below gives",
+        absent=1.0,
+        remark="or what the coil below gives",
     ),
     Quantity(
         "rise_time",
@@ -35,7 +36,8 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
         "magnet",
-        remark="3 ms unless given, or what the coil gives",
+        absent=0.003,
+        remark="or what the coil gives",
     ),
     Quantity(
         "fall_time",
@@ -46,7 +48,8 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
         "magnet",
-        remark="5 ms unless given, or what the coil gives",
+        absent=0.005,
+        remark="or what the coil gives",
     ),
     Quantity(
         "saturation",
@@ -57,7 +60,8 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         1.0,
         "assumed: a coil just strong enough",
         "magnet",
-        remark="1 unless given, or what the coil gives",
+        absent=1.0,
+        remark="or what the coil gives",
     ),
     Quantity(
         "residual",
@@ -174,7 +178,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "assumed: a diode alone, its voltage neglected",
         "magnet",
         example=0.0,
-        remark="0 ohm unless given",
+        absent=0.0,
     ),
     Quantity(
         "saturation_field",
@@ -186,7 +190,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "iron, 1.5-2.1 T (handbook tables); the lower middle",
         "magnet",
         example=1.6,
-        remark="1.6 T unless given",
+        absent=1.6,
     ),
     Quantity(
         "thermal_resistance",
@@ -199,7 +203,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "(Incropera, table 1.1)",
         "magnet",
         example=430.0,
-        remark="430 K/W unless given",
+        absent=430.0,
     ),
     Quantity(
         "temperature_rise",
@@ -211,7 +215,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "assumed: from 25 °C to 45 °C, for a finger stays on it",
         "magnet",
         example=20.0,
-        remark="20 K unless given",
+        absent=20.0,
     ),
 )
 """The electromagnet by how it is made."""

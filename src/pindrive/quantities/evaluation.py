@@ -7,6 +7,7 @@ from typing import Final
 from pindrive.quantities.quantity import Quantity, between
 
 GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
+HANDS: Final = "hand speed in finger studies, 20-100 mm/s (arXiv 2505.11162)"
 FELT: Final = between(1e-9, 1.0)
 
 CRITERIA: Final[tuple[Quantity, ...]] = (
@@ -113,9 +114,27 @@ SPEED: Final[tuple[Quantity, ...]] = (
         "1",
         "part of its way that the pin must be back between",
         between(1e-6, 1.0),
+        source="assumed",
+        absent=0.5,
     ),
-    Quantity("speed.slowest", "v_min", "m/s", "slowest hand tried", between(1e-4, 100.0)),
-    Quantity("speed.fastest", "v_max", "m/s", "fastest hand tried", between(1e-4, 100.0)),
+    Quantity(
+        "speed.slowest",
+        "v_min",
+        "m/s",
+        "slowest hand tried",
+        between(1e-4, 100.0),
+        source=f"a fourth of the slowest of {HANDS}",
+        absent=0.005,
+    ),
+    Quantity(
+        "speed.fastest",
+        "v_max",
+        "m/s",
+        "fastest hand tried",
+        between(1e-4, 100.0),
+        source=f"ten times the fastest of {HANDS}",
+        absent=1.0,
+    ),
 )
 """What the largest hand speed is found for."""
 

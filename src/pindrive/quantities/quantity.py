@@ -94,8 +94,8 @@ class Quantity:
     alternative: str = ""
     """The key from which a mandatory one follows where that is given in its place."""
     absent: float | None = None
-    """SI value that holds where a device file leaves it out; None: there is none, or it follows
-    from others."""
+    """SI value that holds where a device file, or a call in Python, leaves it out; None: there is
+    none, or it follows from others."""
     remark: str = ""
     """What else its device file says about it."""
     example: float | None = None
@@ -145,10 +145,9 @@ class Quantity:
     @property
     def usual(self) -> str:
         """A usual value of it as text: "10 g"; of one that must be rows, their last."""
-        value = self.example if self.default is None else self.default
-        if value is None:
-            value = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
-        return self.written(value)
+        unknown = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
+        stated = (self.default, self.example, self.absent, unknown)
+        return self.written(next(value for value in stated if value is not None))
 
     def written(self, value: float) -> str:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""

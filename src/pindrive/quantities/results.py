@@ -165,8 +165,8 @@ RATE: Final = Quantity(
     "Hz",
     "how many even samples a second a file of a motion has",
     between(1e-6, 1e12),
-    1000.0,
-    "assumed",
+    source="assumed",
+    absent=1000.0,
 )
 """Of files over time."""
 

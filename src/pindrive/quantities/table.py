@@ -7,8 +7,18 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass, fields
 from operator import index
-from typing import Final, SupportsFloat, SupportsIndex, cast
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Final,
+    SupportsFloat,
+    SupportsIndex,
+    TypeVar,
+    cast,
+    dataclass_transform,
+)
 
 from pindrive import lazy
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
@@ -23,6 +33,22 @@ DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 QUANTITIES: Final[dict[str, Quantity]] = {
     q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE)
 }
+
+T = TypeVar("T")
+
+if TYPE_CHECKING:
+
+    class Number:
+        """The type of a `checked` field that takes a number, SI, or text with a unit."""
+
+        def __get__(self, instance: object, owner: object) -> float: ...
+        def __set__(self, instance: object, value: float | str) -> None: ...
+
+    class OptionalNumber:
+        """The same, of one that may be None."""
+
+        def __get__(self, instance: object, owner: object) -> float | None: ...
+        def __set__(self, instance: object, value: float | str | None) -> None: ...
 
 
 class Refusal(str):
@@ -104,6 +130,32 @@ def check(
         shown = given if given is not None else f"{number!r} {unit}".rstrip()
         raise ValueError(refusal(label, required, shown, where))
     return number
+
+
+def default(name: str) -> Any:
+    """What holds where the quantity called `name` is not given, SI; None where nothing does."""
+    return QUANTITIES[name].absent
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def checked(cls: type[T]) -> type[T]:
+    """A frozen dataclass, made by keywords, whose fields that are named as quantities are checked.
+
+    They are kept as floats; one may be None where that is its default. Its own `__post_init__` is
+    called then. Of a field that is refused it raises what `check` raises.
+    """
+    then = getattr(cls, "__post_init__", None)
+
+    def check_fields(self: Any) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in QUANTITIES and not (value is field.default is None):
+                object.__setattr__(self, field.name, check(field.name, value))
+        if then:
+            then(self)
+
+    cls.__post_init__ = check_fields  # type: ignore[attr-defined]
+    return dataclass(frozen=True, kw_only=True)(cls)
 
 
 def check_whole(
