@@ -217,7 +217,7 @@ def test_scan_of_a_letter(device: Path) -> None:
     scene = reading.text("A", whole.array)
     done = scan(whole, scene, reading.strokes(scene, whole.array))
     xr.testing.assert_identical(told, done.to_dataset())
-    for name in ("position", "velocity", "skin_force", "luminance", "current", "pull", "hand_x"):
+    for name in ("position", "velocity", "finger_force", "luminance", "current", "pull", "hand_x"):
         assert told[name].attrs["units"]
         assert told[name].attrs["long_name"]
     assert set(told.event_kind.values) == {e.kind for pin in done.pins for e in pin.events}

@@ -19,7 +19,7 @@ from pindrive.files.template import NUMBERS
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import ENDING, ENERGY, SERIES, TRANSIENT
+from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.table import QUANTITIES
 from pindrive.study.design import variable
 from pindrive.study.outputs import OUTPUTS, known_output
@@ -138,13 +138,6 @@ def test_numbers_have_one_name_and_one_unit_in_every_dataset() -> None:
         if name in batch.coords:
             assert batch[name].attrs.get("units", "") == argument.unit
     assert {*data.dims} == {"time", "event"}
-
-
-def test_columns_over_time_are_in_the_table_alone() -> None:
-    assert [*SERIES] == [quantity.name for quantity in SERIES.values()]
-    data = simulate(DRIVE, Release(BRAKE, 1.5e-3)).to_dataset([0.0, 0.01])
-    for name, quantity in SERIES.items():
-        assert data[name].attrs["units"] == quantity.unit
 
 
 def test_the_rows_of_what_changes_are_in_the_table() -> None:

@@ -12,12 +12,12 @@ import numpy as np
 
 from pindrive.device.trajectory import Course
 from pindrive.lazy import xr
+from pindrive.motion.dataset import columns
 from pindrive.quantities import budgets
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.hand import HandPath
@@ -45,34 +45,16 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     if times is None:
         times = np.append(np.arange(path.begin, path.end, EACH), path.end)
     t = np.atleast_1d(np.asarray(times, np.float64))
-    hand_x, hand_y = path.position(t)
+    plate_velocity = path.plate_velocity(device.array.axis)(t - path.begin)
+    over_time = dict(zip(("hand_x", "hand_y"), path.position(t), strict=True))
     data: dict[str, Any] = {
-        "hand_x": _over("time", hand_x, "m", "place of the hand across the page"),
-        "hand_y": _over("time", hand_y, "m", "place of the hand down the page"),
-        "plate_velocity": _over(
-            "time",
-            path.plate_velocity(device.array.axis)(t - path.begin),
-            "m/s",
-            "velocity of the plate in the housing, along the drive axis",
-        ),
+        name: ("time", values, SERIES[name].attributes)
+        for name, values in (over_time | {"plate_velocity": plate_velocity}).items()
     }
-    columns: dict[str, tuple[Callable[[PinScan], NDArray[Any]], str, str]] = {
-        "position": (lambda p: p.position(t), "m", "deflection of the pin from the spring's rest"),
-        "velocity": (lambda p: p.velocity(t), "m/s", "velocity of the pin in the housing"),
-        "skin_force": (lambda p: p.skin_force(t), "N", "force of the pin on the skin"),
-        "stretch": (lambda p: p.stretch(t), "m", "stretch of the skin"),
-        "command": (lambda p: p.commands.on(t), "", "whether the magnet is switched on"),
-        "current": (lambda p: p.current(t), "1", "current in the coil, a part of the full one"),
-        "pull": (lambda p: device.magnet.pull(p.current(t)), "N", "pull of the magnet"),
-    }
-    if device.drive.finger.rigid:
-        del columns["stretch"]
-    for name, (column, unit, meaning) in columns.items():
-        values = np.stack([column(pin) for pin in pins])
-        data[name] = _over(("pin", "time"), values, unit, meaning)
-    spots = scan.spots(t)
-    luminance = scan.scene.at(spots[..., 0], spots[..., 1])
-    data["luminance"] = _over(("pin", "time"), luminance, "1", "luminance under the pin's spot")
+    of_pins = [_columns(scan, pin, t) for pin in pins]
+    for name in of_pins[0]:
+        values = np.stack([found[name] for found in of_pins])
+        data[name] = (("pin", "time"), values, SERIES[name].attributes)
     data |= _events(pins) | _switchings(pins) | _numbers(pins) | _gaps(scan)
     data["scene"] = _over(("row", "column"), scan.scene.luminance, "1", "luminance of the scene")
     places, shown = np.array(device.array.places), np.array(device.array.spots)
@@ -169,6 +151,20 @@ def peak_displacement(motion: Motion) -> float:
     return float(np.abs(motion.position(Course(motion).knots)).max())
 
 
+def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """What is known of one pin at times on the path's clock (s, shape (n,))."""
+    found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
+    del found["time"]
+    found.pop("plate_velocity", None)  # that of all pins
+    spot = scan.spot(pin.number, t)
+    return found | {
+        "luminance": scan.scene.at(spot[:, 0], spot[:, 1]),
+        "command": pin.commands.on(t),
+        "current": pin.current(t),
+        "pull": scan.device.magnet.pull(pin.current(t)),
+    }
+
+
 def _over(
     dimension: str | tuple[str, ...], values: Any, unit: str, meaning: str
 ) -> tuple[Any, Any, dict[str, str]]:
@@ -214,13 +210,8 @@ def _numbers(pins: tuple[PinScan, ...]) -> dict[str, Any]:
     rows = [numbers(pin) for pin in pins]
     table = {}
     for name in rows[0]:
-        quantity = QUANTITIES[name]
-        attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
-        table[name.replace(".", "_")] = (
-            "pin",
-            np.array([row[name] for row in rows]),
-            attributes | ({"units": quantity.unit} if quantity.unit else {}),
-        )
+        values = np.array([row[name] for row in rows])
+        table[name.replace(".", "_")] = ("pin", values, QUANTITIES[name].attributes)
     return table
 
 
@@ -233,8 +224,8 @@ def _gaps(scan: Scan) -> dict[str, Any]:
         for name in ("behind", "ahead")
     }
     for name, attribute in (("pin_gap", "size"), ("pin_gap.time", "time")):
-        quantity, values = QUANTITIES[name], [getattr(gap, attribute) for gap in scan.gaps]
-        table[name.replace(".", "_")] = _over("neighbours", values, quantity.unit, quantity.meaning)
+        values = [getattr(gap, attribute) for gap in scan.gaps]
+        table[name.replace(".", "_")] = ("neighbours", values, QUANTITIES[name].attributes)
     return table
 
 

@@ -30,7 +30,7 @@ def dataset(judgement: Judgement) -> xr.Dataset:
     rows = [line.numbers for line in lines]
     for quantity in LINE:
         values = np.array([row[quantity.name] for row in rows], np.float64)
-        data[quantity.name.replace(".", "_")] = ("line", values, _attributes(quantity.name))
+        data[quantity.name.replace(".", "_")] = ("line", values, quantity.attributes)
     data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
     for name, unit, meaning in (
         ("time", "s", "when it was highest"),
@@ -41,12 +41,6 @@ def dataset(judgement: Judgement) -> xr.Dataset:
         values = np.array([getattr(echo, name) for echo in echoes], np.float64)
         data[f"echo_{name}"] = ("echo", values, {"long_name": meaning, "units": unit})
     for name, count in judgement.counts.items():
-        data[name.replace(".", "_")] = ((), count, _attributes(name))
+        data[name.replace(".", "_")] = ((), count, QUANTITIES[name].attributes)
     title = f"Lines of {judgement.scan.scene.title}, as they were shown"
     return xr.Dataset(data, attrs={"title": title, "source": f"pindrive {__version__}"})
-
-
-def _attributes(name: str) -> dict[str, str]:
-    quantity = QUANTITIES[name]
-    unit = {"units": quantity.unit} if quantity.unit else {}
-    return {"long_name": quantity.meaning, "symbol": quantity.symbol} | unit

@@ -10,8 +10,8 @@ from pindrive.files.schema import number
 from pindrive.files.template import NUMBERS, usual
 from pindrive.motion.drive import check_slopes, check_times
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import default, refusal
+from pindrive.quantities.quantity import Quantity, Rows, counted
+from pindrive.quantities.table import QUANTITIES, default, refusal
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -73,6 +73,24 @@ def recording_words(tables: Tables, folder: Path) -> str:
     if file is None or NUMBERS[SPEED].name in CsvTable.read(file, "rows", ""):
         return ""
     return _path(file, tables).about
+
+
+def profile_words(file: Path) -> str:
+    """What the rows of a CSV are, for a person; empty for one that holds no input by its name.
+
+    Raises:
+        ValueError: it cannot be read, or its rows are malformed; file and row are named.
+    """
+    table = CsvTable.read(file, "a CSV", profile_header(NUMBERS[SPEED]))
+    for key, quantity in NUMBERS.items():
+        if quantity.rows_of == "profile" and quantity.name in table:
+            rows = _rows(file, key, {})
+            lasts = QUANTITIES["profile.time"].text(rows[-1][0] - rows[0][0])
+            low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))
+            return (
+                f"{quantity.name}: {counted(len(rows), 'row')} over {lasts}, from {low} to {high}."
+            )
+    return ""
 
 
 def profile_header(quantity: Quantity) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 from itertools import islice, pairwise
 from math import copysign, inf, isinf, isnan, sqrt
 from operator import lt
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 
 from pindrive.quantities.quantity import brief, counted
 from pindrive.quantities.table import QUANTITIES, check, checked, refusal
+from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     import numpy as np
@@ -334,18 +336,27 @@ class Profile:
     Args:
         times: s, or text with a unit, from -1e12 to 1e12, none less than the one before, no three
             alike; at least one.
-        values: one for each time, SI, from -1e12 to 1e12, as is the rate between two rows.
+        values: one for each time, SI, or text with a unit, such as "60 mm/s", from -1e12 to 1e12,
+            as is the rate between two rows.
+
+    Attributes:
+        unit: the SI unit of values that were text, empty where none was: `Release` refuses those of
+            another quantity.
 
     Raises:
-        ValueError: lengths differ, times decrease, a number or a rate is out of range.
+        ValueError: lengths differ, times decrease, a number or a rate is out of range, or a text is
+            in no unit of a quantity that may change over time.
     """
 
     times: tuple[float, ...]
     values: tuple[float, ...]
+    unit: str = field(compare=False, repr=False)
 
-    def __init__(self, times: Iterable[float | str], values: Iterable[float]) -> None:
+    def __init__(self, times: Iterable[float | str], values: Iterable[float | str]) -> None:
         """Validate, and keep tuples of plain floats."""
-        t, y = _column(times, "profile.time", "times"), _column(values, "profile.value", "values")
+        unit, numbers = _in_si(_listed(values))
+        t = _column(_listed(times), "profile.time", "times")
+        y = _column(numbers, "profile.value", "values")
         if not t:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(t) != len(y):
@@ -354,6 +365,7 @@ class Profile:
         check_slopes(list(zip(t, y, strict=True)), "profile.rate", label="profile")
         object.__setattr__(self, "times", t)
         object.__setattr__(self, "values", y)
+        object.__setattr__(self, "unit", unit)
 
     @property
     def changes(self) -> bool:
@@ -390,14 +402,30 @@ class Profile:
         return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
 
 
-def _column(values: Iterable[float | str], name: str, label: str) -> tuple[float, ...]:
-    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
+def _listed(values: Iterable[float | str]) -> list[Any]:
     try:
-        listed: list[Any] = values.tolist() if hasattr(values, "tolist") else list(values)
-        bounds = QUANTITIES[name].limits
-        plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
-        if plain and min(listed) in bounds and max(listed) in bounds:
-            return tuple(listed)
-        return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(listed))
+        return values.tolist() if hasattr(values, "tolist") else list(values)
     except TypeError:
         raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None
+
+
+def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
+    """The SI unit of values of which some are text, empty where none is, and all of them in SI."""
+    if str not in set(map(type, values)):
+        return "", values
+    over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
+    for unit in [quantity.unit for quantity in over_time]:
+        with suppress(UnitError):
+            return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
+    usual = " or all like ".join(quoted(quantity.usual) for quantity in over_time)
+    texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
+    raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
+
+
+def _column(values: list[Any], name: str, label: str) -> tuple[float, ...]:
+    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
+    bounds = QUANTITIES[name].limits
+    plain = set(map(type, values)) == {float} and not any(map(isnan, values))
+    if plain and min(values) in bounds and max(values) in bounds:
+        return tuple(values)
+    return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(values))

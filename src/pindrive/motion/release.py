@@ -78,7 +78,11 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
     """A constant or a profile, each value of it checked."""
     if not isinstance(given, Profile):
         return check(name, given)
-    bounds, limits = QUANTITIES[name].bounds, QUANTITIES[name].limits
+    quantity = QUANTITIES[name]
+    bounds, limits = quantity.bounds, quantity.limits
+    if given.unit and given.unit != quantity.unit:
+        other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
+        raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
     if name == "mouse_velocity":
         check_continuous(given, "m/s")
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):

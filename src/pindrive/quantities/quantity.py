@@ -158,6 +158,12 @@ class Quantity:
         """Words for the value that holds where a device file leaves it out; empty: none does."""
         return "" if self.absent is None else f"{self.written(self.absent)} unless given"
 
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What a variable of a dataset that holds it says of it: meaning, symbol, SI unit."""
+        unit = {"units": self.unit} if self.unit else {}
+        return {"long_name": self.meaning, "symbol": self.symbol} | unit
+
     def required(self, value: float) -> str:
         """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""
         for bounds in (self.bounds, self.limits):

@@ -170,18 +170,28 @@ RATE: Final = Quantity(
 )
 """Of files over time."""
 
-SERIES: Final[dict[str, Quantity]] = {
-    quantity.name: quantity
-    for quantity in (
-        Quantity("time", "t", "s", "time since the release"),
-        Quantity("position", "x", "m", "deflection of the pin from the spring's rest"),
-        Quantity("velocity", "x'", "m/s", "velocity of the pin in the housing"),
-        Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
-        Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
-        Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
-        Quantity("stretch", "s", "m", "stretch of the finger's skin"),
-        Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
-        Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
-    )
-}
-"""What is known of a motion at a time, by the names of the columns of its files and datasets."""
+MOTION: Final[tuple[Quantity, ...]] = (
+    Quantity("time", "t", "s", "time since the release"),
+    Quantity("position", "x", "m", "deflection of the pin from the spring's rest"),
+    Quantity("velocity", "x'", "m/s", "velocity of the pin in the housing"),
+    Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
+    Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
+    Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
+    Quantity("stretch", "s", "m", "stretch of the finger's skin"),
+    Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
+    Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
+)
+"""What is known of a motion at a time."""
+
+SCANNED: Final[tuple[Quantity, ...]] = (
+    Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
+    Quantity("hand_y", "y_h", "m", "place of the hand down the page"),
+    Quantity("luminance", "L", "1", "luminance under the pin's spot"),
+    Quantity("command", "u", "", "whether the magnet is switched on"),
+    Quantity("current", "c", "1", "current in the coil, a part of the full one"),
+    Quantity("pull", "P", "N", "pull of the magnet"),
+)
+"""What is known of a scan at a time besides, on the clock of the hand's path."""
+
+SERIES: Final[dict[str, Quantity]] = {quantity.name: quantity for quantity in (*MOTION, *SCANNED)}
+"""The columns over time of files and datasets, by their names."""
