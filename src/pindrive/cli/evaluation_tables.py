@@ -12,7 +12,7 @@ from rich.text import Text
 
 from pindrive.cli.tables import new_table
 from pindrive.evaluation.resolution import criterion
-from pindrive.quantities.evaluation import LINE
+from pindrive.quantities.results import LINE
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:

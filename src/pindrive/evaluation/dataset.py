@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pindrive.lazy import xr
-from pindrive.quantities.evaluation import LINE
+from pindrive.quantities.results import LINE
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:

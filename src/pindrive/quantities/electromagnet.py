@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import Bounds, Quantity, between
+from pindrive.quantities.quantity import Quantity, between, in_table
 
-SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
 FINE: Final = between(1e-8, 0.1)
 """Rows that are so close to a curve: their number grows with one over the root of it."""
 
-MAGNET: Final[tuple[Quantity, ...]] = (
+MAGNET: Final = in_table(
+    "magnet",
     Quantity(
         "hold_force",
         "P_h",
@@ -23,8 +23,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-6, 1e4),
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
-        "magnet",
-        absent=1.0,
         remark="or what the coil below gives",
     ),
     Quantity(
@@ -35,8 +33,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-7, 100.0),
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
-        "magnet",
-        absent=0.003,
         remark="or what the coil gives",
     ),
     Quantity(
@@ -47,8 +43,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-7, 100.0),
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
-        "magnet",
-        absent=0.005,
         remark="or what the coil gives",
     ),
     Quantity(
@@ -59,8 +53,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-3, 1.0),
         1.0,
         "assumed: a coil just strong enough",
-        "magnet",
-        absent=1.0,
         remark="or what the coil gives",
     ),
     Quantity(
@@ -71,8 +63,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(0.0, 1e4),
         0.0,
         "assumed: soft iron and a paint thick enough",
-        "magnet",
-        absent=0.0,
     ),
     Quantity(
         "pressing",
@@ -80,9 +70,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "N",
         "force that presses the electromagnet on the plate while it is off",
         between(1e-6, 1e4),
-        None,
-        "9.80665 m/s2 (standard gravity) times 1 g",
-        "magnet",
+        source="9.80665 m/s2 (standard gravity) times 1 g",
         example=0.00980665,
         remark="its weight unless given",
     ),
@@ -94,22 +82,19 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         FINE,
         1e-4,
         "a thousandth of the scatter of friction coefficients in handbooks",
-        "magnet",
-        absent=1e-4,
     ),
 )
 """The electromagnet by what it does."""
 
-COIL: Final[tuple[Quantity, ...]] = (
+COIL: Final = in_table(
+    "magnet",
     Quantity(
         "turns",
         "N",
         "1",
         "turns of the winding",
         between(1.0, 1e6),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=250,
         remark="with the six that follow in place of hold_force, rise_time, fall_time, saturation",
     ),
@@ -119,9 +104,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m^2",
         "area of one of its two poles",
         between(1e-10, 1.0),
-        None,
-        "assumed: a core 2 mm wide",
-        "magnet",
+        source="assumed: a core 2 mm wide",
         example=3e-6,
     ),
     Quantity(
@@ -130,9 +113,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "gap between each pole and the steel: paint, roughness",
         between(1e-9, 0.1),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=5e-5,
     ),
     Quantity(
@@ -141,9 +122,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "diameter of the copper in its wire",
         between(1e-7, 0.1),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=1e-4,
     ),
     Quantity(
@@ -152,9 +131,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "mean length of a turn",
         between(1e-5, 10.0),
-        None,
-        "assumed: round a core 2 mm wide",
-        "magnet",
+        source="assumed: round a core 2 mm wide",
         example=0.0085,
     ),
     Quantity(
@@ -163,9 +140,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "V",
         "voltage across the coil while it is on",
         between(1e-3, 1e5),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=1.0,
     ),
     Quantity(
@@ -174,9 +149,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "ohm",
         "resistance through which the current dies away, beside the coil's own",
         between(0.0, 1e9),
-        None,
-        "assumed: a diode alone, its voltage neglected",
-        "magnet",
+        source="assumed: a diode alone, its voltage neglected",
         example=0.0,
         absent=0.0,
     ),
@@ -186,9 +159,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "T",
         "field at which the iron saturates",
         between(1e-3, 100.0),
-        None,
-        "iron, 1.5-2.1 T (handbook tables); the lower middle",
-        "magnet",
+        source="iron, 1.5-2.1 T (handbook tables); the lower middle",
         example=1.6,
         absent=1.6,
     ),
@@ -198,10 +169,8 @@ COIL: Final[tuple[Quantity, ...]] = (
         "K/W",
         "warming of the electromagnet for each watt",
         between(1e-4, 1e7),
-        None,
-        "1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of 2-25 "
-        "(Incropera, table 1.1)",
-        "magnet",
+        source="1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of "
+        "2-25 (Incropera, table 1.1)",
         example=430.0,
         absent=430.0,
     ),
@@ -211,9 +180,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "K",
         "warming that is allowed",
         between(1e-2, 1000.0),
-        None,
-        "assumed: from 25 °C to 45 °C, for a finger stays on it",
-        "magnet",
+        source="assumed: from 25 °C to 45 °C, for a finger stays on it",
         example=20.0,
         absent=20.0,
     ),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, floor, inf, isfinite, isnan, log10
 from typing import Final
 
 Rows = tuple[tuple[float, float], ...]
 """A piecewise-linear function by its corners, SI: (speed, force) or (time, value)."""
+
+PAPER: Final = '"Dynamics of tactile device drive"'
 
 DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "kg": ("g", 1e3),
@@ -65,6 +67,7 @@ POSITIVE: Final = Bounds(lower=0.0)
 NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
 POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
 FINITE_OR_NOT: Final = Bounds(lower_closed=True, upper_closed=True)
+SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
 
 
 def between(lower: float, upper: float) -> Bounds:
@@ -191,6 +194,11 @@ class Quantity:
     def text(self, value: float) -> str:
         """`value` (SI) for a person to read: "1.500 mm"."""
         return f"{self.digits(value)} {self.display_unit}".rstrip()
+
+
+def in_table(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
+    """Rows of one table of a device file."""
+    return tuple(replace(row, section=section) for row in rows)
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:

@@ -23,9 +23,8 @@ from typing import (
 from pindrive import lazy
 from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
 from pindrive.quantities.drive import INPUTS, PARTS
-from pindrive.quantities.evaluation import JUDGE
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.results import FINAL, OUTPUTS, RATE
+from pindrive.quantities.results import FINAL, JUDGE, OUTPUTS, RATE
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
