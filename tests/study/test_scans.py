@@ -23,7 +23,7 @@ from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
-from pindrive.device.coil import COIL as MADE_OF
+from pindrive.device.electromagnet import COIL as MADE_OF
 from pindrive.device.reading import Page, Reading
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.files.output import OutputError

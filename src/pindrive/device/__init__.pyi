@@ -1,6 +1,6 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
-from pindrive.device.coil import Coil as Coil
+from pindrive.device.electromagnet import Coil as Coil
 from pindrive.device.controller import Commands as Commands
 from pindrive.device.controller import ControlBlock as ControlBlock
 from pindrive.device.controller import Decision as Decision

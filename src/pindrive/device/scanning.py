@@ -235,7 +235,7 @@ class Scan(lazy.NotebookHtml):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What is doubtful about it, in words with numbers."""
-        found: tuple[str, ...] = lazy.call("pindrive.device.scan_warnings:scan_warnings", self)
+        found: tuple[str, ...] = lazy.call("pindrive.device.dataset:scan_warnings", self)
         return found
 
     @cached_property

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isnan, nan
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
 from pindrive import lazy
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.results import LINE
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import checked, default
+from pindrive.quantities.table import QUANTITIES, checked, default
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -167,8 +168,34 @@ class Judgement(lazy.NotebookHtml):
             passed under the spot) and the numbers of `Line.numbers`; over `echo`: those of `Echo`;
             a scalar for each of `counts`.
         """
-        made: xr.Dataset = lazy.call("pindrive.evaluation.dataset:dataset", self)
-        return made
+        from pindrive import __version__
+
+        lines, echoes = self.lines, self.echoes
+        data: dict[str, Any] = {
+            "pin": ("line", np.array([line.pin for line in lines], np.int64)),
+            "fate": ("line", np.array([line.fate for line in lines], "<U6")),
+        }
+        for end in ("begin", "end"):
+            times = np.array([getattr(line, end).time for line in lines], np.float64)
+            words = {"long_name": f"when the {end} of the line passed under the spot", "units": "s"}
+            data[f"time_{end}"] = ("line", times, words)
+        rows = [line.numbers for line in lines]
+        for quantity in LINE:
+            values = np.array([row[quantity.name] for row in rows], np.float64)
+            data[quantity.name.replace(".", "_")] = ("line", values, quantity.attributes)
+        data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
+        for name, unit, meaning in (
+            ("time", "s", "when it was highest"),
+            ("x", "m", "where the spot was then, across the page"),
+            ("y", "m", "where the spot was then, down the page"),
+            ("stroke", "m", "how high it was"),
+        ):
+            values = np.array([getattr(echo, name) for echo in echoes], np.float64)
+            data[f"echo_{name}"] = ("echo", values, {"long_name": meaning, "units": unit})
+        for name, count in self.counts.items():
+            data[name.replace(".", "_")] = ((), count, QUANTITIES[name].attributes)
+        title = f"Lines of {self.scan.scene.title}, as they were shown"
+        return xr.Dataset(data, attrs={"title": title, "source": f"pindrive {__version__}"})
 
     @property
     def shown(self) -> tuple[Line, ...]:

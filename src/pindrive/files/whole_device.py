@@ -9,10 +9,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pindrive.device.coil import COIL, COIL_NEEDS, DIRECT, Coil, check_one_way
 from pindrive.device.controller import ControlBlock, check_band
 from pindrive.device.device import Device, check_plate
-from pindrive.device.electromagnet import Electromagnet
+from pindrive.device.electromagnet import (
+    COIL,
+    COIL_NEEDS,
+    DIRECT,
+    Coil,
+    Electromagnet,
+    check_one_way,
+)
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
 from pindrive.device.reading import Reading
 from pindrive.evaluation.results import Criteria

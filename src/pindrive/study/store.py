@@ -17,7 +17,7 @@ from zlib import crc32
 
 import numpy as np
 
-from pindrive.device.coil import COIL, DIRECT
+from pindrive.device.electromagnet import COIL, DIRECT
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
