@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.files.schema import number
+from pindrive.files.schema import Tables, number
 from pindrive.files.template import NUMBERS, usual
 from pindrive.motion.drive import check_slopes, check_times
 from pindrive.quantities.csv_table import CsvTable
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 SUFFIX: Final = ".csv"
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
-
-Tables = Mapping[str, Any]
 
 
 def is_file(key: str, value: object) -> bool:
