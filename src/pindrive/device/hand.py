@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.motion.drive import Profile
+from pindrive.motion.drive import Profile, check_increasing
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, default, refusal
 
@@ -61,7 +61,7 @@ class HandPath:
                 raise ValueError(refusal(name, required, f"shape {column.shape}"))
             if not np.isfinite(column).all():
                 raise ValueError(refusal(name, "finite", f"{column[~np.isfinite(column)][0]!r}"))
-        check_increasing(t)
+        check_increasing(t.tolist(), "s", label="times[{}]")
         x0, y0 = (check("hand.place", place, label="start") for place in start)
         lasts = np.diff(t)
         for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
@@ -240,17 +240,3 @@ def lines(
     stops = [place for y in rows for place in ((left, y), (right, y))]
     speeds = [return_speed if i % 2 else speed for i in range(len(stops) - 1)]
     return strokes(stops, speeds, pause=pause, deviation=deviation)
-
-
-def check_increasing(
-    times: NDArray[np.float64], labels: Sequence[str] | None = None, where: str = ""
-) -> None:
-    """Refuse times that are not finite and increasing."""
-    wrong = ~np.isfinite(times)
-    wrong[1:] |= ~(times[1:] > times[:-1])
-    if not wrong.any():
-        return
-    i = int(np.argmax(wrong))
-    label = f"times[{i}]" if labels is None else labels[i]
-    required = f"greater than the one before, {float(times[i - 1])!r} s" if i else "finite"
-    raise ValueError(refusal(label, required, f"{float(times[i])!r} s", where))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice, pairwise
@@ -123,15 +123,21 @@ def check_curve(
 
 
 def check_increasing(
-    values: Sequence[float], unit: str, *, where: str = "", label: str = "[{}]", why: str = ""
+    values: Sequence[float],
+    unit: str,
+    *,
+    where: str = "",
+    label: str | Callable[[int], str] = "[{}]",
+    why: str = "",
 ) -> None:
-    """Refuse values of which one is not greater than the one before; `label` takes its index."""
+    """Refuse values of which one is not greater than the one before; `label` is of its index."""
     if all(map(lt, values, islice(values, 1, None))):
         return
+    named = label.format if isinstance(label, str) else label
     for i in range(1, len(values)):
         if not values[i - 1] < values[i]:
             required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
-            raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}", where))
+            raise ValueError(refusal(named(i), required, f"{values[i]!r} {unit}", where))
 
 
 def check_times(
