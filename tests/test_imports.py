@@ -21,8 +21,7 @@ ORDER = (
 """Each package imports from itself and from those before it."""
 MOST_LAYERS = 10
 """Of packages, the top level among them."""
-MOST_FILES = 120
-MOST_FLOORS = 26
+MOST_FLOORS = 21
 """Of files: the longest chain of them, each of which imports the one before."""
 
 Graph = dict[str, set[str]]
@@ -120,7 +119,6 @@ def test_files_stand_in_few_floors() -> None:
     }
     chain = longest_chain(graph)
     assert len(chain) <= MOST_FLOORS, " → ".join(chain)
-    assert len([*SOURCE.rglob("*.py")]) <= MOST_FILES
     assert longest_chain({"a": set(), "b": {"a"}, "c": {"a", "b"}}) == ["a", "b", "c"]
 
 

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
+    from pindrive.device.device import Criteria
     from pindrive.evaluation.resolution import Band, SpeedLimit
-    from pindrive.evaluation.results import Criteria, Judgement
+    from pindrive.evaluation.results import Judgement
 
 _MM: Final = 1e3
 COUNTED: Final = (

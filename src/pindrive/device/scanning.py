@@ -18,7 +18,7 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Commands, Decision
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
@@ -64,8 +64,8 @@ class DescribedDevice(Protocol):
         """How a hand reads with it."""
 
     @property
-    def criteria(self) -> object:
-        """What counts as felt: `pindrive.evaluation.Criteria`."""
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,7 +200,7 @@ class Scan(lazy.NotebookHtml):
     pins: tuple[PinScan, ...]
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
-    criteria: object = None
+    criteria: Criteria | None = None
     """What counts as felt unless `evaluate` is given other ones; None: the literature's."""
 
     def __repr__(self) -> str:
@@ -208,11 +208,11 @@ class Scan(lazy.NotebookHtml):
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
         return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
 
-    def evaluate(self, criteria: object = None) -> Any:
+    def evaluate(self, criteria: Criteria | None = None) -> Any:
         """What the finger was shown against what is printed, line by line.
 
         Args:
-            criteria: what counts as felt, a `pindrive.evaluation.Criteria`; those of the device
+            criteria: what counts as felt; those of the device
                 file unless given, and of a device without one the middle of the literature.
 
         Returns:

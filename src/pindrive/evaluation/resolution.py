@@ -27,7 +27,7 @@ from typing import Final
 
 import numpy as np
 
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
@@ -35,7 +35,7 @@ from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, check_vibration
 from pindrive.evaluation.line_crossings import Printed
 from pindrive.evaluation.perception import JudgedPin
-from pindrive.evaluation.results import Criteria, Line
+from pindrive.evaluation.results import Line
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, default, refusal

@@ -9,45 +9,23 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 
 from pindrive import lazy
+from pindrive.device.device import Criteria
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import LINE
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import QUANTITIES, checked, default
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from pindrive.device.scanning import Scan
-    from pindrive.quantities.table import Number
 
 Fate = Literal["shown", "unseen", "merged", "faint"]
 Cue = Literal["none", "felt", "direction", "sure"]
 
 CUES: Final[tuple[Cue, ...]] = ("none", "felt", "direction", "sure")
 FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
-
-
-@checked
-class Criteria:
-    """What counts as felt, by the sources in the table of quantities.
-
-    Args:
-        felt: motion that is felt as a pulse, m, greater than 0.
-        direction: motion of skin whose direction is perceived, m, greater than 0.
-        direction_sure: whose direction is told right in more than 95 % of cases, m.
-        direction_speed: at which that must be gone, m/s.
-        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
-
-    Raises:
-        ValueError: a value is no number or out of its range.
-    """
-
-    felt: Number = default("felt")
-    direction: Number = default("direction")
-    direction_sure: Number = default("direction_sure")
-    direction_speed: Number = default("direction_speed")
-    echo: Number = default("echo")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,7 +14,7 @@ from math import inf
 from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
@@ -29,7 +29,7 @@ from pindrive.files.schema import (
     table_of,
     written,
 )
-from pindrive.files.template import DRIVE, NUMBERS, WHOLE
+from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES, WHOLE
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Rows, counted
@@ -37,20 +37,9 @@ from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pindrive.device.device import Device
+    from pindrive.device.device import Criteria, Device
     from pindrive.device.reading import Reading
-    from pindrive.evaluation.results import Criteria
     from pindrive.motion.motion import Motion
-
-STUDY_KEYS: Final = (
-    *("base", "set", "page", "outputs", "zip", "chunk"),
-    *("axes", "sample", "tolerances", "specification"),
-)
-"""What stands at the top of a study file beside the tables of a device and the name."""
-KEYS: Final = ("device.name", "device.description", *NUMBERS)
-AROUND: Final = ("magnet", "control", "array", "scan", "judge")
-ALONE: Final = ("device", "drive", "plate", "finger", "motion")
-TABLES: Final = (*ALONE, *AROUND)
 
 
 class Setting(NamedTuple):

@@ -12,7 +12,7 @@ from math import inf
 from typing import Any, Final
 
 from pindrive.device.controller import ControlBlock, check_band
-from pindrive.device.device import Device, check_plate
+from pindrive.device.device import Criteria, Device, check_plate
 from pindrive.device.electromagnet import (
     COIL,
     COIL_NEEDS,
@@ -23,7 +23,6 @@ from pindrive.device.electromagnet import (
 )
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
 from pindrive.device.reading import Reading
-from pindrive.evaluation.results import Criteria
 from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
 from pindrive.motion.drive import (
     Contact,

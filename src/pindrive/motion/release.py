@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nan
-from typing import TYPE_CHECKING
 
 from pindrive.motion.drive import (
     Drive,
@@ -16,10 +16,14 @@ from pindrive.motion.drive import (
 )
 from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
-if TYPE_CHECKING:
-    from pindrive.motion.results import CoreNumbers, Rows
+Rows = Sequence[tuple[float, float]]
+ContactNumbers = tuple[float, float, float, Rows]
+CoreNumbers = tuple[
+    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
+]
+"""In the order of `Numbers` in _core.cpp."""
 
-__all__ = ["Release"]
+__all__ = ["CoreNumbers", "Release", "Rows"]
 
 
 @dataclass(frozen=True, slots=True, init=False)

@@ -6,7 +6,6 @@ what each means.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from math import isnan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -23,12 +22,6 @@ if TYPE_CHECKING:
     from pindrive import _core
 
 Side = Literal["left", "right"]
-Rows = Sequence[tuple[float, float]]
-ContactNumbers = tuple[float, float, float, Rows]
-CoreNumbers = tuple[
-    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
-]
-"""In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
 
 

@@ -14,8 +14,7 @@ from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
 
 if TYPE_CHECKING:
     from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-    from pindrive.motion.results import CoreNumbers
+    from pindrive.motion.release import CoreNumbers, Release
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (

@@ -6,13 +6,10 @@ within them overflows or vanishes. How much work they ask for together is anothe
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import radians
 from typing import Any, Final
 
-from pindrive.quantities.electromagnet import COIL, FINE, MAGNET
-from pindrive.quantities.quantity import NON_NEGATIVE, SHARE, Quantity, between, in_table
-from pindrive.quantities.results import CRITERIA
+from pindrive.quantities.quantity import FINE, NON_NEGATIVE, SHARE, Quantity, between, in_table
 
 LUMINANCE: Final = between(0.0, 1.0)
 ACUTE: Final = between(0.0, radians(90.0))
@@ -238,12 +235,6 @@ SCAN: Final = in_table(
         "its slope, which is the force of inertia, is then within 3 % of its peak",
     ),
 )
-
-DEVICE_INPUTS: Final = tuple(
-    replace(row, absent=row.default) if row.absent is None else row
-    for row in MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
-)
-"""What a device file may give beyond the drive, in its order; all of it may be left out."""
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("place.x", "x", "m", "place of a pin along the drive axis", between(-10.0, 10.0)),

@@ -8,10 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import Quantity, between, in_table
-
-FINE: Final = between(1e-8, 0.1)
-"""Rows that are so close to a curve: their number grows with one over the root of it."""
+from pindrive.quantities.quantity import FINE, Quantity, between, in_table
 
 MAGNET: Final = in_table(
     "magnet",

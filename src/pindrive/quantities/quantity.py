@@ -75,6 +75,10 @@ def between(lower: float, upper: float) -> Bounds:
     return Bounds(lower, upper, lower_closed=True, upper_closed=True)
 
 
+FINE: Final = between(1e-8, 0.1)
+"""Rows that are so close to a curve: their number grows with one over the root of it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """One quantity: its name, its unit, the values it may take, its meaning and its source."""

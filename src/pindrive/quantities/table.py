@@ -7,7 +7,7 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from operator import index
 from typing import (
     TYPE_CHECKING,
@@ -21,10 +21,18 @@ from typing import (
 )
 
 from pindrive import lazy
-from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
+from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
 from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.electromagnet import COIL, MAGNET
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.results import FINAL, JUDGE, OUTPUTS, RATE
+from pindrive.quantities.results import CRITERIA, FINAL, JUDGE, OUTPUTS, RATE
+
+DEVICE_INPUTS: Final = tuple(
+    replace(row, absent=row.default) if row.absent is None else row
+    for row in MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
+)
+"""What a device file may give beyond the drive, in its order; all of it may be left out."""
+
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
