@@ -120,16 +120,10 @@ class ControlBlock:
         after = Decision(bool(on[-1]), switched, tuple(due[due >= end].tolist()))
         return Commands(times, before.switched), after
 
-    def enough_rate(self, speed: float, pixel: float) -> float:
-        """The sample rate (Hz) that looks at every pixel (m) at a speed (m/s)."""
-        return speed / pixel
 
-
-def check_band(
-    threshold: float, hysteresis: float, *, where: str = "", label: str = "hysteresis"
-) -> None:
+def check_band(threshold: float, hysteresis: float) -> None:
     """Refuse a band of luminance that is not within [0, 1]: it would never switch back."""
     widest = 2.0 * min(threshold, 1.0 - threshold)
     if hysteresis > widest:
         required = f"at most {widest:g} about a threshold of {threshold:g}"
-        raise ValueError(refusal(label, required, repr(hysteresis), where))
+        raise ValueError(refusal("hysteresis", required, repr(hysteresis)))

@@ -260,7 +260,7 @@ def _doubts(scan: Scan) -> list[str]:
     beyond = _beyond(scan)
     if beyond:
         found.append(beyond)
-    enough = control.enough_rate(speed, scene.pixel)
+    enough = speed / scene.pixel
     if control.sample_rate < enough * (1.0 - ROUNDING):
         found.append(
             f"control.sample_rate = {control.sample_rate:g} Hz looks every "

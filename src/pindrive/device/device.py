@@ -88,16 +88,14 @@ class Device:
         return 1.0 + pull / self.pressing
 
 
-def check_plate(plate: Contact, *, where: str = "", label: str = "plate") -> None:
+def check_plate(plate: Contact) -> None:
     """Refuse a plate that no magnet can hold by."""
     if plate.curved:
         required = "without a friction curve where a magnet changes its load"
-        raise ValueError(
-            refusal(label, required, f"a curve of {len(plate.curve or ())} rows", where)
-        )
+        raise ValueError(refusal("plate", required, f"a curve of {len(plate.curve or ())} rows"))
     if plate.kinetic == 0.0:
         required = "greater than 0 N where a magnet holds by friction"
-        raise ValueError(refusal(f"{label}.kinetic", required, "0.0 N", where))
+        raise ValueError(refusal("plate.kinetic", required, "0.0 N"))
 
 
 @checked

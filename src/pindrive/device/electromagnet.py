@@ -126,7 +126,7 @@ DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """What is said instead of a coil."""
 
 
-def check_one_way(given: set[str], *, where: str = "", table: str = "") -> None:
+def check_one_way(given: set[str], table: str = "") -> None:
     """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
     made = [name for name in COIL if name in given]
     if not made:
@@ -135,12 +135,12 @@ def check_one_way(given: set[str], *, where: str = "", table: str = "") -> None:
     label = f"{table}.{(direct or made)[0]}".removeprefix(".")
     if direct:
         required = f"left out where {made[0]} describes the coil"
-        raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}", where))
+        raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}"))
     missing = [name for name in COIL_NEEDS if name not in given]
     if missing:
         needed = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
         given_alone = f"{', '.join(made)} alone"
-        raise ValueError(refusal(label, f"given with {needed}", given_alone, where))
+        raise ValueError(refusal(label, f"given with {needed}", given_alone))
 
 
 @checked
@@ -437,10 +437,8 @@ def _after(start: float, rises: bool, constants: float) -> float:
     return 1.0 - (1.0 - start) * left if rises else start * left
 
 
-def check_residual(
-    residual: float, hold_force: float, *, where: str = "", label: str = "residual"
-) -> None:
+def check_residual(residual: float, hold_force: float) -> None:
     """Refuse a residual pull (N) that is not less than the hold force (N)."""
     if residual >= hold_force:
         required = f"less than the hold force, {hold_force!r} N"
-        raise ValueError(refusal(label, required, f"{residual!r} N", where))
+        raise ValueError(refusal("residual", required, f"{residual!r} N"))

@@ -182,34 +182,27 @@ class PinArray:
         return np.stack([ax * along - ay * across, ay * along + ax * across], axis=1)
 
 
-def check_count(name: str, value: float, *, where: str = "", label: str = "") -> int:
+def check_count(name: str, value: float, label: str = "") -> int:
     """`value` as a whole number of at least 1."""
-    number = check(name, value, where=where, label=label or name)
+    number = check(name, value, label=label or name)
     if number != int(number):
-        raise ValueError(refusal(label or name, "a whole number", repr(value), where))
+        raise ValueError(refusal(label or name, "a whole number", repr(value)))
     return int(number)
 
 
-def check_pins(columns: float, rows: float, *, where: str = "", label: str = "") -> None:
+def check_pins(columns: float, rows: float) -> None:
     """Refuse a grid of too many pins."""
-    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows", where=where)
+    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows")
 
 
-def check_apart(places: Places, *, where: str = "", label: str = "places") -> None:
+def check_apart(places: Places) -> None:
     """Refuse two pins at one place."""
     seen: dict[tuple[float, float], int] = {}
-    for i, place in enumerate(places):
-        if place in seen:
-            x, y = place
-            raise ValueError(
-                refusal(
-                    label,
-                    "places of their own",
-                    f"pins {seen[place]} and {i} both at ({x!r} m, {y!r} m)",
-                    where,
-                )
-            )
-        seen[place] = i
+    for i, (x, y) in enumerate(places):
+        if (x, y) in seen:
+            given = f"pins {seen[x, y]} and {i} both at ({x!r} m, {y!r} m)"
+            raise ValueError(refusal("places", "places of their own", given))
+        seen[x, y] = i
 
 
 def _pairs(places: Iterable[Place], label: str) -> Places:

@@ -40,7 +40,7 @@ from pindrive.motion.drive import (
 from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 _GRID: Final = ("columns", "rows", "pitch")
@@ -63,9 +63,12 @@ class Problems(list[str]):
     def check(self, check: Callable[..., object], *values: object, keys: tuple[str, ...]) -> None:
         """Add what a check refuses of values, with the place of their keys; the first is named."""
         try:
-            check(*values, where=self._place(*keys), label=keys[0])
+            check(*values)
         except ValueError as error:
-            self.append(error.args[0])
+            said, where = error.args[0], self._place(*keys)
+            self.append(
+                said.at(where, keys[0]) if isinstance(said, Refusal) else f"{where}: {said}"
+            )
 
 
 def read_values(
@@ -295,21 +298,18 @@ class Whole:
         problems.check(check_pins, *(values[key] for key in counts), keys=counts)
         return problems
 
-    def _check_magnet(self, given: set[str], *, where: str, label: str) -> None:
+    def _check_magnet(self, given: set[str]) -> None:
         """Refuse a magnet described by two ways or by half of one, or one that cannot be."""
-        check_one_way(given, where=where, table="magnet")
-        try:
-            self.magnet()
-        except ValueError as error:
-            raise ValueError(f"{where}: {error}") from None
+        check_one_way(given, "magnet")
+        self.magnet()
 
 
-def _check_no_grid(given: dict[str, Any], *, where: str, label: str) -> None:
+def _check_no_grid(given: dict[str, Any]) -> None:
     """Refuse a grid beside places."""
     for name in _GRID:
         if name in given:
             required = "left out where columns, rows or pitch are given"
-            raise ValueError(refusal(label, required, f"it beside array.{name}", where))
+            raise ValueError(refusal("places", required, f"it beside array.{name}"))
 
 
 # ---- ratios --------------------------------------------------------------------------------------

@@ -101,25 +101,22 @@ class Contact:
         return isinf(self.stiffness)
 
 
-def check_static(
-    static: float, kinetic: float, *, where: str = "", label: str = "static", given: str = ""
-) -> None:
+def check_static(static: float, kinetic: float) -> None:
     """Refuse static friction below kinetic friction (both N)."""
     if static < kinetic:
         required = f"at least the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal(label, required, given or f"{static!r} N", where))
+        raise ValueError(refusal("static", required, f"{static!r} N"))
 
 
-def check_curve(
-    rows: Sequence[tuple[float, float]], kinetic: float, *, where: str = "", label: str = "curve"
-) -> None:
+def check_curve(rows: Sequence[tuple[float, float]], kinetic: float) -> None:
     """Refuse rows (m/s, N) that do not start at speed 0 with the kinetic friction (N)."""
     speed, force = rows[0]
     if speed != 0.0:
-        raise ValueError(refusal(f"{label}[0] speed", "0 m/s", f"{speed!r} m/s", where))
+        raise ValueError(refusal("curve[0] speed", "0 m/s", f"{speed!r} m/s"))
     if force != kinetic:
-        required = f"the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal(f"{label}[0] force", required, f"{force!r} N", where))
+        raise ValueError(
+            refusal("curve[0] force", f"the kinetic friction, {kinetic!r} N", f"{force!r} N")
+        )
 
 
 def check_increasing(
@@ -164,46 +161,39 @@ def check_times(
             raise ValueError(refusal(label.format(i), required, given, where))
 
 
-def check_continuous(
-    profile: Profile, unit: str, *, where: str = "", label: str = "mouse_velocity"
-) -> None:
-    """Refuse a velocity (`unit`) with a step: it would take an infinite force."""
-    for t in profile.steps:
-        i = bisect_right(profile.times, t)
+def check_continuous(velocity: Profile) -> None:
+    """Refuse a mouse velocity with a step: it would take an infinite force."""
+    for t in velocity.steps:
+        i = bisect_right(velocity.times, t)
+        y, z = velocity.values[i - 2 : i]
         required = "without a step (a jump would take an infinite force)"
-        y, z = profile.values[i - 2 : i]
-        raise ValueError(
-            refusal(label, required, f"one from {y!r} {unit} to {z!r} {unit} at {t!r} s", where)
-        )
+        given = f"one from {y!r} m/s to {z!r} m/s at {t!r} s"
+        raise ValueError(refusal("mouse_velocity", required, given))
 
 
-def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
+def check_skin(finger: Contact) -> None:
     """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal(label, required, counted(len(finger.curve or ()), "row"), where))
+        raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
 
 
-def check_load(
-    plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
-) -> None:
+def check_load(plate: Contact, load: float | Profile) -> None:
     """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
     if plate.curved and isinstance(load, Profile) and load.changes:
         required = "constant for a plate with a friction curve"
-        raise ValueError(refusal(label, required, "a profile that changes", where))
+        raise ValueError(refusal("plate_load", required, "a profile that changes"))
 
 
-def check_stretch(
-    stretch: float, finger: Contact, *, where: str = "", label: str = "skin_stretch"
-) -> None:
+def check_stretch(stretch: float, finger: Contact) -> None:
     """Refuse a stretch (m) that the finger's skin cannot have."""
     given = f"{stretch!r} m"
     if finger.rigid:
-        raise ValueError(refusal(label, "left out for a rigid finger", given, where))
+        raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
     largest = finger.static_friction / finger.stiffness
     if abs(stretch) > largest:
         required = f"at most static friction over stiffness, {largest!r} m, either way"
-        raise ValueError(refusal(label, required, given, where))
+        raise ValueError(refusal("skin_stretch", required, given))
 
 
 def _checked_curve(

@@ -88,7 +88,7 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
         other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
         raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
     if name == "mouse_velocity":
-        check_continuous(given, "m/s")
+        check_continuous(given)
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")

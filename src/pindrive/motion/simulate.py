@@ -80,15 +80,13 @@ def simulated(
     return Motion(drive, release, end, check("settling_band", settling_band))
 
 
-def check_phase(
-    duration: float, natural_frequency: float, *, where: str = "", label: str = "duration"
-) -> None:
+def check_phase(duration: float, natural_frequency: float) -> None:
     """Refuse a duration (s) in which the phase grows beyond what doubles tell apart."""
     bounds = QUANTITIES["phase"].limits
     if duration * natural_frequency > bounds.upper:
         longest, phase = brief(bounds.upper / natural_frequency), brief(bounds.upper)
         required = f"at most {longest} s, {phase} over the natural frequency"
-        raise ValueError(refusal(label, required, f"{duration!r} s", where))
+        raise ValueError(refusal("duration", required, f"{duration!r} s"))
 
 
 def _plausible(numbers: CoreNumbers) -> bool:

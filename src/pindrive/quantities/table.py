@@ -66,6 +66,12 @@ class Refusal(str):
     said: str
     """The words without the place where the value was written."""
 
+    def at(self, where: str, key: str) -> str:
+        """The same of a value written at a place; its label is the key if that is its last part."""
+        own = self.label.partition("[")[0]
+        full = key if key == own or key.endswith(f".{own}") else own
+        return f"{where}: {full}{self.said.removeprefix(own)}"
+
 
 def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
