@@ -137,7 +137,9 @@ MISTAKES = {
     '[magnet]\nhold_force = "-1 N"': (
         'magnet.hold_force must be finite and at least 1e-6 N and at most 10000 N, got "-1 N"'
     ),
-    '[magnet]\nresidual = "4 N"': "magnet.residual must be less than the hold force, 1.0 N, got 4.0 N",
+    '[magnet]\nresidual = "4 N"': (
+        "magnet.residual must be less than the hold force, 1.0 N, got 4.0 N"
+    ),
     f'[magnet]\nhold_force = "1 N"\n{COIL}': (
         "magnet.hold_force must be left out where turns describes the coil, got both, hold_force "
         "and turns"

@@ -159,9 +159,8 @@ def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDAr
     found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
     del found["time"]
     found.pop("plate_velocity", None)  # that of all pins
-    spot = scan.spot(pin.number, t)
     return found | {
-        "luminance": scan.scene.at(spot[:, 0], spot[:, 1]),
+        "luminance": scan.scene.at(*scan.spot(pin.number, t).T),
         "command": pin.commands.on(t),
         "current": pin.current(t),
         "pull": scan.device.magnet.pull(pin.current(t)),

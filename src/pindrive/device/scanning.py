@@ -261,13 +261,11 @@ class Scan(lazy.NotebookHtml):
 
     def spots(self, t: ArrayLike) -> NDArray[np.float64]:
         """Where each pin's spot is on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
-        return _spots(self.device, self.path, np.asarray(t, np.float64))
+        return np.stack([self.spot(pin.number, t) for pin in self.pins])
 
     def spot(self, pin: int, t: ArrayLike) -> NDArray[np.float64]:
         """Where the spot of one pin, by its number, is on the page at times t (s, (n,)), (n, 2)."""
-        array = self.device.array
-        hand = np.stack(self.path.position(np.asarray(t, np.float64)), axis=-1)
-        return np.asarray(hand + array.on_page(array.spots[pin : pin + 1]))
+        return _spot(self.device, self.path, pin, t)
 
     def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
         """Write each pin at even times as CSV: x, its velocity and acceleration, the forces on it.
@@ -463,20 +461,18 @@ def _load(
     return Profile((times[gone:] - path.begin).tolist(), load.tolist()), after
 
 
-def _spots(device: Device, path: HandPath, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where each spot is at the times t, m, shape (pins, n, 2)."""
+def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.float64]:
+    """Where the spot of one pin is on the page at the times t (s, shape (n,)), m, shape (n, 2)."""
     hand = np.stack(path.position(t), axis=-1)
-    return hand[np.newaxis] + device.array.on_page(device.array.spots)[:, np.newaxis]
+    return np.asarray(hand + device.array.on_page(device.array.spots[pin : pin + 1]))
 
 
 def _seen(
     device: Device, scene: Scene, path: HandPath, looks: NDArray[np.float64], pin: int
 ) -> NDArray[np.float64]:
     """What the control block sees at one pin's spot, shape (looks,)."""
-    offset = device.array.on_page(device.array.spots[pin : pin + 1])[0]
     luminance = np.empty_like(looks)
     for begin in range(0, len(looks), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
-        x, y = (place + off for place, off in zip(path.position(looks[part]), offset, strict=True))
-        luminance[part] = scene.at(x, y)
+        luminance[part] = scene.at(*_spot(device, path, pin, looks[part]).T)
     return luminance

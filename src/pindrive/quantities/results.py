@@ -14,89 +14,61 @@ _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("peak_force", "R_{},max", "N", "largest friction force on the pin, {}"),
 )
 
-TRANSIENT: Final[tuple[Quantity, ...]] = (
-    Quantity(
-        "transient.peak_displacement",
+_NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
+    (
+        "peak_displacement",
         "x_m,a",
         "m",
         "displacement at the first turning point on the way out",
-        source=f"{PAPER}, (14)",
+        "(14)",
     ),
-    Quantity(
-        "transient.peak_time",
-        "t_a",
-        "s",
-        "time of the peak displacement",
-        source=f"{PAPER}, (13)",
-    ),
-    Quantity(
-        "transient.trough_displacement",
+    ("peak_time", "t_a", "s", "time of the peak displacement", "(13)"),
+    (
+        "trough_displacement",
         "x_m,c",
         "m",
         "displacement at the turning point that follows the peak",
-        source=f"{PAPER}, (16)",
+        "(16)",
     ),
-    Quantity(
-        "transient.trough_time",
-        "t_c",
-        "s",
-        "time of the trough",
-        source=f"{PAPER}, (15)",
-    ),
-    Quantity(
-        "transient.swing",
-        "x_m,a - x_m,c",
-        "m",
-        "from peak to trough",
-        source=f"{PAPER}, (17)",
-    ),
-    Quantity(
-        "transient.return_velocity",
-        "v_m,b",
-        "m/s",
-        "extreme velocity on the way back",
-        source=f"{PAPER}, (20)",
-    ),
-    Quantity(
-        "transient.return_velocity_time",
-        "t_b",
-        "s",
-        "time of the extreme return velocity",
-        source=f"{PAPER}, (19)",
-    ),
-    Quantity(
-        "transient.first_reversal_time",
-        "t_1",
-        "s",
-        "first time the pin stops sliding on the plate",
-        source=f"{PAPER}, (21)",
-    ),
-    Quantity(
-        "transient.settling_time",
+    ("trough_time", "t_c", "s", "time of the trough", "(15)"),
+    ("swing", "x_m,a - x_m,c", "m", "from peak to trough", "(17)"),
+    ("return_velocity", "v_m,b", "m/s", "extreme velocity on the way back", "(20)"),
+    ("return_velocity_time", "t_b", "s", "time of the extreme return velocity", "(19)"),
+    ("first_reversal_time", "t_1", "s", "first time the pin stops sliding on the plate", "(21)"),
+    (
+        "settling_time",
         "t_s",
         "s",
         "from then on within the settling band about the resting place",
-        source=f"{PAPER}, the time of the transitional period",
+        "the time of the transitional period",
     ),
-    Quantity(
-        "transient.rest_time",
+    (
+        "rest_time",
         "t_r",
         "s",
         "from then on it stays at rest; infinite for a motion that never comes to rest",
+        "",
     ),
-    Quantity(
-        "transient.last_event_time",
+    (
+        "last_event_time",
         "t_e",
         "s",
         "last change at a contact; 0 without any, infinite where they go on forever",
+        "",
     ),
-    Quantity(
-        "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"
+    ("peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin", ""),
+    ("peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched", ""),
+    ("settled", "", "", "whether the motion settled in its duration", ""),
+)
+"""Name, symbol, unit, meaning, and where the paper has it."""
+
+TRANSIENT: Final[tuple[Quantity, ...]] = (
+    *(
+        Quantity(
+            f"transient.{name}", symbol, unit, meaning, source=f"{PAPER}, {place}" if place else ""
+        )
+        for name, symbol, unit, meaning, place in _NUMBERS
     ),
-    Quantity(
-        "transient.peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched"
-    ),
-    Quantity("transient.settled", "", "", "whether the motion settled in its duration"),
     *(
         Quantity(
             f"transient.{contact}.{name}",
