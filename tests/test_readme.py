@@ -149,3 +149,16 @@ def test_the_commands_of_the_pages_take_their_options(words: list[str]) -> None:
     for word in words:
         if word.startswith("examples/"):
             assert (ROOT / word).exists()
+
+
+def test_the_way_of_a_number_leads_through_files_and_names_that_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    section = text.partition("### The way of one number")[2].partition("\n## ")[0]
+    steps = re.findall(r"^\| (.*) \| (.*) \|$", section, re.MULTILINE)
+    assert len(steps) > 10
+    for said, places in steps:
+        files = re.findall(r"`((?:src|include)/[^`]+)`", places)
+        assert files or places == "in", said
+        content = "".join((ROOT / file).read_text("utf-8") for file in files)
+        for name in re.findall(r"`([a-z_]+)`", places):
+            assert re.search(rf"\b{name}\(", content), (said, name)

@@ -44,6 +44,7 @@ QUANTITIES: Final[dict[str, Quantity]] = {
 T = TypeVar("T")
 
 if TYPE_CHECKING:
+    from dataclasses import Field
 
     class Number:
         """The type of a `checked` field that takes a number, SI, or text with a unit."""
@@ -158,17 +159,21 @@ def checked(cls: type[T]) -> type[T]:
     called then. Of a field that is refused it raises what `check` raises.
     """
     then = getattr(cls, "__post_init__", None)
+    taken: list[tuple[str, bool]] = []
 
     def check_fields(self: Any) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in QUANTITIES and not (value is field.default is None):
-                object.__setattr__(self, field.name, check(field.name, value))
+        for name, optional in taken:
+            value = getattr(self, name)
+            if not (optional and value is None):
+                object.__setattr__(self, name, check(name, value))
         if then:
             then(self)
 
     cls.__post_init__ = check_fields  # type: ignore[attr-defined]
-    return dataclass(frozen=True, kw_only=True)(cls)
+    made = dataclass(frozen=True, kw_only=True)(cls)
+    given: tuple[Field[Any], ...] = fields(made)  # type: ignore[arg-type]
+    taken += [(field.name, field.default is None) for field in given if field.name in QUANTITIES]
+    return made
 
 
 def check_whole(
