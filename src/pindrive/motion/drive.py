@@ -141,24 +141,25 @@ def check_times(
     times: Sequence[float],
     *,
     where: str = "",
-    label: str = "[{}]",
+    label: str | Callable[[int], str] = "[{}]",
     steps: bool = True,
     why: str = "",
 ) -> None:
     """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
 
-    `label` takes the index of the one that is wrong, `why` says why there may be no step.
+    `label` is of the index of the one that is wrong, `why` says why there may be no step.
     """
     if not steps:
         check_increasing(times, "s", where=where, label=label, why=why)
         return
+    named = label.format if isinstance(label, str) else label
     for i in range(1, len(times)):
         before, given = f"the one before, {times[i - 1]!r} s", f"{times[i]!r} s"
         if not times[i - 1] <= times[i]:
-            raise ValueError(refusal(label.format(i), f"at least {before}", given, where))
+            raise ValueError(refusal(named(i), f"at least {before}", given, where))
         if i > 1 and times[i - 2] == times[i]:
             required = f"greater than {before}: two rows at one time are a step, a third is none"
-            raise ValueError(refusal(label.format(i), required, given, where))
+            raise ValueError(refusal(named(i), required, given, where))
 
 
 def check_continuous(velocity: Profile) -> None:

@@ -20,7 +20,7 @@ MAGNET: Final = in_table(
         between(1e-6, 1e4),
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
-        remark="or what the coil below gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "rise_time",
@@ -30,7 +30,7 @@ MAGNET: Final = in_table(
         between(1e-7, 100.0),
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
-        remark="or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "fall_time",
@@ -40,7 +40,7 @@ MAGNET: Final = in_table(
         between(1e-7, 100.0),
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
-        remark="or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "saturation",
@@ -50,7 +50,7 @@ MAGNET: Final = in_table(
         between(1e-3, 1.0),
         1.0,
         "assumed: a coil just strong enough",
-        remark="or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "residual",
