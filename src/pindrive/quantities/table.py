@@ -67,19 +67,24 @@ class Refusal(str):
     said: str
     """The words without the place where the value was written."""
 
-    def at(self, where: str, key: str) -> str:
+    @classmethod
+    def of(cls, label: str, said: str, where: str) -> Refusal:
+        """These words, with the place said first."""
+        words = cls(f"{where}: {said}" if where else said)
+        words.label, words.said = label, said
+        return words
+
+    def at(self, where: str, key: str) -> Refusal:
         """The same of a value written at a place; its label is the key if that is its last part."""
         own = self.label.partition("[")[0]
-        full = key if key == own or key.endswith(f".{own}") else own
-        return f"{where}: {full}{self.said.removeprefix(own)}"
+        full = key if key.endswith(f".{own}") else own
+        label, said = (full + words.removeprefix(own) for words in (self.label, self.said))
+        return Refusal.of(label, said, where)
 
 
 def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
-    said = f"{label} must be {required}, got {given}"
-    words = Refusal(f"{where}: {said}" if where else said)
-    words.label, words.said = label, said
-    return words
+    return Refusal.of(label, f"{label} must be {required}, got {given}", where)
 
 
 def told_by(error: Exception) -> Refusal | str:
