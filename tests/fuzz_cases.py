@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
+from pindrive.device.electromagnet import COIL, COIL_NEEDS, DIRECT
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
@@ -185,7 +185,7 @@ BESIDE = {"drive.damping": "drive.damping_ratio", "drive.damping_ratio": "drive.
 def device(given: dict[str, str], varied: dict[str, str]) -> str:
     """A device file with these values, and what they need or exclude."""
     values = dict(BASE)
-    coil = [f"magnet.{name}" for name in (*COIL_NEEDS, *COIL_MAY)]
+    coil = [f"magnet.{name}" for name in COIL]
     if any(key in coil for key in (*given, *varied)):
         for name in COIL_NEEDS:
             quantity = NUMBERS[f"magnet.{name}"]

@@ -21,6 +21,8 @@ ORDER = (
 """Each package imports from itself and from those before it."""
 MOST_LAYERS = 10
 """Of packages, the top level among them."""
+MOST_FLOORS = 21
+"""Of files: the longest chain of them, each of which imports the one before."""
 
 Graph = dict[str, set[str]]
 
@@ -65,6 +67,15 @@ def circle(graph: Graph) -> list[str]:
     return []
 
 
+def longest_chain(graph: Graph) -> list[str]:
+    """The longest chain of modules, each of which imports the one before; the shortest first."""
+    chains: dict[str, list[str]] = {}
+    for module in TopologicalSorter(graph).static_order():
+        below = max((chains[name] for name in graph[module]), key=len, default=[])
+        chains[module] = [*below, module]
+    return max(chains.values(), key=len)
+
+
 def upward(graph: Graph) -> list[tuple[str, str]]:
     """The imports of a module in a later package; the top level's own modules come first."""
 
@@ -98,6 +109,17 @@ def test_every_package_has_its_place_in_the_order() -> None:
     assert folders == set(ORDER)
     assert len(ORDER) + 1 <= MOST_LAYERS
     assert " → ".join(ORDER) in (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+
+
+def test_files_stand_in_few_floors() -> None:
+    """Without the packages, which gather names and have no floor of their own."""
+    packages = {name for name in package() if (SOURCE / name.replace(".", "/")).is_dir()}
+    graph = {
+        module: found - packages for module, found in package().items() if module not in packages
+    }
+    chain = longest_chain(graph)
+    assert len(chain) <= MOST_FLOORS, " → ".join(chain)
+    assert longest_chain({"a": set(), "b": {"a"}, "c": {"a", "b"}}) == ["a", "b", "c"]
 
 
 def test_targets_of_lazy_calls_exist() -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import doctest
+import importlib
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -29,6 +31,20 @@ def test_the_package_is_imported_without_its_modules() -> None:
     script = "import sys, pindrive; print([m for m in sys.modules if m.startswith('pindrive.')])"
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert run.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("name", ["quantities", "motion", "device", "evaluation", "files"])
+def test_a_package_says_what_is_public(name: str) -> None:
+    """Its docstring has a line for each name, and each name is what it is said to be."""
+    package = importlib.import_module(f"pindrive.{name}")
+    said = re.findall(r"^- `(\w+)`: \w.*$", package.__doc__ or "", re.MULTILINE)
+    assert {*said} == {*package.__all__} == {*dir(package)}
+    assert len(said) == len(package.__all__)
+    for public in package.__all__:
+        assert getattr(package, public) is not None
+        assert not inspect.ismodule(getattr(package, public)), public
+    with pytest.raises(AttributeError, match=f"module 'pindrive.{name}' has no attribute 'x'"):
+        getattr(package, "x")  # noqa: B009
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

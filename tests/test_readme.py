@@ -6,6 +6,7 @@ import contextlib
 import io
 import re
 import shlex
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -49,13 +50,22 @@ def test_it_is_short() -> None:
     assert len(commands(README)) == 5, "the whole device"
 
 
-def test_the_example_prints_what_follows_it() -> None:
-    found = blocks(README)
-    example = next(i for i, (language, _) in enumerate(found) if language == "python")
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(compile(found[example][1], "README.md", "exec"), {"__name__": "__main__"})
-    assert printed.getvalue() == found[example + 1][1]
+@pytest.mark.usefixtures("in_empty_folder")
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_examples_print_what_follows_them(page: str) -> None:
+    """Each block of Python prints the block of text that follows it, where one does."""
+    found = blocks((ROOT / page).read_text("utf-8"))
+    names = {"__name__": "__main__"}
+    followed = 0
+    for (language, block), (after, text) in pairwise([*found, ("", "")]):
+        if language != "python":
+            continue
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(block, page, "exec"), names)
+        assert printed.getvalue() == (text if after == "text" else "")
+        followed += after == "text"
+    assert followed == [language for language, _ in found].count("text") > 0
 
 
 def test_run_and_test_each_start_with_their_one_command() -> None:
@@ -121,7 +131,7 @@ def test_what_a_page_links_to_is_there(page: Path) -> None:
 
 
 def test_the_pages_that_took_what_was_in_the_readme_are_linked_from_it() -> None:
-    for name in ("devices", "studies", "validation", "theory", "paper"):
+    for name in ("devices", "python", "studies", "validation", "theory", "paper"):
         assert f"(docs/{name}.md)" in README
 
 
@@ -139,3 +149,16 @@ def test_the_commands_of_the_pages_take_their_options(words: list[str]) -> None:
     for word in words:
         if word.startswith("examples/"):
             assert (ROOT / word).exists()
+
+
+def test_the_way_of_a_number_leads_through_files_and_names_that_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    section = text.partition("### The way of one number")[2].partition("\n## ")[0]
+    steps = re.findall(r"^\| (.*) \| (.*) \|$", section, re.MULTILINE)
+    assert len(steps) > 10
+    for said, places in steps:
+        files = re.findall(r"`((?:src|include)/[^`]+)`", places)
+        assert files or places == "in", said
+        content = "".join((ROOT / file).read_text("utf-8") for file in files)
+        for name in re.findall(r"`([a-z_]+)`", places):
+            assert re.search(rf"\b{name}\(", content), (said, name)

@@ -88,28 +88,39 @@ def _loaded(name: str) -> ModuleType:
 
 
 def attach(
-    package: str, homes: Mapping[str, str]
+    package: str, homes: Mapping[str, str] | None = None
 ) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """The functions `__getattr__` and `__dir__` of a package whose names are imported at first use.
 
     Args:
         package: its name.
-        homes: the module of each public name.
+        homes: the module of each public name; as the package's `__init__.pyi` has it unless given.
     """
+    module = sys.modules[package]
+
+    def found() -> Mapping[str, str]:
+        if homes is not None:
+            return homes
+        with open(f"{module.__file__}i", encoding="utf-8") as stub:
+            lines = (line.split() for line in stub)
+            return {words[5]: words[1] for words in lines if words[4:5] == ["as"]}
 
     def get(name: str) -> object:
+        public = found()
         if name == "__version__":
             from importlib.metadata import version
 
             value: object = version(package)
-        elif name in homes:
-            value = getattr(_loaded(homes[name]), name)
+        elif name == "__all__":
+            value = sorted(public)
+        elif name in public:
+            value = getattr(_loaded(public[name]), name)
         else:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        vars(sys.modules[package])[name] = value
+        vars(module)[name] = value
         return value
 
-    return get, lambda: sorted(sys.modules[package].__all__)
+    return get, lambda: sorted(module.__all__)
 
 
 def call(target: str, *arguments: Any) -> Any:

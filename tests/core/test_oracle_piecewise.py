@@ -188,7 +188,7 @@ def test_a_curve_on_compliant_skin_is_refused_with_the_reason() -> None:
     """Skin lags behind a slope of its friction: a third-order motion, and no damped sinusoid."""
     curved = Contact(0.01, curve=[(0.0, 0.01), (0.1, 0.005)], stiffness=1000.0)
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.1, plate=Contact(0.02), finger=curved)
-    with pytest.raises(ValueError, match="finger curve must be one row for a compliant finger"):
+    with pytest.raises(ValueError, match=r"finger\.curve must be one row for a compliant finger"):
         simulate(drive, Release(0.1))
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from pindrive.device import Coil, CoilState, Commands, Electromagnet
-from pindrive.device.coil import check_one_way
+from pindrive.device.electromagnet import check_one_way
 
 COIL = Coil(
     turns=300,

@@ -10,8 +10,9 @@ import pytest
 
 import pindrive as pd
 from command import EXAMPLE, refused, run
+from pindrive.files.export import heading
 from pindrive.files.output import OutputError
-from pindrive.quantities.results import SERIES
+from pindrive.quantities.results import MOTION, SERIES
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -129,11 +130,25 @@ def test_columns_are_those_of_the_table_on_every_face() -> None:
     motion = pd.simulate(drive, pd.Release(brake, 1.5e-3))
     data = motion.to_dataset()
     over_time = {str(name) for name, column in data.variables.items() if column.dims == ("time",)}
-    assert over_time == {*SERIES}
-    for name, quantity in SERIES.items():
-        assert data[name].attrs == {"units": quantity.unit, "long_name": quantity.meaning}
+    assert over_time == {quantity.name for quantity in MOTION}
+    for name in over_time:
+        assert data[name].attrs == SERIES[name].attributes
     motion.to_csv("m.csv")
-    names = [name for name in table("m.csv")[0]]
-    assert [n.startswith(f"{s}_") for n, s in zip(names, SERIES, strict=True)] == [True] * len(
-        names
-    )
+    assert [*table("m.csv")[0]] == [heading(quantity.name) for quantity in MOTION]
+
+
+def test_columns_of_a_scan_are_those_of_the_table() -> None:
+    """In its dataset and in its CSV, which has fewer, they have one name and one value."""
+    device = pd.load_device(READER, ["array.columns=1", "array.rows=1"])
+    scan = pd.scan(device, pd.Page(grating=[0.004]))
+    scan.to_csv("s.csv", rate=100.0)
+    rows = table("s.csv")
+    data = scan.to_dataset([float(row["time_s"]) for row in rows])
+    over_time = {str(name) for name, column in data.variables.items() if "time" in column.dims}
+    assert over_time == {*SERIES}
+    for name in over_time - {"time"}:
+        assert data[name].attrs == SERIES[name].attributes
+    for quantity in MOTION:
+        if quantity.name in data:
+            column = np.array([float(row[heading(quantity.name)]) for row in rows])
+            assert np.array_equal(column, data[quantity.name].values.ravel()), quantity.name

@@ -110,6 +110,32 @@ def test_a_raw_recording_is_smoothed_and_the_output_says_so() -> None:
     assert peaks[1] == pytest.approx(2.0 * peaks[0], rel=1e-9)
 
 
+def test_check_reads_every_csv_that_a_file_names_and_changes_none() -> None:
+    csv("load.csv", "t [ms], plate_load\n0,5\n5,-1\n")
+    csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,slow\n")
+    path = device(SPEED, 'mouse_velocity = "speed.csv"\nplate_load = "load.csv"')
+    before = {file: file.read_bytes() for file in Path().iterdir()}
+    said = run("check", str(path))
+    assert said.exit_code == 2
+    wrong = [
+        'mouse_velocity: speed.csv: row 3: mouse_velocity must be a number, got "slow"',
+        'plate_load: load.csv: row 3: plate_load must be finite and at least 0, got "-1"',
+    ]
+    assert said.stderr.splitlines() == [f"device.toml: motion.{words}" for words in wrong]
+    assert {file: file.read_bytes() for file in Path().iterdir()} == before
+
+
+def test_check_says_what_a_csv_of_rows_holds() -> None:
+    csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
+    said = run("check", "speed.csv").stdout
+    assert said == "mouse_velocity: 3 rows over 90.00 ms, from -10.00 mm/s to 60.00 mm/s.\n"
+    csv("speed.csv", "t [ms], mouse_velocity [mm]\n0,60\n")
+    assert "column mouse_velocity must be in m/s" in run("check", "speed.csv").stderr
+    csv("load.csv", "t [ms], plate_load\n0,5\n")
+    said = run("check", "load.csv").stdout
+    assert said == "plate_load: 1 row over 0 ms, from 5.000 to 5.000.\n"
+
+
 REFUSALS = {
     "t [s], speed [m/s]\n0,1\n": (
         'the header must be like "t [s], mouse_velocity [mm/s]", or "t [s], x [mm], y [mm]" of a '

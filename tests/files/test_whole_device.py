@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import signature
 from math import radians
 from pathlib import Path
 
@@ -14,12 +13,9 @@ from PIL import Image
 
 from command import GOOD, refused, run
 from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
-from pindrive.device.coil import Coil
 from pindrive.device.reading import Reading
 from pindrive.files.device import ConfigError, load_device
 from pindrive.files.template import WHOLE, template, usual
-from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.units import to_si
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -60,20 +56,6 @@ def test_a_plain_drive_has_no_device_around_it_unless_asked(write: Write) -> Non
     assert device.control == ControlBlock()
     assert device.magnet == Electromagnet.from_times()
     assert whole.reading() == Reading()
-
-
-def test_what_is_left_out_is_what_the_table_says() -> None:
-    """The defaults of the classes are those of the table of quantities."""
-    parts = (ControlBlock, Reading, Coil, Electromagnet.from_times, PinArray.grid)
-    for part in parts:
-        for name, argument in signature(part).parameters.items():
-            if argument.default in (argument.empty, None) or name in ("columns", "rows"):
-                continue
-            quantity = QUANTITIES[name]
-            stated = quantity.example if quantity.default is None else quantity.default
-            assert argument.default == stated, name
-            said = (quantity.unless_given or quantity.remark).partition(" unless given")[0]
-            assert to_si(said, quantity.unit, "") == pytest.approx(stated, rel=1e-15), name
 
 
 def test_every_table_is_read(write: Write) -> None:
@@ -155,7 +137,9 @@ MISTAKES = {
     '[magnet]\nhold_force = "-1 N"': (
         'magnet.hold_force must be finite and at least 1e-6 N and at most 10000 N, got "-1 N"'
     ),
-    '[magnet]\nresidual = "4 N"': "residual must be less than the hold force, 1.0 N, got 4.0 N",
+    '[magnet]\nresidual = "4 N"': (
+        "magnet.residual must be less than the hold force, 1.0 N, got 4.0 N"
+    ),
     f'[magnet]\nhold_force = "1 N"\n{COIL}': (
         "magnet.hold_force must be left out where turns describes the coil, got both, hold_force "
         "and turns"
@@ -235,7 +219,7 @@ def test_scan_of_a_letter(device: Path) -> None:
     scene = reading.text("A", whole.array)
     done = scan(whole, scene, reading.strokes(scene, whole.array))
     xr.testing.assert_identical(told, done.to_dataset())
-    for name in ("position", "velocity", "skin_force", "luminance", "current", "pull", "hand_x"):
+    for name in ("position", "velocity", "finger_force", "luminance", "current", "pull", "hand_x"):
         assert told[name].attrs["units"]
         assert told[name].attrs["long_name"]
     assert set(told.event_kind.values) == {e.kind for pin in done.pins for e in pin.events}

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pindrive import Contact, Drive, Profile
+from pindrive import Contact, Drive, Profile, Release
 
 WRONG: Any = 3
 PLATE, FINGER = Contact(kinetic=0.020, static=0.025), Contact(kinetic=0.005)
@@ -159,6 +159,13 @@ def test_a_curve_alone_says_the_kinetic_friction() -> None:
         (lambda: Profile([0, 1e-300], [0, 1]), "profile slope must be finite and at least -1e12"),
         (lambda: Profile([0, math.nan], [0, 1]), "times[1] must be finite, got nan s"),
         (lambda: Profile([0, 1], [0, math.inf]), "values[1] must be finite, got inf"),
+        (
+            lambda: Profile([0, 1], ["60 mm/s", "5 N"]),
+            'values must be numbers in SI, or text all like "60 mm/s" or all like "1", '
+            'got "60 mm/s", "5 N"',
+        ),
+        (lambda: Profile([0, 1], ["60 mm/s", "1"]), "values must be numbers in SI, or text all"),
+        (lambda: Profile([0, 1], ["1e13 m/s", 0]), "values[0] must be finite and at least -1e12"),
         (lambda: Profile(WRONG, WRONG), "a profile must be sequences of numbers, got 3"),
     ],
 )
@@ -177,3 +184,18 @@ def test_profile_is_linear_between_rows_and_constant_outside() -> None:
     assert profile(np.array(times)).tolist() == values
     assert profile(np.reshape(times[:6], (2, 3))).shape == (2, 3)
     assert Profile([5], [1])(0) == 1.0
+
+
+def test_values_of_a_profile_are_text_with_a_unit_too() -> None:
+    speeds = Profile(["0 ms", "40 ms"], ["60 mm/s", 0.0])
+    assert speeds == Profile([0.0, 0.04], [0.06, 0.0])
+    assert (speeds.unit, Profile([0], [1]).unit) == ("m/s", "")
+    loads = Profile([0.0, "5 ms"], ["5", "100 %"])
+    assert loads == Profile([0.0, 0.005], [5.0, 1.0])
+    assert Release(speeds, plate_load=loads) == Release(
+        Profile([0.0, 0.04], [0.06, 0.0]), plate_load=Profile([0.0, 0.005], [5.0, 1.0])
+    )
+    with pytest.raises(ValueError, match=r"^plate_load must be a Profile of plain numbers, got "):
+        Release(0.06, plate_load=speeds)
+    with pytest.raises(ValueError, match=r"^mouse_velocity must be a Profile of numbers in m/s"):
+        Release(loads)

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 from collections.abc import Callable
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray
+from pindrive.device.reading import Reading
 from pindrive.evaluation import Criteria
 from pindrive.files.template import NUMBERS
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import ENDING, ENERGY, SERIES, TRANSIENT
+from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.table import QUANTITIES
 from pindrive.study.design import variable
 from pindrive.study.outputs import OUTPUTS, known_output
 
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "pindrive"
 DRIVE = Drive(
     mass=0.01,
     stiffness=100.0,
@@ -52,19 +56,51 @@ def test_arguments_in_python_are_names_of_the_table(made: Callable[..., Any]) ->
 
 
 @pytest.mark.parametrize(
-    "made", [ControlBlock, Electromagnet, Electromagnet.from_times, Coil, PinArray.grid, Criteria]
+    "made",
+    [
+        *(ControlBlock, Electromagnet, Electromagnet.from_times, Coil, PinArray.grid, Criteria),
+        *(Reading, Release),
+    ],
 )
 def test_defaults_in_python_are_those_of_the_table(made: Callable[..., Any]) -> None:
-    """But for counts: a grid is of one pin unless more are asked for, in a device file of 16."""
-    differ = {}
     for name, parameter in parameters(made).items():
-        if name in ("columns", "rows"):
-            continue
-        default = QUANTITIES[name].default
-        given = parameter.default
-        if given is not inspect.Parameter.empty and default is not None and given != default:
-            differ[name] = (given, default)
-    assert differ == {}
+        if parameter.default is not inspect.Parameter.empty:
+            assert parameter.default == QUANTITIES[name].absent, name
+
+
+def literal_defaults(text: str) -> list[str]:
+    """The defaults of fields and arguments that are numbers, but for whole ones: counts."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ClassDef) and node.name not in AT_REST:
+            fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+            found += [field.value for field in fields if field.value]
+        elif isinstance(node, ast.FunctionDef):
+            found += [value for value in (*node.args.defaults, *node.args.kw_defaults) if value]
+    numbers = [
+        part
+        for value in found
+        for part in ast.walk(value)
+        if (isinstance(part, ast.Constant) and isinstance(part.value, float))
+        or (isinstance(part, ast.Name) and part.id.isupper())
+    ]
+    return [ast.unparse(part) for part in numbers]
+
+
+AT_REST = ("CoilState", "PinState", "Scene", "Bounds")
+"""Classes whose zeros are no device's: a state at rest, the corner of the page, no bound."""
+
+
+def test_no_default_is_written_outside_of_the_table() -> None:
+    written = {}
+    for package in ("motion", "device", "evaluation", "files"):
+        for path in (SOURCE / package).glob("*.py"):
+            if found := literal_defaults(path.read_text("utf-8")):
+                written[path.name] = found
+    # Strokes without a pause, and a pin in the array's middle.
+    assert written == {"hand.py": ["0.0", "0.0"], "pin_array.py": ["0.0", "0.0"]}
+    assert literal_defaults("class A:\n    x: float = 2e-3 * 2") == ["0.002"]
+    assert literal_defaults("def f(x=1.5, *, y=PART): pass") == ["1.5", "PART"]
 
 
 def test_a_contact_is_its_part_of_the_table() -> None:
@@ -102,13 +138,6 @@ def test_numbers_have_one_name_and_one_unit_in_every_dataset() -> None:
         if name in batch.coords:
             assert batch[name].attrs.get("units", "") == argument.unit
     assert {*data.dims} == {"time", "event"}
-
-
-def test_columns_over_time_are_in_the_table_alone() -> None:
-    assert [*SERIES] == [quantity.name for quantity in SERIES.values()]
-    data = simulate(DRIVE, Release(BRAKE, 1.5e-3)).to_dataset([0.0, 0.01])
-    for name, quantity in SERIES.items():
-        assert data[name].attrs["units"] == quantity.unit
 
 
 def test_the_rows_of_what_changes_are_in_the_table() -> None:

@@ -22,9 +22,10 @@ def test_every_quantity_is_described(quantity: Quantity) -> None:
     assert quantity.symbol or quantity.unit == ""
     assert quantity.meaning
     assert not quantity.meaning.endswith(".")
-    if quantity.default is not None:
-        assert quantity.source, "every default names its source"
-        assert quantity.default in quantity.bounds
+    for value in (quantity.default, quantity.absent):
+        if value is not None:
+            assert quantity.source, "every default names its source"
+            assert value in quantity.bounds
 
 
 @pytest.mark.parametrize("quantity", INPUTS, ids=lambda q: q.name)

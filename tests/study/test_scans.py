@@ -23,7 +23,7 @@ from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
-from pindrive.device.coil import COIL_MAY, COIL_NEEDS
+from pindrive.device.electromagnet import COIL as MADE_OF
 from pindrive.device.reading import Page, Reading
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.files.output import OutputError
@@ -222,7 +222,7 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         if key.endswith(".static"):
             base = 0.040
         other = base + 1.0 if key in ("array.columns", "array.rows") else 0.99 * base
-        coiled = quantity.name in (*COIL_NEEDS, *COIL_MAY)
+        coiled = quantity.name in MADE_OF
         plan = study(
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
             device=DEVICE + (COILED if coiled else ""),

@@ -136,10 +136,12 @@ def init(
 @app.command(**shown("check"))
 def check(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or a recorded hand (CSV).")
+        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or an input of one (CSV).")
     ],
 ) -> None:
-    """Say what is wrong with a device file, or what it describes; or what a recording (CSV) is.
+    """Say what is wrong with a device file and the CSVs it names, or what it describes.
+
+    Of a CSV of mouse_velocity or plate_load it says how many rows it has, and from where to where.
 
     Of a recording of the hand: its rate and resolution, and its peak speed before and after
     smoothing.
@@ -147,10 +149,14 @@ def check(
     if file.suffix.lower() == ".csv":
         from pindrive.cli.tables import path_words
         from pindrive.device.recording import read_csv
+        from pindrive.files.recording import profile_words
 
         with refusing():
-            path = read_csv(file)
-        for line in (path.about, path_words(path, 0.0)):
+            said = [profile_words(file)]
+            if not said[0]:
+                path = read_csv(file)
+                said = [path.about, path_words(path, 0.0)]
+        for line in said:
             typer.echo(line)
         return
     from pindrive.files.device import load_device

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from pindrive.cli.tables import new_table
 from pindrive.evaluation.resolution import criterion
-from pindrive.quantities.evaluation import LINE
+from pindrive.quantities.results import LINE
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
+    from pindrive.device.device import Criteria
     from pindrive.evaluation.resolution import Band, SpeedLimit
-    from pindrive.evaluation.results import Criteria, Judgement
+    from pindrive.evaluation.results import Judgement
 
 _MM: Final = 1e3
 COUNTED: Final = (

@@ -1,72 +1,30 @@
-"""The whole device: a hand moves over a page, a control block reads it, pins move a finger."""
+"""The whole device: a hand moves over a page, a control block reads it, pins move a finger.
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+- `Coil`: an electromagnet by how it is made
+- `CoilState`: the last switching of a coil
+- `Commands`: on and off of one coil over time
+- `ControlBlock`: a threshold with hysteresis, at a sample rate, with latency
+- `Current`: the current in a coil over time
+- `Decision`: where the control block stands for one coil
+- `Device`: drive, magnet, control block and pin array
+- `Electromagnet`: what an electromagnet does to the plate
+- `Gap`: how close two neighbouring pins come
+- `HandPath`: where the hand is over time
+- `lines`: a path line by line over a page
+- `Page`: what is on a page, and how the hand moves over it
+- `PinArray`: where the pins stand, and the spot that each shows
+- `PinScan`: one pin in a scan
+- `PinState`: where a pin and its magnet stand at one time
+- `read_csv`: a recorded path from a CSV
+- `Reading`: how a hand reads
+- `Recording`: places of the hand at recorded times
+- `Scan`: what a device did while a hand moved it
+- `scan`: move a device over a page, and follow each of its pins
+- `Scene`: the luminance of a page
+- `strokes`: a path of straight strokes of minimum jerk
+- `through`: a path along recorded places
+"""
 
 from pindrive.lazy import attach
 
-if TYPE_CHECKING:
-    from pindrive.device.coil import Coil
-    from pindrive.device.controller import Commands, ControlBlock, Decision
-    from pindrive.device.device import Device
-    from pindrive.device.electromagnet import CoilState, Current, Electromagnet
-    from pindrive.device.hand import HandPath, lines, strokes
-    from pindrive.device.page import Scene
-    from pindrive.device.pin_array import PinArray
-    from pindrive.device.reading import Page, Reading
-    from pindrive.device.recording import Recording, read_csv, through
-    from pindrive.device.scanning import PinScan, PinState, Scan, scan
-
-__all__ = [
-    "Coil",
-    "CoilState",
-    "Commands",
-    "ControlBlock",
-    "Current",
-    "Decision",
-    "Device",
-    "Electromagnet",
-    "HandPath",
-    "Page",
-    "PinArray",
-    "PinScan",
-    "PinState",
-    "Reading",
-    "Recording",
-    "Scan",
-    "Scene",
-    "lines",
-    "read_csv",
-    "scan",
-    "strokes",
-    "through",
-]
-
-__getattr__, __dir__ = attach(
-    __name__,
-    {
-        "Coil": "pindrive.device.coil",
-        "CoilState": "pindrive.device.electromagnet",
-        "Commands": "pindrive.device.controller",
-        "ControlBlock": "pindrive.device.controller",
-        "Current": "pindrive.device.electromagnet",
-        "Decision": "pindrive.device.controller",
-        "Device": "pindrive.device.device",
-        "Electromagnet": "pindrive.device.electromagnet",
-        "HandPath": "pindrive.device.hand",
-        "Page": "pindrive.device.reading",
-        "PinArray": "pindrive.device.pin_array",
-        "PinScan": "pindrive.device.scanning",
-        "PinState": "pindrive.device.scanning",
-        "Reading": "pindrive.device.reading",
-        "Recording": "pindrive.device.recording",
-        "Scan": "pindrive.device.scanning",
-        "Scene": "pindrive.device.page",
-        "lines": "pindrive.device.hand",
-        "read_csv": "pindrive.device.recording",
-        "scan": "pindrive.device.scanning",
-        "strokes": "pindrive.device.hand",
-        "through": "pindrive.device.recording",
-    },
-)
+__getattr__, __dir__ = attach(__name__)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import checked, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.quantities.table import Number
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Decision:
     """When it will be switched by what is decided already, s."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@checked
 class ControlBlock:
     """A threshold with hysteresis, at a sample rate, with latency.
 
@@ -66,25 +68,13 @@ class ControlBlock:
         ValueError: a value is no number or out of its range.
     """
 
-    sample_rate: float
-    latency: float
-    threshold: float
-    hysteresis: float
+    sample_rate: Number = default("sample_rate")
+    latency: Number = default("latency")
+    threshold: Number = default("threshold")
+    hysteresis: Number = default("hysteresis")
 
-    def __init__(
-        self,
-        *,
-        sample_rate: float | str = 1000.0,
-        latency: float | str = 0.005,
-        threshold: float | str = 0.5,
-        hysteresis: float | str = 0.1,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "sample_rate", check("sample_rate", sample_rate))
-        put(self, "latency", check("latency", latency))
-        put(self, "threshold", check("threshold", threshold))
-        put(self, "hysteresis", check("hysteresis", hysteresis))
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         check_band(self.threshold, self.hysteresis)
 
     def looks(self, begin: float, end: float) -> NDArray[np.float64]:
@@ -130,16 +120,10 @@ class ControlBlock:
         after = Decision(bool(on[-1]), switched, tuple(due[due >= end].tolist()))
         return Commands(times, before.switched), after
 
-    def enough_rate(self, speed: float, pixel: float) -> float:
-        """The sample rate (Hz) that looks at every pixel (m) at a speed (m/s)."""
-        return speed / pixel
 
-
-def check_band(
-    threshold: float, hysteresis: float, *, where: str = "", label: str = "hysteresis"
-) -> None:
+def check_band(threshold: float, hysteresis: float) -> None:
     """Refuse a band of luminance that is not within [0, 1]: it would never switch back."""
     widest = 2.0 * min(threshold, 1.0 - threshold)
     if hysteresis > widest:
         required = f"at most {widest:g} about a threshold of {threshold:g}"
-        raise ValueError(refusal(label, required, repr(hysteresis), where))
+        raise ValueError(refusal("hysteresis", required, repr(hysteresis)))

@@ -1,23 +1,24 @@
-"""A scan as an xarray Dataset, and what each pin did in numbers."""
+"""A scan as an xarray Dataset, what each pin did in numbers, and what is doubtful about it."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
 from io import BytesIO
-from math import nan
+from math import degrees, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.device.scanning import AT_ONCE
 from pindrive.device.trajectory import Course
 from pindrive.lazy import xr
+from pindrive.motion.dataset import columns
 from pindrive.quantities import budgets
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.hand import HandPath
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 EACH: Final = 1e-3
 """Between two samples unless their times are given, s."""
+ROUNDING: Final = 1e-9
+"""So much too low is no sample rate too low."""
 
 
 def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
@@ -45,34 +48,16 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     if times is None:
         times = np.append(np.arange(path.begin, path.end, EACH), path.end)
     t = np.atleast_1d(np.asarray(times, np.float64))
-    hand_x, hand_y = path.position(t)
+    plate_velocity = path.plate_velocity(device.array.axis)(t - path.begin)
+    over_time = dict(zip(("hand_x", "hand_y"), path.position(t), strict=True))
     data: dict[str, Any] = {
-        "hand_x": _over("time", hand_x, "m", "place of the hand across the page"),
-        "hand_y": _over("time", hand_y, "m", "place of the hand down the page"),
-        "plate_velocity": _over(
-            "time",
-            path.plate_velocity(device.array.axis)(t - path.begin),
-            "m/s",
-            "velocity of the plate in the housing, along the drive axis",
-        ),
+        name: ("time", values, SERIES[name].attributes)
+        for name, values in (over_time | {"plate_velocity": plate_velocity}).items()
     }
-    columns: dict[str, tuple[Callable[[PinScan], NDArray[Any]], str, str]] = {
-        "position": (lambda p: p.position(t), "m", "deflection of the pin from the spring's rest"),
-        "velocity": (lambda p: p.velocity(t), "m/s", "velocity of the pin in the housing"),
-        "skin_force": (lambda p: p.skin_force(t), "N", "force of the pin on the skin"),
-        "stretch": (lambda p: p.stretch(t), "m", "stretch of the skin"),
-        "command": (lambda p: p.commands.on(t), "", "whether the magnet is switched on"),
-        "current": (lambda p: p.current(t), "1", "current in the coil, a part of the full one"),
-        "pull": (lambda p: device.magnet.pull(p.current(t)), "N", "pull of the magnet"),
-    }
-    if device.drive.finger.rigid:
-        del columns["stretch"]
-    for name, (column, unit, meaning) in columns.items():
-        values = np.stack([column(pin) for pin in pins])
-        data[name] = _over(("pin", "time"), values, unit, meaning)
-    spots = scan.spots(t)
-    luminance = scan.scene.at(spots[..., 0], spots[..., 1])
-    data["luminance"] = _over(("pin", "time"), luminance, "1", "luminance under the pin's spot")
+    of_pins = [_columns(scan, pin, t) for pin in pins]
+    for name in of_pins[0]:
+        values = np.stack([found[name] for found in of_pins])
+        data[name] = (("pin", "time"), values, SERIES[name].attributes)
     data |= _events(pins) | _switchings(pins) | _numbers(pins) | _gaps(scan)
     data["scene"] = _over(("row", "column"), scan.scene.luminance, "1", "luminance of the scene")
     places, shown = np.array(device.array.places), np.array(device.array.spots)
@@ -169,6 +154,19 @@ def peak_displacement(motion: Motion) -> float:
     return float(np.abs(motion.position(Course(motion).knots)).max())
 
 
+def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """What is known of one pin at times on the path's clock (s, shape (n,))."""
+    found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
+    del found["time"]
+    found.pop("plate_velocity", None)  # that of all pins
+    return found | {
+        "luminance": scan.scene.at(*scan.spot(pin.number, t).T),
+        "command": pin.commands.on(t),
+        "current": pin.current(t),
+        "pull": scan.device.magnet.pull(pin.current(t)),
+    }
+
+
 def _over(
     dimension: str | tuple[str, ...], values: Any, unit: str, meaning: str
 ) -> tuple[Any, Any, dict[str, str]]:
@@ -214,13 +212,8 @@ def _numbers(pins: tuple[PinScan, ...]) -> dict[str, Any]:
     rows = [numbers(pin) for pin in pins]
     table = {}
     for name in rows[0]:
-        quantity = QUANTITIES[name]
-        attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
-        table[name.replace(".", "_")] = (
-            "pin",
-            np.array([row[name] for row in rows]),
-            attributes | ({"units": quantity.unit} if quantity.unit else {}),
-        )
+        values = np.array([row[name] for row in rows])
+        table[name.replace(".", "_")] = ("pin", values, QUANTITIES[name].attributes)
     return table
 
 
@@ -233,8 +226,8 @@ def _gaps(scan: Scan) -> dict[str, Any]:
         for name in ("behind", "ahead")
     }
     for name, attribute in (("pin_gap", "size"), ("pin_gap.time", "time")):
-        quantity, values = QUANTITIES[name], [getattr(gap, attribute) for gap in scan.gaps]
-        table[name.replace(".", "_")] = _over("neighbours", values, quantity.unit, quantity.meaning)
+        values = [getattr(gap, attribute) for gap in scan.gaps]
+        table[name.replace(".", "_")] = ("neighbours", values, QUANTITIES[name].attributes)
     return table
 
 
@@ -248,3 +241,93 @@ def gap_words(scan: Scan) -> list[str]:
         overlap = f"Pins overlap by up to {length.text(-smallest.size)}, {pins}"
         return [f"{overlap}: real pins would push each other."]
     return [f"Smallest gap between neighbouring pins: {length.text(smallest.size)}, {pins}."]
+
+
+# ---- what is doubtful ----------------------------------------------------------------------------
+
+
+def scan_warnings(scan: Scan) -> tuple[str, ...]:
+    """What is doubtful about a scan, a line each; nothing where nothing is."""
+    return (*_doubts(scan), *_overlaps(scan))
+
+
+def _doubts(scan: Scan) -> list[str]:
+    """What is doubtful about a scan, but for pins that overlap."""
+    found = []
+    device, scene, path, max_angle = scan.device, scan.scene, scan.path, scan.max_angle
+    control, speed = device.control, path.peak_speed
+    beyond = _beyond(scan)
+    if beyond:
+        found.append(beyond)
+    enough = speed / scene.pixel
+    if control.sample_rate < enough * (1.0 - ROUNDING):
+        found.append(
+            f"control.sample_rate = {control.sample_rate:g} Hz looks every "
+            f"{1e3 * speed / control.sample_rate:.3g} mm at {1e3 * speed:.4g} mm/s, past pixels of "
+            f"{1e3 * scene.pixel:.3g} mm: thin lines may be missed; {enough:.4g} Hz sees each"
+        )
+    if device.friction.doubt:
+        found.append(device.friction.doubt)
+    largest, mean = path.angles(device.array.axis)
+    if largest > max_angle:
+        found.append(
+            f"the hand moves up to {degrees(largest):.3g} deg (mean {degrees(mean):.3g} deg) off "
+            f"the drive axis, more than scan.max_angle, {degrees(max_angle):.3g} deg: the pins "
+            f"feel {np.cos(largest):.0%} of the speed, and the plate's friction pulls askew"
+        )
+    if not any(len(pin.commands.times) or pin.commands.at_first for pin in scan.pins):
+        found.append(
+            f"no pin met information: nothing under their spots is darker than "
+            f"{control.threshold - 0.5 * control.hysteresis:g}"
+        )
+    coil = device.magnet.coil
+    if coil is not None:
+        lasts = path.end - path.begin
+        most = max(sum(end - begin for begin, end in pin.energised) for pin in scan.pins) / lasts
+        if most > coil.duty:
+            found.append(
+                f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
+                f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
+            )
+    return found
+
+
+def _beyond(scan: Scan) -> str:
+    """How long a pin's spot is beyond the page, where it sees blank paper; empty: never."""
+    worst, part = 0, 0.0
+    for pin in scan.pins:
+        off = 0
+        for begin in range(0, len(pin.looks), AT_ONCE):
+            spots = scan.spot(pin.number, pin.looks[begin : begin + AT_ONCE])
+            off += int(np.count_nonzero(~scan.scene.contains(spots[:, 0], spots[:, 1])))
+        if off > part * len(pin.looks):
+            worst, part = pin.number, off / len(pin.looks)
+    if not part:
+        return ""
+    left, right, top, bottom = (1e3 * edge for edge in scan.scene.extent)
+    shown = f"{part:.0%}" if part >= 0.01 else "less than 1%"
+    return (
+        f"the spot of pin {worst} is beyond the page, {left:g} to {right:g} mm across and {top:g} "
+        f"to {bottom:g} mm down, for {shown} of the time: it sees blank paper there"
+    )
+
+
+def _overlaps(scan: Scan) -> list[str]:
+    """Pins that would have to pass through each other: the motions know nothing of that."""
+    found = []
+    gaps, array = scan.gaps, scan.device.array
+    touching = [gap for gap in gaps if gap.size < 0.0]
+    if touching:
+        worst = min(touching, key=lambda gap: gap.size)
+        pairs = f"; {len(touching)} of {len(gaps)} pairs of neighbours do" if len(gaps) > 1 else ""
+        found.append(
+            f"pins {worst.behind} and {worst.ahead} overlap by {-1e3 * worst.size:.4g} mm at "
+            f"{worst.time:.4g} s{pairs}: real pins would push each other, these pass through"
+        )
+    for one, other in array.abreast[:1]:
+        apart = abs(array.places[other][1] - array.places[one][1])
+        found.append(
+            f"pins {one} and {other} stand {1e3 * apart:.4g} mm apart across the drive axis, less "
+            f"than array.pin_diameter, {1e3 * array.pin_diameter:.4g} mm: they overlap at rest"
+        )
+    return found

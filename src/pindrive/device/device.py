@@ -1,4 +1,4 @@
-"""The whole device as data: a pin drive, its electromagnet, the control block, the pin array."""
+"""The whole device as data: drive, electromagnet, control block, pin array; and what is felt."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from pindrive.device.electromagnet import Electromagnet
 from pindrive.device.pin_array import PinArray
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import Coefficients
-from pindrive.quantities.table import refusal
+from pindrive.quantities.table import checked, default, refusal
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from pindrive.quantities.table import Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,13 +88,33 @@ class Device:
         return 1.0 + pull / self.pressing
 
 
-def check_plate(plate: Contact, *, where: str = "", label: str = "plate") -> None:
+def check_plate(plate: Contact) -> None:
     """Refuse a plate that no magnet can hold by."""
     if plate.curved:
         required = "without a friction curve where a magnet changes its load"
-        raise ValueError(
-            refusal(label, required, f"a curve of {len(plate.curve or ())} rows", where)
-        )
+        raise ValueError(refusal("plate", required, f"a curve of {len(plate.curve or ())} rows"))
     if plate.kinetic == 0.0:
         required = "greater than 0 N where a magnet holds by friction"
-        raise ValueError(refusal(f"{label}.kinetic", required, "0.0 N", where))
+        raise ValueError(refusal("plate.kinetic", required, "0.0 N"))
+
+
+@checked
+class Criteria:
+    """What counts as felt, by the sources in the table of quantities.
+
+    Args:
+        felt: motion that is felt as a pulse, m, greater than 0.
+        direction: motion of skin whose direction is perceived, m, greater than 0.
+        direction_sure: whose direction is told right in more than 95 % of cases, m.
+        direction_speed: at which that must be gone, m/s.
+        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    felt: Number = default("felt")
+    direction: Number = default("direction")
+    direction_sure: Number = default("direction_sure")
+    direction_speed: Number = default("direction_speed")
+    echo: Number = default("echo")

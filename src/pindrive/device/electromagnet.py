@@ -1,4 +1,4 @@
-"""The electromagnet: commands to current, current to pull, pull as a load on the plate's friction.
+"""The electromagnet: how it is made; commands to current, current to pull, pull as a load.
 
 The current c, a part of the full one, rises and falls exponentially with L/R. The pull is
 P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the current until the iron saturates,
@@ -8,29 +8,142 @@ h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from math import exp, log, sqrt
+from math import exp, log, pi, sqrt
 from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
 from pindrive.motion.friction import GRAVITY
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from pindrive.device.coil import Coil
     from pindrive.device.controller import Commands
+    from pindrive.quantities.table import Number, OptionalNumber
+
+MAGNETIC_CONSTANT: Final = 1.25663706127e-6
+"""N/A², CODATA 2022."""
+COPPER: Final = 1 / 58e6
+"""Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
+
 
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this
 part of its deviation."""
 
 
-@dataclass(frozen=True, kw_only=True, init=False)
+@checked
+class Coil:
+    """An electromagnet with two poles on a steel plate, by how it is made.
+
+    Its iron carries any flux without effort up to the saturation field, and no flux leaks: the two
+    gaps in series hold the whole magnetomotive force, 2 g B / μ0 = N I.
+
+    Args:
+        turns: N, at least 1.
+        pole_area: A of one pole, m², greater than 0.
+        gap: g under each pole, m, greater than 0.
+        wire_diameter: d of the copper, m, greater than 0.
+        turn_length: mean length of a turn, m, greater than 0.
+        supply_voltage: U while it is on, V, greater than 0.
+        release_resistance: what the current dies away through beside its own, ohm, at least 0.
+        saturation_field: B_s, T, greater than 0.
+        thermal_resistance: R_th, K/W, greater than 0.
+        temperature_rise: ΔT allowed, K, greater than 0.
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+
+    The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric
+    Machinery", chapters 1 and 3.
+    """
+
+    turns: Number
+    pole_area: Number
+    gap: Number
+    wire_diameter: Number
+    turn_length: Number
+    supply_voltage: Number
+    release_resistance: Number = default("release_resistance")
+    saturation_field: Number = default("saturation_field")
+    thermal_resistance: Number = default("thermal_resistance")
+    temperature_rise: Number = default("temperature_rise")
+
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
+        for name in ("resistance", "inductance", "current", "field", "power"):
+            check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
+
+    @property
+    def resistance(self) -> float:
+        """R = ρ N l / (π d²/4), ohm, at 20 °C."""
+        return COPPER * self.turns * self.turn_length / (pi / 4.0 * self.wire_diameter**2)
+
+    @property
+    def inductance(self) -> float:
+        """L = N B A / I = μ0 N² A / 2g, H, clamped to the plate."""
+        return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
+
+    @property
+    def current(self) -> float:
+        """Full current I = U / R, A."""
+        return self.supply_voltage / self.resistance
+
+    @property
+    def field(self) -> float:
+        """B = μ0 N I / 2g at full current if the iron did not saturate, T."""
+        return MAGNETIC_CONSTANT * self.turns * self.current / (2.0 * self.gap)
+
+    @property
+    def saturation(self) -> float:
+        """The part of the full current at which the iron saturates, at most 1."""
+        return min(1.0, self.saturation_field / self.field)
+
+    @property
+    def pull(self) -> float:
+        """Two poles' B² A / 2μ0 at full current or saturation, N."""
+        return min(self.field, self.saturation_field) ** 2 * self.pole_area / MAGNETIC_CONSTANT
+
+    @property
+    def power(self) -> float:
+        """U I while it is on, W."""
+        return self.supply_voltage * self.current
+
+    @property
+    def duty(self) -> float:
+        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
+        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
+
+
+COIL: Final = tuple(field.name for field in fields(Coil))
+COIL_NEEDS: Final = tuple(name for name in COIL if default(name) is None)
+"""What a coil must say."""
+DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
+"""What is said instead of a coil."""
+
+
+def check_one_way(given: set[str], table: str = "") -> None:
+    """Refuse a magnet given both by what it does and by how it is made, or by half a coil."""
+    made = [name for name in COIL if name in given]
+    if not made:
+        return
+    direct = [name for name in DIRECT if name in given]
+    label = f"{table}.{(direct or made)[0]}".removeprefix(".")
+    if direct:
+        required = f"left out where {made[0]} describes the coil"
+        raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}"))
+    missing = [name for name in COIL_NEEDS if name not in given]
+    if missing:
+        needed = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
+        given_alone = f"{', '.join(made)} alone"
+        raise ValueError(refusal(label, f"given with {needed}", given_alone))
+
+
+@checked
 class Electromagnet:
     """What an electromagnet does to the plate.
 
@@ -50,50 +163,30 @@ class Electromagnet:
         ValueError: a value is no number or out of its range.
     """
 
-    hold_force: float
-    rise_constant: float
-    fall_constant: float
-    saturation: float
-    residual: float
-    pressing: float | None
-    deviation: float
-    coil: Coil | None
+    hold_force: Number = default("hold_force")
+    rise_constant: Number = default("rise_constant")
+    fall_constant: Number = default("fall_constant")
+    saturation: Number = default("saturation")
+    residual: Number = default("residual")
+    pressing: OptionalNumber = default("pressing")
+    deviation: Number = default("deviation")
+    coil: Coil | None = None
 
-    def __init__(
-        self,
-        *,
-        hold_force: float | str = 1.0,
-        rise_constant: float | str = 0.001,
-        fall_constant: float | str = 0.004,
-        saturation: float | str = 1.0,
-        residual: float | str = 0.0,
-        pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
-        coil: Coil | None = None,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "hold_force", check("hold_force", hold_force))
-        put(self, "rise_constant", check("rise_constant", rise_constant))
-        put(self, "fall_constant", check("fall_constant", fall_constant))
-        put(self, "saturation", check("saturation", saturation))
-        put(self, "residual", check("residual", residual))
-        put(self, "pressing", None if pressing is None else check("pressing", pressing))
-        put(self, "deviation", check("deviation", deviation))
-        put(self, "coil", coil)
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         check_residual(self.residual, self.hold_force)
 
     @classmethod
     def from_times(
         cls,
         *,
-        hold_force: float | str = 1.0,
-        rise_time: float | str = 0.003,
-        fall_time: float | str = 0.005,
-        saturation: float | str = 1.0,
-        residual: float | str = 0.0,
+        hold_force: float | str = default("hold_force"),
+        rise_time: float | str = default("rise_time"),
+        fall_time: float | str = default("fall_time"),
+        saturation: float | str = default("saturation"),
+        residual: float | str = default("residual"),
         pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
+        deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -126,9 +219,9 @@ class Electromagnet:
         cls,
         coil: Coil,
         *,
-        residual: float | str = 0.0,
+        residual: float | str = default("residual"),
         pressing: float | str | None = None,
-        deviation: float | str = 1e-4,
+        deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how it is made.
 
@@ -344,10 +437,8 @@ def _after(start: float, rises: bool, constants: float) -> float:
     return 1.0 - (1.0 - start) * left if rises else start * left
 
 
-def check_residual(
-    residual: float, hold_force: float, *, where: str = "", label: str = "residual"
-) -> None:
+def check_residual(residual: float, hold_force: float) -> None:
     """Refuse a residual pull (N) that is not less than the hold force (N)."""
     if residual >= hold_force:
         required = f"less than the hold force, {hold_force!r} N"
-        raise ValueError(refusal(label, required, f"{residual!r} N", where))
+        raise ValueError(refusal("residual", required, f"{residual!r} N"))

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.motion.drive import Profile
+from pindrive.motion.drive import Profile, check_increasing
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -61,7 +61,7 @@ class HandPath:
                 raise ValueError(refusal(name, required, f"shape {column.shape}"))
             if not np.isfinite(column).all():
                 raise ValueError(refusal(name, "finite", f"{column[~np.isfinite(column)][0]!r}"))
-        check_increasing(t)
+        check_increasing(t.tolist(), "s", label="times[{}]")
         x0, y0 = (check("hand.place", place, label="start") for place in start)
         lasts = np.diff(t)
         for name, v, at in (("x", columns["vx"], x0), ("y", columns["vy"], y0)):
@@ -113,7 +113,7 @@ class HandPath:
         since = t - self.times[i]
         return i, since, since / (self.times[i + 1] - self.times[i])
 
-    def plate_velocity(self, axis: float = 0.0) -> Profile:
+    def plate_velocity(self, axis: float = default("axis")) -> Profile:
         """The velocity at which the plate passes under the mouse, over the time since `begin`.
 
         Args:
@@ -126,7 +126,7 @@ class HandPath:
         along = self.vx * cos(axis) + self.vy * sin(axis)
         return Profile((self.times - self.times[0]).tolist(), along.tolist())
 
-    def angles(self, axis: float = 0.0) -> tuple[float, float]:
+    def angles(self, axis: float = default("axis")) -> tuple[float, float]:
         """The angle between motion and drive axis, rad: the largest, and the mean over the way.
 
         From 0 to a right angle; where the hand moves at less than a tenth of its peak speed it is
@@ -163,7 +163,7 @@ def strokes(
     speeds: float | str | Sequence[float | str],
     *,
     pause: float | str = 0.0,
-    deviation: float | str = 1e-4,
+    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Straight strokes of minimum jerk from stop to stop, each from rest to rest.
 
@@ -219,7 +219,7 @@ def lines(
     speed: float | str,
     return_speed: float | str,
     pause: float | str = 0.0,
-    deviation: float | str = 1e-4,
+    deviation: float | str = default("path_deviation"),
 ) -> HandPath:
     """Line by line over a page: along each row from left to right, then back to the next.
 
@@ -240,17 +240,3 @@ def lines(
     stops = [place for y in rows for place in ((left, y), (right, y))]
     speeds = [return_speed if i % 2 else speed for i in range(len(stops) - 1)]
     return strokes(stops, speeds, pause=pause, deviation=deviation)
-
-
-def check_increasing(
-    times: NDArray[np.float64], labels: Sequence[str] | None = None, where: str = ""
-) -> None:
-    """Refuse times that are not finite and increasing."""
-    wrong = ~np.isfinite(times)
-    wrong[1:] |= ~(times[1:] > times[:-1])
-    if not wrong.any():
-        return
-    i = int(np.argmax(wrong))
-    label = f"times[{i}]" if labels is None else labels[i]
-    required = f"greater than the one before, {float(times[i - 1])!r} s" if i else "finite"
-    raise ValueError(refusal(label, required, f"{float(times[i])!r} s", where))

@@ -25,7 +25,7 @@ import numpy as np
 
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, check_whole, refusal
+from pindrive.quantities.table import check, check_whole, default, refusal
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class Scene:
         below = self.luminance[j1, i] * (1.0 - u) + self.luminance[j1, i1] * u
         return np.where(inside, above * (1.0 - w) + below * w, 1.0)
 
-    def dark(self, threshold: float | str = 0.5) -> NDArray[np.bool_]:
+    def dark(self, threshold: float | str = default("threshold")) -> NDArray[np.bool_]:
         """Which pixels hold information: darker than the threshold, in [0, 1]."""
         return self.luminance < check("threshold", threshold)
 
@@ -151,9 +151,9 @@ class Scene:
         cls,
         text: str,
         *,
-        height: float | str = 0.010,
-        pixel: float | str = 1e-4,
-        margin: float | str = 0.005,
+        height: float | str = default("text_height"),
+        pixel: float | str = default("text.pixel"),
+        margin: float | str = default("margin"),
         line_pitch: float | str | None = None,
         font: str | PathLike[str] | None = None,
     ) -> Scene:
@@ -184,9 +184,9 @@ class Scene:
         pitches: Iterable[float | str],
         *,
         count: int = 4,
-        height: float | str = 0.010,
-        pixel: float | str = 1e-4,
-        margin: float | str = 0.005,
+        height: float | str = default("text_height"),
+        pixel: float | str = default("text.pixel"),
+        margin: float | str = default("margin"),
     ) -> Scene:
         """Groups of upright black lines, each half as wide as its pitch.
 
@@ -260,9 +260,9 @@ def _opened(file: str) -> Image.Image:
         return Image.open(file)
 
 
-def _check_size(across: float, down: float, where: str = "") -> None:
-    """Refuse a page of too many pixels."""
-    of = f"{across:.6g} by {down:.6g}; take larger pixels or a smaller page"
+def _check_size(across: float, down: float, where: str = "", less: str = "a smaller page") -> None:
+    """Refuse a page of too many pixels; take `less` of it."""
+    of = f"{across:.6g} by {down:.6g}; take larger pixels or {less}"
     budgets.PIXELS.check(across * down, of, where=where)
 
 
@@ -365,7 +365,7 @@ def draw(
     if not height >= SMALLEST:
         required = f"at least {SMALLEST:g} pixel; take smaller pixels"
         raise ValueError(refusal("the height of the text", required, f"{height:.3g}"))
-    _check_text_size(height, height)
+    _check_size(height, height, less="less text")
     letters = ImageFont.truetype(file, MEASURED * height / capital, layout_engine=engine)
     boxes = [letters.getbbox(line, anchor="ls") for line in lines]
     left = margin - min(box[0] for box in boxes)
@@ -373,7 +373,7 @@ def draw(
     last = first + (len(lines) - 1) * pitch
     across = left + max(box[2] for box in boxes) + margin
     down = max(last + margin, *(first + i * pitch + box[3] for i, box in enumerate(boxes)))
-    _check_text_size(across, down)
+    _check_size(across, down, less="less text")
     width, depth = ceil(across) + 1, ceil(down)
     page = Image.new("L", (width, depth), 255)
     pen = ImageDraw.Draw(page)
@@ -419,12 +419,6 @@ def _takes_shaping(character: str) -> bool:
         and ord(character) >= PLAIN
         and not name(character, "").startswith(PLAIN_SCRIPTS)
     )
-
-
-def _check_text_size(width: float, depth: float) -> None:
-    """Refuse a page of too many pixels."""
-    of = f"{width:.6g} by {depth:.6g}; take larger pixels or less text"
-    budgets.PIXELS.check(width * depth, of)
 
 
 def _check_known(text: str, file: str) -> None:

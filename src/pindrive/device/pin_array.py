@@ -6,12 +6,12 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from dataclasses import dataclass
 from math import cos, sin, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pindrive.quantities import budgets
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     Places = tuple[tuple[float, float], ...]
     Place = tuple[float | str, float | str]
     Row = list[tuple[float, int]]
-
-PIN_DIAMETER: Final = QUANTITIES["pin_diameter"].default or 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +62,8 @@ class PinArray:
         self,
         places: Iterable[Place] = ((0.0, 0.0),),
         spots: Iterable[Place] | None = None,
-        axis: float | str = 0.0,
-        pin_diameter: float | str = PIN_DIAMETER,
+        axis: float | str = default("axis"),
+        pin_diameter: float | str = default("pin_diameter"),
     ) -> None:
         """Validate, and keep tuples of plain floats."""
         stands = _pairs(places, "places")
@@ -83,13 +81,13 @@ class PinArray:
     @classmethod
     def grid(
         cls,
-        columns: float = 1,
-        rows: float = 1,
-        pitch: float | str = 0.005,
+        columns: float = default("columns"),
+        rows: float = default("rows"),
+        pitch: float | str = default("pitch"),
         *,
-        spot_scale: float | str = 1.0,
-        axis: float | str = 0.0,
-        pin_diameter: float | str = PIN_DIAMETER,
+        spot_scale: float | str = default("spot_scale"),
+        axis: float | str = default("axis"),
+        pin_diameter: float | str = default("pin_diameter"),
     ) -> PinArray:
         """Pins in columns along the drive axis and rows across it, about the middle, row by row.
 
@@ -119,9 +117,9 @@ class PinArray:
         cls,
         places: Iterable[Place],
         *,
-        spot_scale: float | str = 1.0,
-        axis: float | str = 0.0,
-        pin_diameter: float | str = PIN_DIAMETER,
+        spot_scale: float | str = default("spot_scale"),
+        axis: float | str = default("axis"),
+        pin_diameter: float | str = default("pin_diameter"),
     ) -> PinArray:
         """Pins at given places (m), their spots likewise, `spot_scale` times as far apart."""
         stands = _pairs(places, "places")
@@ -184,34 +182,27 @@ class PinArray:
         return np.stack([ax * along - ay * across, ay * along + ax * across], axis=1)
 
 
-def check_count(name: str, value: float, *, where: str = "", label: str = "") -> int:
+def check_count(name: str, value: float, label: str = "") -> int:
     """`value` as a whole number of at least 1."""
-    number = check(name, value, where=where, label=label or name)
+    number = check(name, value, label=label or name)
     if number != int(number):
-        raise ValueError(refusal(label or name, "a whole number", repr(value), where))
+        raise ValueError(refusal(label or name, "a whole number", repr(value)))
     return int(number)
 
 
-def check_pins(columns: float, rows: float, *, where: str = "", label: str = "") -> None:
+def check_pins(columns: float, rows: float) -> None:
     """Refuse a grid of too many pins."""
-    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows", where=where)
+    budgets.PINS.check(columns * rows, f"{columns:g} columns of {rows:g} rows")
 
 
-def check_apart(places: Places, *, where: str = "", label: str = "places") -> None:
+def check_apart(places: Places) -> None:
     """Refuse two pins at one place."""
     seen: dict[tuple[float, float], int] = {}
-    for i, place in enumerate(places):
-        if place in seen:
-            x, y = place
-            raise ValueError(
-                refusal(
-                    label,
-                    "places of their own",
-                    f"pins {seen[place]} and {i} both at ({x!r} m, {y!r} m)",
-                    where,
-                )
-            )
-        seen[place] = i
+    for i, (x, y) in enumerate(places):
+        if (x, y) in seen:
+            given = f"pins {seen[x, y]} and {i} both at ({x!r} m, {y!r} m)"
+            raise ValueError(refusal("places", "places of their own", given))
+        seen[x, y] = i
 
 
 def _pairs(places: Iterable[Place], label: str) -> Places:

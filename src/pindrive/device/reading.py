@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
-from math import radians
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -13,22 +12,19 @@ import numpy as np
 
 from pindrive.device.hand import HandPath, lines
 from pindrive.device.page import Scene, in_words
-from pindrive.device.recording import CUTOFF, RESOLUTION, read_csv
+from pindrive.device.recording import read_csv
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, checked, default, refusal
 
 if TYPE_CHECKING:
-    from pindrive.device.hand import HandPath
-    from pindrive.device.page import Scene
     from pindrive.device.pin_array import PinArray
+    from pindrive.quantities.table import Number, OptionalNumber
 
 RUN_IN: Final = 0.005
 """White before and after the text of a line, beyond the array's width, m."""
-PIXEL: Final = 1e-4
-"""Of text and lines unless given, m."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@checked
 class Reading:
     """How a hand reads.
 
@@ -50,31 +46,24 @@ class Reading:
         ValueError: a value is no number or out of its range.
     """
 
-    hand_speed: float = 0.06
-    return_speed: float = 0.1
-    pause: float = 0.2
-    line_pitch: float | None = None
-    text_height: float = 0.01
-    pixel: float | None = None
-    max_angle: float = radians(20.0)
-    hand_acceleration: float = 30.0
-    mouse_resolution: float = RESOLUTION
-    smoothing_cutoff: float = CUTOFF
-    path_deviation: float = 1e-4
-
-    def __post_init__(self) -> None:
-        """Validate, and keep plain floats."""
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if value is not None:
-                object.__setattr__(self, field.name, check(field.name, value))
+    hand_speed: Number = default("hand_speed")
+    return_speed: Number = default("return_speed")
+    pause: Number = default("pause")
+    line_pitch: OptionalNumber = default("line_pitch")
+    text_height: Number = default("text_height")
+    pixel: OptionalNumber = default("pixel")
+    max_angle: Number = default("max_angle")
+    hand_acceleration: Number = default("hand_acceleration")
+    mouse_resolution: Number = default("mouse_resolution")
+    smoothing_cutoff: Number = default("smoothing_cutoff")
+    path_deviation: Number = default("path_deviation")
 
     def text(self, text: str, array: PinArray, font: str | PathLike[str] | None = None) -> Scene:
         """A page of text on which the whole array finds room; errors as for `Scene.from_text`."""
         return Scene.from_text(
             text,
             height=self.text_height,
-            pixel=self.pixel or PIXEL,
+            pixel=self.pixel or default("text.pixel"),
             margin=self._margin(array),
             line_pitch=self.line_pitch,
             font=font,
@@ -85,7 +74,7 @@ class Reading:
         return Scene.from_grating(
             pitches,
             height=self.text_height,
-            pixel=self.pixel or PIXEL,
+            pixel=self.pixel or default("text.pixel"),
             margin=self._margin(array),
         )
 

@@ -16,7 +16,7 @@ recording is therefore smoothed:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
 from os import PathLike
@@ -24,11 +24,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.hand import HandPath, check_increasing
+from pindrive.device.hand import HandPath
 from pindrive.lazy import signal
+from pindrive.motion.drive import check_increasing
 from pindrive.quantities import budgets
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -51,9 +52,6 @@ GRID: Final = 0.15
 """So far from whole numbers of steps, of up to `SMALL_STEPS`, is no recording in steps."""
 HOLE: Final = 2.5
 """Intervals without a report in which the mouse rested."""
-RESOLUTION: Final = QUANTITIES["mouse_resolution"].default or 0.0
-CUTOFF: Final = QUANTITIES["smoothing_cutoff"].default or 0.0
-ACCELERATION: Final = QUANTITIES["hand_acceleration"].default or 0.0
 
 
 def through(
@@ -61,10 +59,7 @@ def through(
     x: ArrayLike,
     y: ArrayLike,
     *,
-    acceleration: float | str = ACCELERATION,
-    where: str = "",
-    rows: Sequence[int] | None = None,
-    about: str = "",
+    acceleration: float | str = default("hand_acceleration"),
 ) -> HandPath:
     """A path along recorded places, with a velocity that does not jump.
 
@@ -77,49 +72,13 @@ def through(
         x: m, shape (n,).
         y: m, shape (n,).
         acceleration: of the hand, m/s²; more is taken for a jump of its speed, and refused.
-        where: what the message names, a file.
-        rows: number of each row in that file.
-        about: what the recording was, for reports.
 
     Raises:
         ValueError: too few places, times that do not increase, or a speed that jumps.
     """
-    time, px, py = (np.array(column, np.float64) for column in (t, x, y))
-    if time.ndim != 1 or len(time) < 2 or not time.shape == px.shape == py.shape:
-        required = "columns of one length, at least 2"
-        given = f"{time.shape}, {px.shape} and {py.shape}"
-        raise ValueError(refusal("t, x and y", required, given, where))
-    at = [f"t[{i}]" for i in range(len(time))] if rows is None else [f"row {i}: t" for i in rows]
-    check_increasing(time, at, where)
-    lasts = np.diff(time)
-    middles = time[:-1] + 0.5 * lasts
-    speeds = [np.diff(place) / lasts for place in (px, py)]
-    jump = np.hypot(*(np.diff(v) for v in speeds)) / np.diff(middles)
     most = check("hand_acceleration", acceleration, label="acceleration")
-    if (jump > most).any():
-        i = int(np.argmax(jump))
-        before, after = (float(np.hypot(*(v[j] for v in speeds))) for j in (i, i + 1))
-        raise ValueError(
-            refusal(
-                at[i + 1].removesuffix(": t"),
-                f"without a jump of the hand's speed, a change of at most {most:g} m/s^2",
-                f"{jump[i]:.4g} m/s^2 at {time[i + 1]:g} s, where it moves at {1e3 * before:.4g} "
-                f"mm/s before and {1e3 * after:.4g} mm/s after",
-                where,
-            )
-        )
-    nodes = np.empty(2 * len(time) - 1)
-    nodes[::2], nodes[1::2] = time, middles
-    columns = []
-    for v in speeds:
-        column = np.empty_like(nodes)
-        column[1::2] = v
-        column[0], column[-1] = v[0], v[-1]
-        column[2:-1:2] = (lasts[:-1] * v[:-1] + lasts[1:] * v[1:]) / (lasts[:-1] + lasts[1:])
-        columns.append(column)
-    keep = np.append(True, np.diff(nodes) > 0.0)  # places too close in time for one between them
-    start = float(px[0]), float(py[0])
-    return HandPath(nodes[keep], columns[0][keep], columns[1][keep], start, about)
+    time, px, py = (np.array(column, np.float64) for column in (t, x, y))
+    return Recording(time, px, py).through(most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,12 +107,19 @@ class Recording:
     def __post_init__(self) -> None:
         """Validate."""
         if self.t.ndim != 1 or len(self.t) < 2 or not self.t.shape == self.x.shape == self.y.shape:
-            raise ValueError(refusal("t, x and y", "columns of one length, at least 2", "others"))
-        labels = self.rows or range(len(self.t))
-        check_increasing(self.t, [f"row {i}: t" for i in labels], self.where)
+            given = f"{self.t.shape}, {self.x.shape} and {self.y.shape}"
+            required = "columns of one length, at least 2"
+            raise ValueError(refusal("t, x and y", required, given, self.where))
+        check_increasing(self.t.tolist(), "s", where=self.where, label=self._time)
+
+    def _time(self, i: int) -> str:
+        """What a message calls the time of a place."""
+        return f"t[{i}]" if self.rows is None else f"row {self.rows[i]}: t"
 
     @classmethod
-    def read(cls, path: str | PathLike[str], resolution: float = RESOLUTION) -> Recording:
+    def read(
+        cls, path: str | PathLike[str], resolution: float = default("mouse_resolution")
+    ) -> Recording:
         """A recording from a CSV, UTF-8, whose header is like `t [s], x [mm], y [mm]`.
 
         Args:
@@ -211,7 +177,7 @@ class Recording:
         whole = np.abs(counts - np.round(counts)) < GRID
         return step if whole.all() and len(counts) > 0.5 * len(ways) else None
 
-    def raw(self, acceleration: float = ACCELERATION) -> bool:
+    def raw(self, acceleration: float = default("hand_acceleration")) -> bool:
         """Whether it is in steps so coarse that differences of its places are no speed.
 
         So it is where it is in counts; or where all places are whole numbers of one step, which
@@ -233,7 +199,7 @@ class Recording:
         way = np.hypot(np.diff(self.x), np.diff(self.y))
         return float((way / np.diff(self.t)).max())
 
-    def smoothed(self, cutoff: float = CUTOFF) -> Recording:
+    def smoothed(self, cutoff: float = default("smoothing_cutoff")) -> Recording:
         """The same at even times, without what is faster than a cut-off (Hz), as stated above.
 
         Raises:
@@ -260,28 +226,61 @@ class Recording:
             places.append(np.asarray(signal.sosfiltfilt(sections, taken, padlen=pad), np.float64))
         return Recording(even, places[0], places[1], None, self.where)
 
-    def path(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> HandPath:
+    def path(
+        self,
+        acceleration: float = default("hand_acceleration"),
+        cutoff: float = default("smoothing_cutoff"),
+    ) -> HandPath:
         """The hand's path: through its places or, of a raw recording, smoothed at `cutoff` (Hz).
 
         Raises:
             ValueError: as for `through` and `smoothed`.
         """
-        if not self.raw(acceleration):
-            return through(
-                self.t,
-                self.x,
-                self.y,
-                acceleration=acceleration,
-                where=self.where,
-                rows=self.rows,
-                about=self.words(acceleration, cutoff),
-            )
-        smooth = self.smoothed(cutoff)
         about = self.words(acceleration, cutoff)
-        at = dict(acceleration=acceleration, where=f"{self.where}, smoothed")
-        return through(smooth.t, smooth.x, smooth.y, about=about, **at)  # type: ignore[arg-type]
+        if not self.raw(acceleration):
+            return self.through(acceleration, about)
+        smooth = replace(self.smoothed(cutoff), where=f"{self.where}, smoothed")
+        return smooth.through(acceleration, about)
 
-    def words(self, acceleration: float = ACCELERATION, cutoff: float = CUTOFF) -> str:
+    def through(self, most: float, about: str = "") -> HandPath:
+        """The path through its places, as the function `through` makes it.
+
+        Args:
+            most: acceleration of the hand, m/s².
+            about: what the path says it was recorded from.
+        """
+        lasts = np.diff(self.t)
+        middles = self.t[:-1] + 0.5 * lasts
+        speeds = [np.diff(place) / lasts for place in (self.x, self.y)]
+        jump = np.hypot(*(np.diff(v) for v in speeds)) / np.diff(middles)
+        if (jump > most).any():
+            i = int(np.argmax(jump))
+            before, after = (1e3 * float(np.hypot(*(v[j] for v in speeds))) for j in (i, i + 1))
+            required = f"without a jump of the hand's speed, a change of at most {most:g} m/s^2"
+            given = (
+                f"{jump[i]:.4g} m/s^2 at {self.t[i + 1]:g} s, where it moves at {before:.4g} mm/s "
+                f"before and {after:.4g} mm/s after"
+            )
+            label = self._time(i + 1).removesuffix(": t")
+            raise ValueError(refusal(label, required, given, self.where))
+        nodes = np.empty(2 * len(self.t) - 1)
+        nodes[::2], nodes[1::2] = self.t, middles
+        columns = []
+        for v in speeds:
+            column = np.empty_like(nodes)
+            column[1::2] = v
+            column[0], column[-1] = v[0], v[-1]
+            column[2:-1:2] = (lasts[:-1] * v[:-1] + lasts[1:] * v[1:]) / (lasts[:-1] + lasts[1:])
+            columns.append(column)
+        keep = np.append(True, np.diff(nodes) > 0.0)  # places too close in time for one between
+        vx, vy = (column[keep] for column in columns)
+        return HandPath(nodes[keep], vx, vy, (float(self.x[0]), float(self.y[0])), about)
+
+    def words(
+        self,
+        acceleration: float = default("hand_acceleration"),
+        cutoff: float = default("smoothing_cutoff"),
+    ) -> str:
         """What it is and what is made of it, in a sentence or two."""
         step, speed = self.resolved, QUANTITIES["hand_speed"]
         lasts = float(self.t[-1] - self.t[0])
@@ -303,9 +302,9 @@ class Recording:
 def read_csv(
     path: str | PathLike[str],
     *,
-    acceleration: float | str = ACCELERATION,
-    resolution: float | str = RESOLUTION,
-    cutoff: float | str = CUTOFF,
+    acceleration: float | str = default("hand_acceleration"),
+    resolution: float | str = default("mouse_resolution"),
+    cutoff: float | str = default("smoothing_cutoff"),
 ) -> HandPath:
     """A recorded path from a CSV; a raw recording of a mouse is smoothed.
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Commands, Decision
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
@@ -35,7 +35,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import SimulationError, Status
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,8 +64,8 @@ class DescribedDevice(Protocol):
         """How a hand reads with it."""
 
     @property
-    def criteria(self) -> object:
-        """What counts as felt: `pindrive.evaluation.Criteria`."""
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,7 +200,7 @@ class Scan(lazy.NotebookHtml):
     pins: tuple[PinScan, ...]
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
-    criteria: object = None
+    criteria: Criteria | None = None
     """What counts as felt unless `evaluate` is given other ones; None: the literature's."""
 
     def __repr__(self) -> str:
@@ -208,11 +208,11 @@ class Scan(lazy.NotebookHtml):
         pins, lasts = counted(len(self.pins), "pin"), self.path.end - self.path.begin
         return f"<Scan of {self.scene.title} by {pins} in {lasts:.6g} s, {self.status.name}>"
 
-    def evaluate(self, criteria: object = None) -> Any:
+    def evaluate(self, criteria: Criteria | None = None) -> Any:
         """What the finger was shown against what is printed, line by line.
 
         Args:
-            criteria: what counts as felt, a `pindrive.evaluation.Criteria`; those of the device
+            criteria: what counts as felt; those of the device
                 file unless given, and of a device without one the middle of the literature.
 
         Returns:
@@ -235,7 +235,7 @@ class Scan(lazy.NotebookHtml):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What is doubtful about it, in words with numbers."""
-        found: tuple[str, ...] = lazy.call("pindrive.device.scan_warnings:scan_warnings", self)
+        found: tuple[str, ...] = lazy.call("pindrive.device.dataset:scan_warnings", self)
         return found
 
     @cached_property
@@ -261,15 +261,13 @@ class Scan(lazy.NotebookHtml):
 
     def spots(self, t: ArrayLike) -> NDArray[np.float64]:
         """Where each pin's spot is on the page at times t (s, shape (n,)), m, (pins, n, 2)."""
-        return _spots(self.device, self.path, np.asarray(t, np.float64))
+        return np.stack([self.spot(pin.number, t) for pin in self.pins])
 
     def spot(self, pin: int, t: ArrayLike) -> NDArray[np.float64]:
         """Where the spot of one pin, by its number, is on the page at times t (s, (n,)), (n, 2)."""
-        array = self.device.array
-        hand = np.stack(self.path.position(np.asarray(t, np.float64)), axis=-1)
-        return np.asarray(hand + array.on_page(array.spots[pin : pin + 1]))
+        return _spot(self.device, self.path, pin, t)
 
-    def to_csv(self, path: str | PathLike[str], rate: float | str = 1000.0) -> Path:
+    def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
         """Write each pin at even times as CSV: x, its velocity and acceleration, the forces on it.
 
         Args:
@@ -463,20 +461,18 @@ def _load(
     return Profile((times[gone:] - path.begin).tolist(), load.tolist()), after
 
 
-def _spots(device: Device, path: HandPath, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where each spot is at the times t, m, shape (pins, n, 2)."""
+def _spot(device: Device, path: HandPath, pin: int, t: ArrayLike) -> NDArray[np.float64]:
+    """Where the spot of one pin is on the page at the times t (s, shape (n,)), m, shape (n, 2)."""
     hand = np.stack(path.position(t), axis=-1)
-    return hand[np.newaxis] + device.array.on_page(device.array.spots)[:, np.newaxis]
+    return np.asarray(hand + device.array.on_page(device.array.spots[pin : pin + 1]))
 
 
 def _seen(
     device: Device, scene: Scene, path: HandPath, looks: NDArray[np.float64], pin: int
 ) -> NDArray[np.float64]:
     """What the control block sees at one pin's spot, shape (looks,)."""
-    offset = device.array.on_page(device.array.spots[pin : pin + 1])[0]
     luminance = np.empty_like(looks)
     for begin in range(0, len(looks), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
-        x, y = (place + off for place, off in zip(path.position(looks[part]), offset, strict=True))
-        luminance[part] = scene.at(x, y)
+        luminance[part] = scene.at(*_spot(device, path, pin, looks[part]).T)
     return luminance

@@ -1,28 +1,15 @@
-"""What a scan showed the finger, against what is printed: by lines, by pitch, as an image."""
+"""What a scan showed the finger, against what is printed: by lines, by pitch, as an image.
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+- `Criteria`: what counts as felt
+- `Echo`: a swing of a pin that feels like a line and is none
+- `Edge`: one end of a printed line, and what became of it
+- `judge`: what the finger was shown, line by line
+- `Judgement`: what the finger was shown in a scan
+- `largest_speeds`: the largest hand speed at which two lines stay distinct
+- `Line`: one printed line under one pin
+- `SpeedLimit`: how fast a hand may go over two lines
+"""
 
 from pindrive.lazy import attach
 
-if TYPE_CHECKING:
-    from pindrive.evaluation.perception import judge
-    from pindrive.evaluation.results import Criteria, Judgement, Line
-
-__all__ = [
-    "Criteria",
-    "Judgement",
-    "Line",
-    "judge",
-]
-
-__getattr__, __dir__ = attach(
-    __name__,
-    {
-        "Criteria": "pindrive.evaluation.results",
-        "Judgement": "pindrive.evaluation.results",
-        "Line": "pindrive.evaluation.results",
-        "judge": "pindrive.evaluation.perception",
-    },
-)
+__getattr__, __dir__ = attach(__name__)

@@ -34,9 +34,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive._core import settling_band
+from pindrive.device.device import Criteria
 from pindrive.device.trajectory import Course, Signal, Way
 from pindrive.evaluation.line_crossings import Printed, printed, turnings
-from pindrive.evaluation.results import CUES, Criteria, Cue, Echo, Edge, Fate, Judgement, Line
+from pindrive.evaluation.results import CUES, Cue, Echo, Edge, Fate, Judgement, Line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

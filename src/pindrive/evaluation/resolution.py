@@ -27,7 +27,7 @@ from typing import Final
 
 import numpy as np
 
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
@@ -35,15 +35,11 @@ from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, check_vibration
 from pindrive.evaluation.line_crossings import Printed
 from pindrive.evaluation.perception import JudgedPin
-from pindrive.evaluation.results import Criteria, Line
+from pindrive.evaluation.results import Line
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
-PART: Final = 0.5
-SLOWEST: Final = 0.005
-FASTEST: Final = 1.0
-"""What is tried, m/s: beyond both ends of what hands do (20-100 mm/s, arXiv 2505.11162)."""
 PHASES: Final = 4
 TRIED: Final = 32
 """Speeds in the grid."""
@@ -114,9 +110,9 @@ def largest_speeds(
     pitches: Sequence[float],
     *,
     width: float | None = None,
-    part: float = PART,
-    slowest: float = SLOWEST,
-    fastest: float = FASTEST,
+    part: float = default("speed.part"),
+    slowest: float = default("speed.slowest"),
+    fastest: float = default("speed.fastest"),
     criteria: Criteria | None = None,
     progress: Progress | None = None,
 ) -> tuple[SpeedLimit, ...]:

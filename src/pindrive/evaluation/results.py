@@ -2,61 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import isnan, nan
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
 from pindrive import lazy
+from pindrive.device.device import Criteria
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.results import LINE
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import QUANTITIES, check
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from pindrive.device.scanning import Scan
-    from pindrive.quantities.status import Status
 
 Fate = Literal["shown", "unseen", "merged", "faint"]
 Cue = Literal["none", "felt", "direction", "sure"]
 
 CUES: Final[tuple[Cue, ...]] = ("none", "felt", "direction", "sure")
 FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
-
-
-def usual(name: str) -> float:
-    """The value of the literature, SI."""
-    return QUANTITIES[name].default or 0.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Criteria:
-    """What counts as felt, by the sources in `quantities_judge`; a user who measures replaces it.
-
-    Args:
-        felt: motion that is felt as a pulse, m, greater than 0.
-        direction: motion of skin whose direction is perceived, m, greater than 0.
-        direction_sure: whose direction is told right in more than 95 % of cases, m.
-        direction_speed: at which that must be gone, m/s.
-        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
-
-    Raises:
-        ValueError: a value is no number or out of its range.
-    """
-
-    felt: float = usual("felt")
-    direction: float = usual("direction")
-    direction_sure: float = usual("direction_sure")
-    direction_speed: float = usual("direction_speed")
-    echo: float = usual("echo")
-
-    def __post_init__(self) -> None:
-        """Validate, and keep plain floats."""
-        for field in fields(self):
-            object.__setattr__(self, field.name, check(field.name, getattr(self, field.name)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,8 +146,34 @@ class Judgement(lazy.NotebookHtml):
             passed under the spot) and the numbers of `Line.numbers`; over `echo`: those of `Echo`;
             a scalar for each of `counts`.
         """
-        made: xr.Dataset = lazy.call("pindrive.evaluation.dataset:dataset", self)
-        return made
+        from pindrive import __version__
+
+        lines, echoes = self.lines, self.echoes
+        data: dict[str, Any] = {
+            "pin": ("line", np.array([line.pin for line in lines], np.int64)),
+            "fate": ("line", np.array([line.fate for line in lines], "<U6")),
+        }
+        for end in ("begin", "end"):
+            times = np.array([getattr(line, end).time for line in lines], np.float64)
+            words = {"long_name": f"when the {end} of the line passed under the spot", "units": "s"}
+            data[f"time_{end}"] = ("line", times, words)
+        rows = [line.numbers for line in lines]
+        for quantity in LINE:
+            values = np.array([row[quantity.name] for row in rows], np.float64)
+            data[quantity.name.replace(".", "_")] = ("line", values, quantity.attributes)
+        data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
+        for name, unit, meaning in (
+            ("time", "s", "when it was highest"),
+            ("x", "m", "where the spot was then, across the page"),
+            ("y", "m", "where the spot was then, down the page"),
+            ("stroke", "m", "how high it was"),
+        ):
+            values = np.array([getattr(echo, name) for echo in echoes], np.float64)
+            data[f"echo_{name}"] = ("echo", values, {"long_name": meaning, "units": unit})
+        for name, count in self.counts.items():
+            data[name.replace(".", "_")] = ((), count, QUANTITIES[name].attributes)
+        title = f"Lines of {self.scan.scene.title}, as they were shown"
+        return xr.Dataset(data, attrs={"title": title, "source": f"pindrive {__version__}"})
 
     @property
     def shown(self) -> tuple[Line, ...]:

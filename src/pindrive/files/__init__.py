@@ -1,1 +1,11 @@
-"""Files that are read and written: device files, the kinds of files, safe replacement."""
+"""Files that are read and written: device files, the kinds of files, safe replacement.
+
+- `ConfigError`: a device file that cannot be used
+- `DeviceFile`: what a device file says
+- `load_device`: the device that a file describes
+- `OutputError`: a file that cannot be written
+"""
+
+from pindrive.lazy import attach
+
+__getattr__, __dir__ = attach(__name__)

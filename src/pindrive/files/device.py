@@ -14,22 +14,22 @@ from math import inf
 from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pindrive.files.ratios import keep_ratios
-from pindrive.files.ratios import written as as_text
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
-    Value,
+    Whole,
     contact_problems,
     drive_of,
     drive_problems,
+    keep_ratios,
     read_values,
     release_of,
     table_of,
+    written,
 )
-from pindrive.files.template import DRIVE, NUMBERS, WHOLE
+from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES, WHOLE
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Rows, counted
@@ -37,21 +37,9 @@ from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pindrive.device.device import Device
+    from pindrive.device.device import Criteria, Device
     from pindrive.device.reading import Reading
-    from pindrive.evaluation.results import Criteria
-    from pindrive.files.whole_device import Whole
     from pindrive.motion.motion import Motion
-
-STUDY_KEYS: Final = (
-    *("base", "set", "page", "outputs", "zip", "chunk"),
-    *("axes", "sample", "tolerances", "specification"),
-)
-"""What stands at the top of a study file beside the tables of a device and the name."""
-KEYS: Final = ("device.name", "device.description", *NUMBERS)
-AROUND: Final = ("magnet", "control", "array", "scan", "judge")
-ALONE: Final = ("device", "drive", "plate", "finger", "motion")
-TABLES: Final = (*ALONE, *AROUND)
 
 
 class Setting(NamedTuple):
@@ -241,7 +229,7 @@ def device_of(
         values["motion.mouse_velocity"] = values.get("scan.hand_speed")
     found += contact_problems(values, place)
     complete = all(key in values for key in NUMBERS if key.partition(".")[0] in names)
-    around = _around(values) if whole and complete and not found else None
+    around = Whole(values) if whole and complete and not found else None
     if complete and not found:
         found += drive_problems(values, place)
     if around:
@@ -374,7 +362,7 @@ def _setting(given: str, value: object) -> Setting:
     """A value from Python: a number is SI."""
     keys = keys_meant(given)
     if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
-        value = as_text(keys[0], float(value))
+        value = written(keys[0], float(value))
     elif len(keys) == 1 and is_file(keys[0], value):
         value = str(Path(str(value)).absolute())
     return Setting(given, value, f"overrides[{quoted(given)}]")
@@ -485,10 +473,3 @@ def _warn(device: DeviceFile, place: Place) -> None:
     for key, value in device.values().items():
         if key in DRIVE and value is not None:
             warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)
-
-
-def _around(values: Mapping[str, Value]) -> Whole:
-    """The tables of the whole device; a plain drive does without what importing it takes."""
-    from pindrive.files.whole_device import Whole
-
-    return Whole(values)

@@ -33,12 +33,12 @@ from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
 
-    from pindrive.device.scanning import Scan
+    from pindrive.device.scanning import PinScan, Scan
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
     from pindrive.motion.results import Event
@@ -85,18 +85,12 @@ def to_csv(motion: Motion, path: str | PathLike[str], rate: float) -> Path:
 def write_csv(motion: Motion, path: Path, times: NDArray[np.float64]) -> None:
     """Write the motion, SI, at times (s, shape (n,)), a row each; right-hand limits."""
     found = columns(motion, times)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow([heading(name) for name in found])
-        _write_rows(writer, [*found.values()])
+    _write_table(path, map(heading, found), _rows([*found.values()]))
 
 
 def write_events(motion: Motion, path: Path) -> None:
     """Write the events of a motion, SI, a row each; of a cycle, one round."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(_event_headings())
-        writer.writerows(map(_event_row, motion.events))
+    _write_table(path, _event_headings(), map(_event_row, motion.events))
 
 
 def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
@@ -112,22 +106,36 @@ def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
 
 def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
     """Write each pin at times on the path's clock (s, shape (n,)), pin after pin, a row each."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        for pin in scan.pins:
-            found = {**columns(pin.motion, pin.since(times)), "time": times}
-            if pin is scan.pins[0]:
-                writer.writerow(["pin", *map(heading, found)])
-            _write_rows(writer, [np.full(len(times), pin.number), *found.values()])
+
+    def found(pin: PinScan) -> dict[str, NDArray[Any]]:
+        return {**columns(pin.motion, pin.since(times)), "time": times}
+
+    rows = (
+        row
+        for pin in scan.pins
+        for row in _rows([np.full(len(times), pin.number), *found(pin).values()])
+    )
+    names = columns(scan.pins[0].motion, scan.pins[0].since(times[:1]))
+    _write_table(path, ["pin", *map(heading, names)], rows)
 
 
 def write_scan_events(scan: Scan, path: Path) -> None:
     """Write the events of each pin, pin after pin, on the path's clock, a row each."""
+    rows = ([pin.number, *_event_row(event)] for pin in scan.pins for event in pin.events)
+    _write_table(path, ["pin", *_event_headings()], rows)
+
+
+def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(["pin", *_event_headings()])
-        for pin in scan.pins:
-            writer.writerows([pin.number, *_event_row(event)] for event in pin.events)
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+def _rows(table: Sequence[NDArray[Any]]) -> Iterator[tuple[Any, ...]]:
+    """The rows of columns, of which only so many at once are Python's numbers."""
+    for begin in range(0, len(table[0]), AT_ONCE):
+        yield from zip(*(part[begin : begin + AT_ONCE].tolist() for part in table), strict=True)
 
 
 def _with_events(
@@ -158,12 +166,6 @@ def _event_row(event: Event) -> list[Any]:
 def heading(name: str) -> str:
     """A column's name with its unit: "velocity_m_per_s"."""
     return f"{name}_{SERIES[name].unit.replace('/', '_per_').replace('^', '')}"
-
-
-def _write_rows(writer: Any, table: Sequence[NDArray[Any]]) -> None:
-    for begin in range(0, len(table[0]), AT_ONCE):
-        part = (column[begin : begin + AT_ONCE].tolist() for column in table)
-        writer.writerows(zip(*part, strict=True))
 
 
 def write_netcdf(motion: Motion, path: Path, samples: int) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from secrets import token_hex
 from typing import Any, Final
 
+from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.lazy import h5py
 
 _HEAD = 4096
@@ -246,15 +247,11 @@ def _tables(path: Path) -> dict[str, Any]:
 
 
 def _is_device_file(path: Path) -> bool:
-    from pindrive.files.device import STUDY_KEYS, TABLES
-
     tables = _tables(path)
     return not tables.keys().isdisjoint(TABLES) and tables.keys().isdisjoint(STUDY_KEYS)
 
 
 def _is_study_file(path: Path) -> bool:
-    from pindrive.files.device import STUDY_KEYS
-
     return not _tables(path).keys().isdisjoint(STUDY_KEYS)
 
 

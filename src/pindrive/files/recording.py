@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.files.schema import number
+from pindrive.files.schema import Tables, number
 from pindrive.files.template import NUMBERS, usual
 from pindrive.motion.drive import check_slopes, check_times
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import refusal
+from pindrive.quantities.quantity import Quantity, Rows, counted
+from pindrive.quantities.table import QUANTITIES, default, refusal
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 SUFFIX: Final = ".csv"
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
-
-Tables = Mapping[str, Any]
 
 
 def is_file(key: str, value: object) -> bool:
@@ -75,6 +73,24 @@ def recording_words(tables: Tables, folder: Path) -> str:
     return _path(file, tables).about
 
 
+def profile_words(file: Path) -> str:
+    """What the rows of a CSV are, for a person; empty for one that holds no input by its name.
+
+    Raises:
+        ValueError: it cannot be read, or its rows are malformed; file and row are named.
+    """
+    table = CsvTable.read(file, "a CSV", profile_header(NUMBERS[SPEED]))
+    for key, quantity in NUMBERS.items():
+        if quantity.rows_of == "profile" and quantity.name in table:
+            rows = _rows(file, key, {})
+            lasts = QUANTITIES["profile.time"].text(rows[-1][0] - rows[0][0])
+            low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))
+            return (
+                f"{quantity.name}: {counted(len(rows), 'row')} over {lasts}, from {low} to {high}."
+            )
+    return ""
+
+
 def profile_header(quantity: Quantity) -> str:
     """The header of a CSV with the rows of a quantity: "t [s], mouse_velocity [mm/s]"."""
     unit = f" [{quantity.display_unit}]" if quantity.display_unit else ""
@@ -98,9 +114,13 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
     values = table.column(name, name, quantity.unit, example.partition(", ")[2])
     table.check_rows(f"a CSV of {name}", 1)
     why = " (a jump would take an infinite force)" if key == SPEED else ""
-    for i, line in enumerate(table.numbers):
-        three = times[max(0, i - 2) : i + 1]  # those before are in order
-        check_times(three, where=table.file, label=f"row {line}: t", steps=not why, why=why)
+    check_times(
+        times,
+        where=table.file,
+        label=lambda i: f"row {table.numbers[i]}: t",
+        steps=not why,
+        why=why,
+    )
     rows = tuple(zip(times, values, strict=True))
     check_slopes(rows, "profile.rate", where=table.file, label=name)
     return rows
@@ -127,4 +147,4 @@ def _given(tables: Tables, key: str) -> float:
             return number(value, quantity, usual(quantity), key, "")
     except ValueError:  # said where the tables are read
         pass
-    return quantity.default or 0.0
+    return float(default(quantity.name))

@@ -1,4 +1,4 @@
-"""The values of a device file's tables: each read in SI, and what does not fit together.
+"""The values of a device file's tables: read in SI, what they describe, what does not fit together.
 
 Which keys there are, their units and bounds, and what holds where one is left out stands in the
 table of quantities.
@@ -7,10 +7,23 @@ table of quantities.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, Final
 
-from pindrive.files.template import NUMBERS, line, usual, usual_rows
+from pindrive.device.controller import ControlBlock, check_band
+from pindrive.device.device import Criteria, Device, check_plate
+from pindrive.device.electromagnet import (
+    COIL,
+    COIL_NEEDS,
+    DIRECT,
+    Coil,
+    Electromagnet,
+    check_one_way,
+)
+from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
+from pindrive.device.reading import Reading
+from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
 from pindrive.motion.drive import (
     Contact,
     Drive,
@@ -27,9 +40,13 @@ from pindrive.motion.drive import (
 from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 
+_GRID: Final = ("columns", "rows", "pitch")
+
+Tables = Mapping[str, Any]
+"""The tables of a device file as TOML has them: text with units."""
 Place = Callable[..., str]
 """Where keys were written: on the command line if one of them was, else in the file."""
 Value = float | Rows | None
@@ -46,9 +63,12 @@ class Problems(list[str]):
     def check(self, check: Callable[..., object], *values: object, keys: tuple[str, ...]) -> None:
         """Add what a check refuses of values, with the place of their keys; the first is named."""
         try:
-            check(*values, where=self._place(*keys), label=keys[0])
+            check(*values)
         except ValueError as error:
-            self.append(error.args[0])
+            said, where = error.args[0], self._place(*keys)
+            self.append(
+                said.at(where, keys[0]) if isinstance(said, Refusal) else f"{where}: {said}"
+            )
 
 
 def read_values(
@@ -210,3 +230,161 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
 def over_time(value: Value) -> float | Profile | None:
     """A constant, or rows (time, value) as a profile."""
     return Profile(*zip(*value, strict=True)) if isinstance(value, tuple) else value
+
+
+# ---- the whole device ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Whole:
+    """The values of the tables of the whole device, each in range."""
+
+    values: Mapping[str, Value]
+
+    def magnet(self) -> Electromagnet:
+        """The electromagnet: by how it is made where the file says so, else by what it does."""
+        given = table_of(self.values, "magnet")
+        coil = {name: given.pop(name) for name in COIL}
+        if all(coil[name] is None for name in COIL_NEEDS):
+            return Electromagnet.from_times(**given)
+        around = {name: value for name, value in given.items() if name not in DIRECT}
+        return Electromagnet.from_coil(Coil(**coil), **around)
+
+    def array(self) -> PinArray:
+        """The pins: at given places, or a grid."""
+        given = table_of(self.values, "array")
+        grid, places = {name: given.pop(name) for name in _GRID}, given.pop("places")
+        return PinArray.grid(**grid, **given) if places is None else PinArray.at(places, **given)
+
+    def device(self, drive: Drive) -> Device:
+        """The whole device about a drive."""
+        control = ControlBlock(**table_of(self.values, "control"))
+        return Device(drive=drive, magnet=self.magnet(), control=control, array=self.array())
+
+    def reading(self) -> Reading:
+        """How a hand reads with it."""
+        return Reading(**table_of(self.values, "scan"))
+
+    def criteria(self) -> Criteria:
+        """What counts as felt."""
+        return Criteria(**table_of(self.values, "judge"))
+
+    def value(self, key: str) -> Value:
+        """The value of a key, SI, given or not; None where nothing was given and nothing holds."""
+        table, _, name = key.partition(".")
+        value = self.values[key]
+        if table == "magnet" and name in (*COIL, *DIRECT):
+            magnet = self.magnet()
+            if name in COIL:
+                return None if magnet.coil is None else getattr(magnet.coil, name)
+            return value if magnet.coil is None else getattr(magnet, name)
+        return None if name in _GRID and self.values["array.places"] is not None else value
+
+    def problems(self, given: dict[str, Any], place: Place) -> list[str]:
+        """What does not fit together; `given` is the file's tables."""
+        values, problems = self.values, Problems(place)
+        plate_keys = ("plate", "plate.curve", "plate.kinetic")
+        problems.check(check_plate, contact_of(values, "plate"), keys=plate_keys)
+        magnet_keys = tuple(f"magnet.{name}" for name in given["magnet"]) or ("magnet",)
+        problems.check(self._check_magnet, set(given["magnet"]), keys=magnet_keys)
+        band = values["control.threshold"], values["control.hysteresis"]
+        problems.check(check_band, *band, keys=("control.hysteresis", "control.threshold"))
+        if (places := values["array.places"]) is not None:
+            problems.check(_check_no_grid, given["array"], keys=("array.places",))
+            problems.check(check_apart, places, keys=("array.places",))
+        counts = "array.columns", "array.rows"
+        for key in counts:
+            problems.check(check_count, key.partition(".")[2], values[key], keys=(key,))
+        problems.check(check_pins, *(values[key] for key in counts), keys=counts)
+        return problems
+
+    def _check_magnet(self, given: set[str]) -> None:
+        """Refuse a magnet described by two ways or by half of one, or one that cannot be."""
+        check_one_way(given, "magnet")
+        self.magnet()
+
+
+def _check_no_grid(given: dict[str, Any]) -> None:
+    """Refuse a grid beside places."""
+    for name in _GRID:
+        if name in given:
+            required = "left out where columns, rows or pitch are given"
+            raise ValueError(refusal("places", required, f"it beside array.{name}"))
+
+
+# ---- ratios --------------------------------------------------------------------------------------
+
+
+def scaled_rows(rows: Rows | None, first: float) -> Rows | None:
+    """The rows of a curve in the same shape, so that its first value is `first`."""
+    if rows is None or rows[0][1] == first or not rows[0][1]:
+        return rows
+    return tuple((place, value / rows[0][1] * first) for place, value in rows)
+
+
+def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) -> None:
+    """Change what follows the keys that were set, and was not set itself.
+
+    Without a ratio (one of the values is left out, zero or malformed) a value stays as it is.
+
+    Args:
+        tables: of a device file, some of their values set anew; changed.
+        before: the same before.
+        placed: the keys that were set, in full.
+    """
+    moved = {key for key in DRIVE if key in placed}
+    for key, quantity in DRIVE.items():
+        table, _, name = key.partition(".")
+        if key in moved or not moved.intersection(quantity.follows):
+            continue
+        moved.add(key)
+        given = _given(before, key)
+        old, new = (_quotient(each, quantity.follows) for each in (before, tables))
+        if given is None or not old or new is None:
+            continue
+        if isinstance(given, float):
+            tables[table][name] = written(key, given / old * new)
+        elif rows := scaled_rows(given, new):
+            tables[table][name] = _written_rows(key, rows)
+
+
+def written(key: str, value: float) -> str | float:
+    """A value in SI as a device file has it, to the last bit."""
+    unit = NUMBERS[key].unit
+    return value if unit == "1" else f"{value!r} {unit}"
+
+
+def _quotient(tables: Tables, keys: tuple[str, ...]) -> float | None:
+    """The value of the first key, over that of the second if there is one."""
+    values = [_value(tables, key) for key in keys]
+    if not all(values[1:]) or values[0] is None:
+        return None
+    return values[0] / values[1] if len(values) > 1 and values[1] else values[0]
+
+
+def _value(tables: Tables, key: str) -> float | None:
+    """The value of a key, SI, or of what holds where it is left out; None where there is none."""
+    table, _, name = key.partition(".")
+    found = _given(tables, key)
+    if found is None and name not in tables[table]:
+        curve = _given(tables, f"{table}.curve") if name == "kinetic" else None
+        if isinstance(curve, tuple):
+            return curve[0][1]
+        return _value(tables, DRIVE[key].follows[0]) if name == "static" else None
+    return found if isinstance(found, float) else None
+
+
+def _given(tables: Tables, key: str) -> Value:
+    """What a file gives for a key, SI; None where it gives nothing, or what is malformed."""
+    table, _, name = key.partition(".")
+    if name not in tables[table]:
+        return None
+    try:
+        return read_value(tables[table][name], key, "")
+    except ValueError:  # said where the file is read
+        return None
+
+
+def _written_rows(key: str, rows: Rows) -> list[list[Any]]:
+    across = QUANTITIES[COLUMNS[DRIVE[key].rows_of][0]]
+    return [[f"{x!r} {across.unit}", written(key, y)] for x, y in rows]

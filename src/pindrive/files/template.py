@@ -6,10 +6,10 @@ from dataclasses import replace
 from textwrap import wrap
 from typing import Final
 
-from pindrive.quantities.device import DEVICE_INPUTS, READER
+from pindrive.quantities.device import READER
 from pindrive.quantities.drive import COLUMNS, INPUTS
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.table import DEVICE_INPUTS, QUANTITIES
 
 DRIVE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in INPUTS}
 """The keys of a device file that describe the drive and its motion, in their order."""
@@ -17,6 +17,16 @@ WHOLE: Final[dict[str, Quantity]] = {quantity.key: quantity for quantity in DEVI
 """The keys that describe the whole device around it, in their order."""
 NUMBERS: Final[dict[str, Quantity]] = DRIVE | WHOLE
 """The keys of a device file that hold a quantity."""
+
+STUDY_KEYS: Final = (
+    *("base", "set", "page", "outputs", "zip", "chunk"),
+    *("axes", "sample", "tolerances", "specification"),
+)
+"""What stands at the top of a study file beside the tables of a device and the name."""
+KEYS: Final = ("device.name", "device.description", *NUMBERS)
+AROUND: Final = ("magnet", "control", "array", "scan", "judge")
+ALONE: Final = ("device", "drive", "plate", "finger", "motion")
+TABLES: Final = (*ALONE, *AROUND)
 
 
 def usual(quantity: Quantity) -> str:

@@ -1,1 +1,25 @@
-"""One drive: as data, its motion, the numbers of the motion, many motions at once."""
+"""One drive: as data, its motion, the numbers of the motion, many motions at once.
+
+`simulate` and `simulate_batch` are names of `pindrive` itself.
+
+- `Certificate`: the largest violation of each law
+- `Coefficients`: friction forces over what presses
+- `Contact`: dry friction between the pin and a surface
+- `ContactUse`: what one contact did in it
+- `Crossings`: where a quantity of a motion crosses a level
+- `Drive`: a mass on a spring and a damper, rubbed by a plate and a fingertip
+- `Ending`: how a motion ends, in numbers
+- `Event`: a change at a contact
+- `Extrema`: extrema of a quantity of a motion
+- `Ledger`: where the energy came from and where it went
+- `Motion`: what a pin does after its release
+- `Profile`: a quantity over time, linear between rows
+- `Release`: the initial state and the inputs
+- `Segment`: a stretch of time in one mode
+- `Sensitivity`: derivatives of a motion by its parameters
+- `Transient`: the numbers of a transient
+"""
+
+from pindrive.lazy import attach
+
+__getattr__, __dir__ = attach(__name__)

@@ -40,17 +40,12 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.floa
     return found
 
 
-def _series(name: str) -> dict[str, str]:
-    """The attributes of a column."""
-    return {"units": SERIES[name].unit, "long_name": SERIES[name].meaning}
-
-
 def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
     """The columns at the times t (s, shape (n,)), the events, the numbers and the inputs."""
     from pindrive import __version__
 
     data: dict[str, Any] = {
-        name: ("time", column, _series(name))
+        name: ("time", column, SERIES[name].attributes)
         for name, column in columns(motion, t).items()
         if name != "time"
     }
@@ -60,13 +55,7 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
     for name in ("contact", "kind"):
         data[f"event_{name}"] = ("event", [str(getattr(e, name)) for e in motion.events])
     for name, value in motion.numbers().items():
-        quantity = QUANTITIES[name]
-        attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
-        data[name.replace(".", "_")] = (
-            (),
-            value,
-            {**attributes, "units": quantity.unit} if quantity.unit else attributes,
-        )
+        data[name.replace(".", "_")] = ((), value, QUANTITIES[name].attributes)
     data["status"] = ((), np.int8(motion.status), flag_attributes(Status))
     data["ending"] = ((), np.int8(motion.ending.end), flag_attributes(End))
     origin: dict[str, Any] = {
@@ -74,7 +63,7 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
         "source": f"pindrive {__version__}",
         **_attributes(motion),
     }
-    return xr.Dataset(data, coords={"time": ("time", t, _series("time"))}, attrs=origin)
+    return xr.Dataset(data, coords={"time": ("time", t, SERIES["time"].attributes)}, attrs=origin)
 
 
 def _attributes(motion: Motion) -> dict[str, float | list[float]]:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
 from itertools import islice, pairwise
 from math import copysign, inf, isinf, isnan, sqrt
 from operator import lt
 from typing import TYPE_CHECKING, Any, cast, overload
 
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, refusal
+from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.quantities.table import Number
 
 __all__ = ["Contact", "Drive", "Profile"]
 
@@ -97,103 +101,100 @@ class Contact:
         return isinf(self.stiffness)
 
 
-def check_static(
-    static: float, kinetic: float, *, where: str = "", label: str = "static", given: str = ""
-) -> None:
+def check_static(static: float, kinetic: float) -> None:
     """Refuse static friction below kinetic friction (both N)."""
     if static < kinetic:
         required = f"at least the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal(label, required, given or f"{static!r} N", where))
+        raise ValueError(refusal("static", required, f"{static!r} N"))
 
 
-def check_curve(
-    rows: Sequence[tuple[float, float]], kinetic: float, *, where: str = "", label: str = "curve"
-) -> None:
+def check_curve(rows: Sequence[tuple[float, float]], kinetic: float) -> None:
     """Refuse rows (m/s, N) that do not start at speed 0 with the kinetic friction (N)."""
     speed, force = rows[0]
     if speed != 0.0:
-        raise ValueError(refusal(f"{label}[0] speed", "0 m/s", f"{speed!r} m/s", where))
+        raise ValueError(refusal("curve[0] speed", "0 m/s", f"{speed!r} m/s"))
     if force != kinetic:
-        required = f"the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal(f"{label}[0] force", required, f"{force!r} N", where))
+        raise ValueError(
+            refusal("curve[0] force", f"the kinetic friction, {kinetic!r} N", f"{force!r} N")
+        )
 
 
 def check_increasing(
-    values: Sequence[float], unit: str, *, where: str = "", label: str = "[{}]", why: str = ""
+    values: Sequence[float],
+    unit: str,
+    *,
+    where: str = "",
+    label: str | Callable[[int], str] = "[{}]",
+    why: str = "",
 ) -> None:
-    """Refuse values of which one is not greater than the one before; `label` takes its index."""
+    """Refuse values of which one is not greater than the one before; `label` is of its index."""
     if all(map(lt, values, islice(values, 1, None))):
         return
+    named = label.format if isinstance(label, str) else label
     for i in range(1, len(values)):
         if not values[i - 1] < values[i]:
             required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
-            raise ValueError(refusal(label.format(i), required, f"{values[i]!r} {unit}", where))
+            raise ValueError(refusal(named(i), required, f"{values[i]!r} {unit}", where))
 
 
 def check_times(
     times: Sequence[float],
     *,
     where: str = "",
-    label: str = "[{}]",
+    label: str | Callable[[int], str] = "[{}]",
     steps: bool = True,
     why: str = "",
 ) -> None:
     """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
 
-    `label` takes the index of the one that is wrong, `why` says why there may be no step.
+    `label` is of the index of the one that is wrong, `why` says why there may be no step.
     """
     if not steps:
         check_increasing(times, "s", where=where, label=label, why=why)
         return
+    named = label.format if isinstance(label, str) else label
     for i in range(1, len(times)):
         before, given = f"the one before, {times[i - 1]!r} s", f"{times[i]!r} s"
         if not times[i - 1] <= times[i]:
-            raise ValueError(refusal(label.format(i), f"at least {before}", given, where))
+            raise ValueError(refusal(named(i), f"at least {before}", given, where))
         if i > 1 and times[i - 2] == times[i]:
             required = f"greater than {before}: two rows at one time are a step, a third is none"
-            raise ValueError(refusal(label.format(i), required, given, where))
+            raise ValueError(refusal(named(i), required, given, where))
 
 
-def check_continuous(
-    profile: Profile, unit: str, *, where: str = "", label: str = "mouse_velocity"
-) -> None:
-    """Refuse a velocity (`unit`) with a step: it would take an infinite force."""
-    for t in profile.steps:
-        i = bisect_right(profile.times, t)
+def check_continuous(velocity: Profile) -> None:
+    """Refuse a mouse velocity with a step: it would take an infinite force."""
+    for t in velocity.steps:
+        i = bisect_right(velocity.times, t)
+        y, z = velocity.values[i - 2 : i]
         required = "without a step (a jump would take an infinite force)"
-        y, z = profile.values[i - 2 : i]
-        raise ValueError(
-            refusal(label, required, f"one from {y!r} {unit} to {z!r} {unit} at {t!r} s", where)
-        )
+        given = f"one from {y!r} m/s to {z!r} m/s at {t!r} s"
+        raise ValueError(refusal("mouse_velocity", required, given))
 
 
-def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
+def check_skin(finger: Contact) -> None:
     """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal(label, required, counted(len(finger.curve or ()), "row"), where))
+        raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
 
 
-def check_load(
-    plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
-) -> None:
+def check_load(plate: Contact, load: float | Profile) -> None:
     """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
     if plate.curved and isinstance(load, Profile) and load.changes:
         required = "constant for a plate with a friction curve"
-        raise ValueError(refusal(label, required, "a profile that changes", where))
+        raise ValueError(refusal("plate_load", required, "a profile that changes"))
 
 
-def check_stretch(
-    stretch: float, finger: Contact, *, where: str = "", label: str = "skin_stretch"
-) -> None:
+def check_stretch(stretch: float, finger: Contact) -> None:
     """Refuse a stretch (m) that the finger's skin cannot have."""
     given = f"{stretch!r} m"
     if finger.rigid:
-        raise ValueError(refusal(label, "left out for a rigid finger", given, where))
+        raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
     largest = finger.static_friction / finger.stiffness
     if abs(stretch) > largest:
         required = f"at most static friction over stiffness, {largest!r} m, either way"
-        raise ValueError(refusal(label, required, given, where))
+        raise ValueError(refusal("skin_stretch", required, given))
 
 
 def _checked_curve(
@@ -240,7 +241,7 @@ def check_slopes(
     raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@checked
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
 
@@ -257,28 +258,14 @@ class Drive:
         ValueError: a value is no number or out of its range.
     """
 
-    mass: float
-    stiffness: float
-    damping: float
+    mass: Number
+    stiffness: Number
+    damping: Number
     plate: Contact
     finger: Contact
 
-    def __init__(
-        self,
-        *,
-        mass: float | str,
-        stiffness: float | str,
-        damping: float | str,
-        plate: Contact,
-        finger: Contact,
-    ) -> None:
-        """Validate, and keep plain floats."""
-        put = object.__setattr__
-        put(self, "mass", check("mass", mass))
-        put(self, "stiffness", check("stiffness", stiffness))
-        put(self, "damping", check("damping", damping))
-        put(self, "plate", plate)
-        put(self, "finger", finger)
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
         ratios = QUANTITIES["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios
@@ -346,18 +333,27 @@ class Profile:
     Args:
         times: s, or text with a unit, from -1e12 to 1e12, none less than the one before, no three
             alike; at least one.
-        values: one for each time, SI, from -1e12 to 1e12, as is the rate between two rows.
+        values: one for each time, SI, or text with a unit, such as "60 mm/s", from -1e12 to 1e12,
+            as is the rate between two rows.
+
+    Attributes:
+        unit: the SI unit of values that were text, empty where none was: `Release` refuses those of
+            another quantity.
 
     Raises:
-        ValueError: lengths differ, times decrease, a number or a rate is out of range.
+        ValueError: lengths differ, times decrease, a number or a rate is out of range, or a text is
+            in no unit of a quantity that may change over time.
     """
 
     times: tuple[float, ...]
     values: tuple[float, ...]
+    unit: str = field(compare=False, repr=False)
 
-    def __init__(self, times: Iterable[float | str], values: Iterable[float]) -> None:
+    def __init__(self, times: Iterable[float | str], values: Iterable[float | str]) -> None:
         """Validate, and keep tuples of plain floats."""
-        t, y = _column(times, "profile.time", "times"), _column(values, "profile.value", "values")
+        unit, numbers = _in_si(_listed(values))
+        t = _column(_listed(times), "profile.time", "times")
+        y = _column(numbers, "profile.value", "values")
         if not t:
             raise ValueError(refusal("times", "at least one", "none"))
         if len(t) != len(y):
@@ -366,6 +362,7 @@ class Profile:
         check_slopes(list(zip(t, y, strict=True)), "profile.rate", label="profile")
         object.__setattr__(self, "times", t)
         object.__setattr__(self, "values", y)
+        object.__setattr__(self, "unit", unit)
 
     @property
     def changes(self) -> bool:
@@ -402,14 +399,30 @@ class Profile:
         return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
 
 
-def _column(values: Iterable[float | str], name: str, label: str) -> tuple[float, ...]:
-    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
+def _listed(values: Iterable[float | str]) -> list[Any]:
     try:
-        listed: list[Any] = values.tolist() if hasattr(values, "tolist") else list(values)
-        bounds = QUANTITIES[name].limits
-        plain = set(map(type, listed)) == {float} and not any(map(isnan, listed))
-        if plain and min(listed) in bounds and max(listed) in bounds:
-            return tuple(listed)
-        return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(listed))
+        return values.tolist() if hasattr(values, "tolist") else list(values)
     except TypeError:
         raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None
+
+
+def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
+    """The SI unit of values of which some are text, empty where none is, and all of them in SI."""
+    if str not in set(map(type, values)):
+        return "", values
+    over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
+    for unit in [quantity.unit for quantity in over_time]:
+        with suppress(UnitError):
+            return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
+    usual = " or all like ".join(quoted(quantity.usual) for quantity in over_time)
+    texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
+    raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
+
+
+def _column(values: list[Any], name: str, label: str) -> tuple[float, ...]:
+    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
+    bounds = QUANTITIES[name].limits
+    plain = set(map(type, values)) == {float} and not any(map(isnan, values))
+    if plain and min(values) in bounds and max(values) in bounds:
+        return tuple(values)
+    return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(values))

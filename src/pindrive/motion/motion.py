@@ -36,7 +36,7 @@ from pindrive.motion.results import (
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -364,7 +364,7 @@ class Motion(lazy.NotebookHtml):
         made: xr.Dataset = lazy.call("pindrive.motion.dataset:dataset", self, t)
         return made
 
-    def to_csv(self, path: str | PathLike[str], rate: float | str = 1000.0) -> Path:
+    def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
         """Write the motion at even times as CSV, and its events to a file of their own.
 
         Args:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nan
-from typing import TYPE_CHECKING
 
 from pindrive.motion.drive import (
     Drive,
@@ -14,12 +14,16 @@ from pindrive.motion.drive import (
     check_skin,
     check_stretch,
 )
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
-if TYPE_CHECKING:
-    from pindrive.motion.results import CoreNumbers, Rows
+Rows = Sequence[tuple[float, float]]
+ContactNumbers = tuple[float, float, float, Rows]
+CoreNumbers = tuple[
+    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
+]
+"""In the order of `Numbers` in _core.cpp."""
 
-__all__ = ["Release"]
+__all__ = ["CoreNumbers", "Release", "Rows"]
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -51,9 +55,9 @@ class Release:
     def __init__(
         self,
         mouse_velocity: float | str | Profile,
-        displacement: float | str = 0.0,
+        displacement: float | str = default("displacement"),
         velocity: float | str | None = None,
-        plate_load: float | str | Profile = 1.0,
+        plate_load: float | str | Profile = default("plate_load"),
         skin_stretch: float | str | None = None,
     ) -> None:
         """Validate, and keep plain floats."""
@@ -78,9 +82,13 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
     """A constant or a profile, each value of it checked."""
     if not isinstance(given, Profile):
         return check(name, given)
-    bounds, limits = QUANTITIES[name].bounds, QUANTITIES[name].limits
+    quantity = QUANTITIES[name]
+    bounds, limits = quantity.bounds, quantity.limits
+    if given.unit and given.unit != quantity.unit:
+        other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
+        raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
     if name == "mouse_velocity":
-        check_continuous(given, "m/s")
+        check_continuous(given)
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")

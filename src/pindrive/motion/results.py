@@ -6,7 +6,6 @@ what each means.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from math import isnan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -23,12 +22,6 @@ if TYPE_CHECKING:
     from pindrive import _core
 
 Side = Literal["left", "right"]
-Rows = Sequence[tuple[float, float]]
-ContactNumbers = tuple[float, float, float, Rows]
-CoreNumbers = tuple[
-    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
-]
-"""In the order of `Numbers` in _core.cpp."""
 ContactName = Literal["plate", "finger"]
 
 
@@ -183,53 +176,40 @@ _CYCLE: dict[End, Cycle] = {
 
 @dataclass(frozen=True, slots=True)
 class ContactUse:
-    """What one contact did during the motion."""
+    """What one contact did during the motion, SI.
+
+    `pindrive.quantities.QUANTITIES` says what each is, under "transient.plate." and its name.
+    """
 
     reversals: int
-    """How often its sliding velocity came to zero, whether the pin then stuck or crossed."""
     time_stuck: float
-    """s"""
     distance_slid: float
-    """m"""
     dissipated: float
-    """J"""
     peak_force: float
-    """Largest friction force on the pin, N."""
 
 
 @dataclass(frozen=True, slots=True)
 class Transient:
-    """The transient after the release; the paper's names and equations in brackets."""
+    """The transient after the release, SI.
+
+    `pindrive.quantities.QUANTITIES` says what each is, under "transient." and its name, with the
+    paper's symbol and equation. `trough_time` is infinite where the trough is approached but never
+    reached; the settling time of a steady oscillation is when that begins.
+    """
 
     peak_displacement: float
-    """First turning point on the way out, or the start (x_m,a, eq. 14), m."""
     peak_time: float
-    """(t_a, eq. 13), s."""
     trough_displacement: float
-    """The turning point that follows (x_m,c, eq. 16), m."""
     trough_time: float
-    """(t_c, eq. 15), s; infinite when the trough is approached but never reached."""
     swing: float
-    """From peak to trough (eq. 17), m."""
     return_velocity: float
-    """Extreme velocity on the way back (v_m,b, eq. 20), m/s."""
     return_velocity_time: float
-    """(t_b, eq. 19), s."""
     first_reversal_time: float
-    """First time the pin stops sliding on the plate (t_1, eq. 21), s."""
     settling_time: float
-    """The paper's time of the transitional period, s: from then on x stays within the settling band
-    about x_end; for a steady oscillation, when that begins."""
     rest_time: float
-    """From then on the pin stays at rest, s; infinite for a motion that never comes to rest: one
-    that decays without end, or a steady oscillation."""
     last_event_time: float
-    """Last change of a contact's state after the release, s: it sticks, slips or crosses; 0 without
-    any, infinite where they go on forever, as in a stick-slip cycle."""
     peak_stretch: float
-    """Largest stretch of a compliant finger's skin, m; NaN for a rigid one."""
     peak_stretch_rate: float
-    """How fast it stretched or relaxed at the most, m/s."""
     plate: ContactUse
     finger: ContactUse
 
@@ -289,6 +269,7 @@ class Ledger:
     """Where the energy came from and where it went, J.
 
     The damper's share is integrated, not inferred: the terms add up only if the motion is right.
+    `pindrive.quantities.QUANTITIES` says what each is, under "energy." and its name.
     """
 
     kinetic_start: float
@@ -296,17 +277,13 @@ class Ledger:
     spring_start: float
     spring_end: float
     skin_start: float
-    """In a compliant finger."""
     skin_end: float
     plate_work: float
-    """What the moving plate put in through friction."""
     inertia_work: float
-    """What the housing put in by accelerating."""
     damper_dissipated: float
     plate_dissipated: float
     finger_dissipated: float
     residual: float
-    """What the terms leave over: rounding alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,28 +291,19 @@ class Certificate:
     """The worst violation of each law over the motion, found without using the solver.
 
     Dimensionless: a part of the largest force, velocity, displacement or energy in the motion.
+    `pindrive.quantities.QUANTITIES` names the laws, under "certificate." and their names.
     """
 
     motion_law: float
-    """m x'' + b x' + k x = R_plate + R_finger + m v_p'."""
     kinematics: float
-    """x' and x'' are the derivatives of x."""
     friction_law: float
-    """A sliding contact carries its kinetic friction."""
     force_bound: float
-    """A stuck contact carries no more than its static friction."""
     sliding_sign: float
-    """Friction opposes the sliding: no level was passed unseen."""
     sticking: float
-    """A stuck contact does not slide."""
     continuity: float
-    """x and x' do not jump."""
     transitions: float
-    """A contact breaks loose or crosses only where it cannot hold."""
     energy: float
-    """The ledger adds up."""
     dissipation: float
-    """Friction and damper take energy, never give."""
 
     @property
     def worst(self) -> float:

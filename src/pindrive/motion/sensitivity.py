@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-    from pindrive.motion.results import CoreNumbers, Rows, Side
+    from pindrive.motion.release import CoreNumbers, Release, Rows
+    from pindrive.motion.results import Side
 
 __all__ = ["Sensitivity"]
 

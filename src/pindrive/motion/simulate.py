@@ -14,8 +14,7 @@ from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
 
 if TYPE_CHECKING:
     from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-    from pindrive.motion.results import CoreNumbers
+    from pindrive.motion.release import CoreNumbers, Release
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (
@@ -81,15 +80,13 @@ def simulated(
     return Motion(drive, release, end, check("settling_band", settling_band))
 
 
-def check_phase(
-    duration: float, natural_frequency: float, *, where: str = "", label: str = "duration"
-) -> None:
+def check_phase(duration: float, natural_frequency: float) -> None:
     """Refuse a duration (s) in which the phase grows beyond what doubles tell apart."""
     bounds = QUANTITIES["phase"].limits
     if duration * natural_frequency > bounds.upper:
         longest, phase = brief(bounds.upper / natural_frequency), brief(bounds.upper)
         required = f"at most {longest} s, {phase} over the natural frequency"
-        raise ValueError(refusal(label, required, f"{duration!r} s", where))
+        raise ValueError(refusal("duration", required, f"{duration!r} s"))
 
 
 def _plausible(numbers: CoreNumbers) -> bool:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+    from pindrive.device.device import Criteria
     from pindrive.evaluation.resolution import SpeedLimit
-    from pindrive.evaluation.results import Criteria
 
 MM: Final = 1e3
 CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}

@@ -97,7 +97,7 @@ PAINTED: Final = Budget(
 SAMPLES: Final = Budget(
     "the samples of all pins",
     5_000_000,
-    "ten numbers of 8 bytes each, three times while the file is made",
+    "eleven numbers of 8 bytes each, three times while the file is made",
 )
 MOTION_SAMPLES: Final = Budget(
     "the samples of the motion", 10_000_000, "100 bytes each, and 4 µs to write them as text"

@@ -9,9 +9,7 @@ from __future__ import annotations
 from math import radians
 from typing import Any, Final
 
-from pindrive.quantities.electromagnet import COIL, FINE, MAGNET, SHARE
-from pindrive.quantities.evaluation import CRITERIA
-from pindrive.quantities.quantity import NON_NEGATIVE, Quantity, between
+from pindrive.quantities.quantity import FINE, NON_NEGATIVE, SHARE, Quantity, between, in_table
 
 LUMINANCE: Final = between(0.0, 1.0)
 ACUTE: Final = between(0.0, radians(90.0))
@@ -21,7 +19,8 @@ PLACE: Final = between(-1e3, 1e3)
 """On the page."""
 TURN: Final = radians(720.0)
 
-CONTROL: Final[tuple[Quantity, ...]] = (
+CONTROL: Final = in_table(
+    "control",
     Quantity(
         "sample_rate",
         "f_s",
@@ -30,8 +29,6 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         between(0.1, 1e6),
         1000.0,
         "mice report 125 to 1000 times a second (USB HID)",
-        "control",
-        absent=1000.0,
     ),
     Quantity(
         "latency",
@@ -41,8 +38,6 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         between(0.0, 100.0),
         0.005,
         "assumed: a few reports of a mouse",
-        "control",
-        absent=0.005,
     ),
     Quantity(
         "threshold",
@@ -52,8 +47,6 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         LUMINANCE,
         0.5,
         "assumed: the middle",
-        "control",
-        absent=0.5,
     ),
     Quantity(
         "hysteresis",
@@ -63,13 +56,12 @@ CONTROL: Final[tuple[Quantity, ...]] = (
         LUMINANCE,
         0.1,
         "assumed",
-        "control",
-        absent=0.1,
         remark="the whole band within 0 and 1",
     ),
 )
 
-ARRAY: Final[tuple[Quantity, ...]] = (
+ARRAY: Final = in_table(
+    "array",
     Quantity(
         "columns",
         "n_x",
@@ -78,7 +70,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(1.0, 1000.0),
         4.0,
         "assumed",
-        "array",
         absent=1.0,
     ),
     Quantity(
@@ -89,7 +80,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(1.0, 1000.0),
         4.0,
         "assumed",
-        "array",
         absent=1.0,
     ),
     Quantity(
@@ -100,8 +90,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(1e-6, 1.0),
         0.005,
         "assumed: room for electromagnets 3.5 mm wide; twice that of the dots of a Braille cell",
-        "array",
-        absent=0.005,
     ),
     Quantity(
         "pin_diameter",
@@ -111,8 +99,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(1e-6, 1.0),
         0.0015,
         "as a Braille dot at its base, 1.4-1.6 mm",
-        "array",
-        absent=0.0015,
     ),
     Quantity(
         "places",
@@ -121,7 +107,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         "places of the pins in the mouse instead: along the drive axis and across it",
         between(-10.0, 10.0),
         source="assumed: three pins in a triangle",
-        section="array",
         remark="in place of columns, rows and pitch",
         rows_of="places",
         rows=((0.0, -0.002), (0.0, 0.002), (0.0035, 0.0)),
@@ -134,8 +119,6 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(0.0, 1000.0),
         1.0,
         "assumed: the scene is felt in its own size",
-        "array",
-        absent=1.0,
     ),
     Quantity(
         "axis",
@@ -145,12 +128,11 @@ ARRAY: Final[tuple[Quantity, ...]] = (
         between(-TURN, TURN),
         0.0,
         "the paper keeps drive and motion parallel, along the lines of the page",
-        "array",
-        absent=0.0,
     ),
 )
 
-SCAN: Final[tuple[Quantity, ...]] = (
+SCAN: Final = in_table(
+    "scan",
     Quantity(
         "hand_speed",
         "v_h",
@@ -159,8 +141,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         SPEED,
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
-        "scan",
-        absent=0.060,
     ),
     Quantity(
         "return_speed",
@@ -170,8 +150,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         SPEED,
         0.1,
         "the upper end of hand speed in finger studies (arXiv 2505.11162)",
-        "scan",
-        absent=0.1,
     ),
     Quantity(
         "pause",
@@ -181,8 +159,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         between(0.0, 3600.0),
         0.2,
         "assumed",
-        "scan",
-        absent=0.2,
     ),
     Quantity(
         "line_pitch",
@@ -190,9 +166,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "m",
         "distance between the lines of text, and between the hand's strokes",
         between(1e-5, 10.0),
-        None,
-        "assumed: twice the height of the text",
-        "scan",
+        source="assumed: twice the height of the text",
         example=0.020,
         remark="of text twice its height, over an image one stroke along its middle, unless given",
     ),
@@ -204,8 +178,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         between(1e-5, 10.0),
         0.010,
         "assumed: letters that a pin can follow",
-        "scan",
-        absent=0.010,
     ),
     Quantity(
         "pixel",
@@ -213,9 +185,7 @@ SCAN: Final[tuple[Quantity, ...]] = (
         "m",
         "size of a pixel of the scene",
         between(1e-7, 1.0),
-        None,
-        "assumed: 254 pixels an inch",
-        "scan",
+        source="assumed: 254 pixels an inch",
         example=1e-4,
         remark="of an image its own resolution, of text and lines 0.1 mm, unless given",
     ),
@@ -227,8 +197,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         ACUTE,
         radians(20.0),
         "assumed: 6 % of the speed is lost at 20 deg, of the force as much",
-        "scan",
-        absent=radians(20.0),
     ),
     Quantity(
         "hand_acceleration",
@@ -238,8 +206,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         between(1e-3, 1e6),
         30.0,
         "assumed: five times that of a minimum-jerk stroke of 100 mm in 0.3 s",
-        "scan",
-        absent=30.0,
     ),
     Quantity(
         "mouse_resolution",
@@ -249,8 +215,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         between(1e2, 1e8),
         1e7 / 254.0,
         "assumed: 1000 to the inch, as usual mice have",
-        "scan",
-        absent=1e7 / 254.0,
     ),
     Quantity(
         "smoothing_cutoff",
@@ -260,8 +224,6 @@ SCAN: Final[tuple[Quantity, ...]] = (
         between(0.1, 1e5),
         20.0,
         "assumed: hands move below 10 Hz; it takes 0.13 % off the peak of a stroke of 0.15 s",
-        "scan",
-        absent=20.0,
     ),
     Quantity(
         "path_deviation",
@@ -271,13 +233,8 @@ SCAN: Final[tuple[Quantity, ...]] = (
         FINE,
         1e-4,
         "its slope, which is the force of inertia, is then within 3 % of its peak",
-        "scan",
-        absent=1e-4,
     ),
 )
-
-DEVICE_INPUTS: Final[tuple[Quantity, ...]] = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
-"""What a device file may give beyond the drive, in its order."""
 
 DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
     Quantity("place.x", "x", "m", "place of a pin along the drive axis", between(-10.0, 10.0)),
@@ -293,8 +250,17 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "m",
         "white around the text or the lines of a page",
         between(0.0, 10.0),
-        0.005,
-        "assumed: half the height of the text",
+        source="assumed: half the height of the text",
+        absent=0.005,
+    ),
+    Quantity(
+        "text.pixel",
+        "p_s",
+        "m",
+        "size of a pixel of text and lines",
+        between(1e-7, 1.0),
+        source="assumed: 254 pixels an inch",
+        absent=1e-4,
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
     Quantity(
@@ -316,10 +282,22 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
     ),
     Quantity(
-        "rise_constant", "τ_r", "s", "time constant of the rising current", between(1e-9, 1e6)
+        "rise_constant",
+        "τ_r",
+        "s",
+        "time constant of the rising current",
+        between(1e-9, 1e6),
+        source="assumed: a third of rise_time",
+        absent=0.001,
     ),
     Quantity(
-        "fall_constant", "τ_f", "s", "time constant of the falling current", between(1e-9, 1e6)
+        "fall_constant",
+        "τ_f",
+        "s",
+        "time constant of the falling current",
+        between(1e-9, 1e6),
+        source="assumed: four fifths of fall_time",
+        absent=0.004,
     ),
     Quantity(
         "friction_coefficient",

@@ -5,20 +5,24 @@ Only the standard library is imported here and in the other parts, so that a com
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from typing import Final
 
-from pindrive.quantities.electromagnet import SHARE
 from pindrive.quantities.quantity import (
     FINITE,
+    FINITE_OR_NOT,
     NON_NEGATIVE,
+    PAPER,
     POSITIVE,
     POSITIVE_OR_RIGID,
+    SHARE,
     Bounds,
     Quantity,
+    between,
+    in_table,
 )
 
-PAPER: Final = '"Dynamics of tactile device drive"'
 STEEL: Final = (
     "steel on steel, friction coefficient 0.15-0.30 (handbook tables), {} of a weight of 98 mN"
 )
@@ -36,19 +40,32 @@ FINGER: Final = "ROBOMECH J. 2017, 10.1186/s40648-017-0080-8, Table 1"
 # has lost four of its digits beside the other wave's.
 LARGEST: Final = 1e12
 SMALLEST: Final = 1e-12
-EITHER_WAY: Final = Bounds(-LARGEST, LARGEST, True, True)
-FROM_ZERO: Final = Bounds(0.0, LARGEST, True, True)
-ABOVE_ZERO: Final = Bounds(SMALLEST, LARGEST, True, True)
+EITHER_WAY: Final = between(-LARGEST, LARGEST)
+FROM_ZERO: Final = between(0.0, LARGEST)
+ABOVE_ZERO: Final = between(SMALLEST, LARGEST)
 OR_INFINITE: Final = Bounds(SMALLEST, LARGEST, True, True, also=(inf,))
+COMPUTED: Final = {
+    FINITE: EITHER_WAY,
+    NON_NEGATIVE: FROM_ZERO,
+    POSITIVE: ABOVE_ZERO,
+    POSITIVE_OR_RIGID: OR_INFINITE,
+}
+"""What is computed of each of these intervals."""
 RATIOS: Final = Bounds(1e-11, 1e6, True, True, also=(0.0,))
-PHASES: Final = Bounds(0.0, 1e12, True, True)
+PHASES: Final = between(0.0, 1e12)
 
 
-def _seen(lowest: float, highest: float) -> Bounds:
-    return Bounds(lowest, highest, True, True)
+def _computed(*parts: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
+    """Rows whose limits follow from their bounds unless they have their own."""
+    return tuple(
+        replace(row, limits=COMPUTED.get(row.bounds, row.limits))
+        if row.limits is FINITE_OR_NOT
+        else row
+        for row in (row for rows in parts for row in rows)
+    )
 
 
-INPUTS: Final[tuple[Quantity, ...]] = (
+_DRIVE: Final = (
     Quantity(
         "mass",
         "m",
@@ -57,9 +74,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         POSITIVE,
         0.010,
         "assumed: 1.2 cm3 of iron and copper, 8.4 g/cm3",
-        "drive",
-        seen=_seen(1e-6, 5.0),
-        limits=ABOVE_ZERO,
+        seen=between(1e-6, 5.0),
         mandatory=True,
     ),
     Quantity(
@@ -70,9 +85,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         POSITIVE,
         100.0,
         "assumed: a natural frequency of 16 Hz with a mass of 10 g",
-        "drive",
-        seen=_seen(1e-5, 1e7),
-        limits=ABOVE_ZERO,
+        seen=between(1e-5, 1e7),
         mandatory=True,
     ),
     Quantity(
@@ -81,13 +94,10 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "N*s/m",
         "viscous damping of the drive",
         NON_NEGATIVE,
-        None,
-        "the damping ratio 0.16 below, with m = 10 g and k = 100 N/m",
-        "drive",
+        source="the damping ratio 0.16 below, with m = 10 g and k = 100 N/m",
         example=0.32,
         remark="give this or damping_ratio",
-        seen=_seen(0.0, 1e5),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e5),
     ),
     Quantity(
         "damping_ratio",
@@ -97,11 +107,13 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         NON_NEGATIVE,
         0.16,
         f"{PAPER}, Fig. 4: 0.04, 0.16, 0.32, read as ratios; the middle one",
-        "drive",
         remark="give this or damping",
-        seen=_seen(0.0, 1e3),
+        seen=between(0.0, 1e3),
         limits=RATIOS,
     ),
+)
+
+_CONTACTS: Final = (
     Quantity(
         "plate.kinetic",
         "F_p",
@@ -110,8 +122,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         NON_NEGATIVE,
         0.022,
         STEEL.format("0.225 (the middle)"),
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
         mandatory=True,
         alternative="plate.curve",
     ),
@@ -125,8 +136,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         STEEL.format("0.27 (oxidised)"),
         remark="the kinetic one unless given",
         follows=("plate.kinetic",),
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
     ),
     Quantity(
         "plate.curve",
@@ -139,8 +149,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         rows_of="curve",
         rows=((0.0, 0.022), (0.05, 0.015)),
         follows=("plate.kinetic",),
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
     ),
     Quantity(
         "finger.kinetic",
@@ -150,8 +159,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         NON_NEGATIVE,
         0.005,
         "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 10 mN of touch, assumed",
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
         mandatory=True,
         alternative="finger.curve",
     ),
@@ -165,8 +173,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
         remark="the kinetic one unless given",
         follows=("finger.kinetic",),
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
     ),
     Quantity(
         "finger.curve",
@@ -179,8 +186,7 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         rows_of="curve",
         rows=((0.0, 0.005), (0.05, 0.004)),
         follows=("finger.kinetic",),
-        seen=_seen(0.0, 1e3),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e3),
     ),
     Quantity(
         "finger.stiffness",
@@ -188,13 +194,14 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "N/m",
         "tangential stiffness of the finger's skin, which stretches before it slips",
         POSITIVE,
-        None,
-        FINGER,
+        source=FINGER,
         example=1000.0,
         remark="rigid unless given",
-        seen=_seen(1e-2, 1e12),
-        limits=ABOVE_ZERO,
+        seen=between(1e-2, 1e12),
     ),
+)
+
+_MOTION: Final = (
     Quantity(
         "mouse_velocity",
         "v_p",
@@ -203,13 +210,11 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         FINITE,
         0.060,
         "hand speed 20-100 mm/s in finger studies (arXiv 2505.11162); the middle",
-        "motion",
         remark="its sign is the direction; one value, rows over time, or a CSV of them or of a "
         "recorded hand",
         rows_of="profile",
         rows=((0.0, 0.060), (0.1, 0.0)),
-        seen=_seen(0.0, 5.0),
-        limits=EITHER_WAY,
+        seen=between(0.0, 5.0),
         mandatory=True,
     ),
     Quantity(
@@ -218,16 +223,13 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "1",
         "factor on the plate's friction, which the magnet's pull changes",
         NON_NEGATIVE,
-        None,
-        "assumed: a magnet that held the pin with four times its weight releases it in 5 ms",
-        "motion",
+        source="assumed: a magnet that held the pin with four times its weight releases it in 5 ms",
         absent=1.0,
         remark="one value, rows over time, or a CSV of them",
         example=1.0,
         rows_of="profile",
         rows=((0.0, 5.0), (0.005, 1.0)),
-        seen=_seen(0.0, 1e4),
-        limits=FROM_ZERO,
+        seen=between(0.0, 1e4),
     ),
     Quantity(
         "displacement",
@@ -237,10 +239,8 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         FINITE,
         0.002,
         "assumed: the pin was carried along a line 2 mm wide",
-        "motion",
         absent=0.0,
-        seen=_seen(0.0, 0.1),
-        limits=EITHER_WAY,
+        seen=between(0.0, 0.1),
     ),
     Quantity(
         "velocity",
@@ -248,13 +248,10 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "m/s",
         "velocity of the pin in the mouse at release",
         FINITE,
-        None,
-        f"{PAPER}: the pin is released while the plate carries it",
-        "motion",
+        source=f"{PAPER}: the pin is released while the plate carries it",
         example=0.060,
         remark="the plate's velocity unless given",
-        seen=_seen(0.0, 50.0),
-        limits=EITHER_WAY,
+        seen=between(0.0, 50.0),
     ),
     Quantity(
         "skin_stretch",
@@ -262,14 +259,11 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "m",
         "stretch of a compliant finger's skin that grips the pin at release",
         FINITE,
-        None,
-        "assumed: half of what static friction holds, 7.5 mN / (1000 N/m)",
-        "motion",
+        source="assumed: half of what static friction holds, 7.5 mN / (1000 N/m)",
         example=3.75e-6,
         remark="that of skin slid along, for a pin at rest none, unless given",
         follows=("finger.static", "finger.stiffness"),
-        seen=_seen(0.0, 0.05),
-        limits=EITHER_WAY,
+        seen=between(0.0, 0.05),
     ),
     Quantity(
         "duration",
@@ -277,13 +271,10 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         "s",
         "how long the motion is followed",
         POSITIVE,
-        None,
-        "a few periods of the slow decay",
-        "motion",
+        source="a few periods of the slow decay",
         example=0.3,
         remark="long enough to see how it ends unless given",
-        seen=_seen(1e-6, 1e7),
-        limits=ABOVE_ZERO,
+        seen=between(1e-6, 1e7),
     ),
     Quantity(
         "settling_band",
@@ -293,23 +284,20 @@ INPUTS: Final[tuple[Quantity, ...]] = (
         SHARE,
         0.05,
         "usual beside 2 % in control engineering",
-        "motion",
         absent=0.05,
     ),
 )
+INPUTS: Final = _computed(in_table("drive", *_DRIVE), _CONTACTS, in_table("motion", *_MOTION))
 """What a device file may give, in its order."""
 
-PARTS: Final[tuple[Quantity, ...]] = (
-    Quantity(
-        "kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE, limits=FROM_ZERO
-    ),
+_PARTS: Final = (
+    Quantity("kinetic", "F", "N", "friction force of a sliding contact", NON_NEGATIVE),
     Quantity(
         "static",
         "F_s",
         "N",
         "largest friction force without sliding",
         NON_NEGATIVE,
-        limits=FROM_ZERO,
     ),
     Quantity(
         "contact.stiffness",
@@ -317,7 +305,6 @@ PARTS: Final[tuple[Quantity, ...]] = (
         "N/m",
         "tangential stiffness of a contact",
         POSITIVE_OR_RIGID,
-        limits=OR_INFINITE,
     ),
     Quantity(
         "curve.speed",
@@ -325,7 +312,6 @@ PARTS: Final[tuple[Quantity, ...]] = (
         "m/s",
         "sliding speed in a friction curve",
         NON_NEGATIVE,
-        limits=FROM_ZERO,
     ),
     Quantity(
         "curve.force",
@@ -333,7 +319,6 @@ PARTS: Final[tuple[Quantity, ...]] = (
         "N",
         "kinetic friction in a friction curve",
         NON_NEGATIVE,
-        limits=FROM_ZERO,
     ),
     Quantity(
         "curve.slope",
@@ -341,18 +326,16 @@ PARTS: Final[tuple[Quantity, ...]] = (
         "N*s/m",
         "slope of a friction curve between rows",
         FINITE,
-        limits=EITHER_WAY,
     ),
-    Quantity("profile.time", "t", "s", "time of a profile's row", FINITE, limits=EITHER_WAY),
-    Quantity("profile.value", "y", "1", "value of a profile's row", FINITE, limits=EITHER_WAY),
-    Quantity(
-        "profile.rate", "dy/dt", "1/s", "rate of a profile between rows", FINITE, limits=EITHER_WAY
-    ),
+    Quantity("profile.time", "t", "s", "time of a profile's row", FINITE),
+    Quantity("profile.value", "y", "1", "value of a profile's row", FINITE),
+    Quantity("profile.rate", "dy/dt", "1/s", "rate of a profile between rows", FINITE),
     Quantity("natural_frequency", "ω_0", "rad/s", "undamped natural frequency, sqrt(k/m)"),
     Quantity(
         "phase", "ω_0 T", "rad", "natural frequency times duration", NON_NEGATIVE, limits=PHASES
     ),
 )
+PARTS: Final = _computed(_PARTS)
 """What the parts of a drive are made of in Python, and what follows from them."""
 
 COLUMNS: Final[dict[str, tuple[str, str]]] = {

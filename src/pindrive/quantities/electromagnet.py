@@ -8,13 +8,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import Bounds, Quantity, between
+from pindrive.quantities.quantity import FINE, Quantity, between, in_table
 
-SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
-FINE: Final = between(1e-8, 0.1)
-"""Rows that are so close to a curve: their number grows with one over the root of it."""
-
-MAGNET: Final[tuple[Quantity, ...]] = (
+MAGNET: Final = in_table(
+    "magnet",
     Quantity(
         "hold_force",
         "P_h",
@@ -23,8 +20,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-6, 1e4),
         1.0,
         "assumed: at a friction coefficient of 0.27 it carries a pin of 1 g 1 mm against 250 N/m",
-        "magnet",
-        remark="1 N unless given, or what the coil below gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "rise_time",
@@ -34,8 +30,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-7, 100.0),
         0.003,
         "assumed: an L/R of 1 ms, twice that of the coil below",
-        "magnet",
-        remark="3 ms unless given, or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "fall_time",
@@ -45,8 +40,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-7, 100.0),
         0.005,
         "assumed: longer than the rise, as current dies away through a diode",
-        "magnet",
-        remark="5 ms unless given, or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "saturation",
@@ -56,8 +50,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(1e-3, 1.0),
         1.0,
         "assumed: a coil just strong enough",
-        "magnet",
-        remark="1 unless given, or what the coil gives",
+        remark="what the coil gives where one is described below",
     ),
     Quantity(
         "residual",
@@ -67,8 +60,6 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         between(0.0, 1e4),
         0.0,
         "assumed: soft iron and a paint thick enough",
-        "magnet",
-        absent=0.0,
     ),
     Quantity(
         "pressing",
@@ -76,9 +67,7 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         "N",
         "force that presses the electromagnet on the plate while it is off",
         between(1e-6, 1e4),
-        None,
-        "9.80665 m/s2 (standard gravity) times 1 g",
-        "magnet",
+        source="9.80665 m/s2 (standard gravity) times 1 g",
         example=0.00980665,
         remark="its weight unless given",
     ),
@@ -90,22 +79,19 @@ MAGNET: Final[tuple[Quantity, ...]] = (
         FINE,
         1e-4,
         "a thousandth of the scatter of friction coefficients in handbooks",
-        "magnet",
-        absent=1e-4,
     ),
 )
 """The electromagnet by what it does."""
 
-COIL: Final[tuple[Quantity, ...]] = (
+COIL: Final = in_table(
+    "magnet",
     Quantity(
         "turns",
         "N",
         "1",
         "turns of the winding",
         between(1.0, 1e6),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=250,
         remark="with the six that follow in place of hold_force, rise_time, fall_time, saturation",
     ),
@@ -115,9 +101,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m^2",
         "area of one of its two poles",
         between(1e-10, 1.0),
-        None,
-        "assumed: a core 2 mm wide",
-        "magnet",
+        source="assumed: a core 2 mm wide",
         example=3e-6,
     ),
     Quantity(
@@ -126,9 +110,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "gap between each pole and the steel: paint, roughness",
         between(1e-9, 0.1),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=5e-5,
     ),
     Quantity(
@@ -137,9 +119,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "diameter of the copper in its wire",
         between(1e-7, 0.1),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=1e-4,
     ),
     Quantity(
@@ -148,9 +128,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "m",
         "mean length of a turn",
         between(1e-5, 10.0),
-        None,
-        "assumed: round a core 2 mm wide",
-        "magnet",
+        source="assumed: round a core 2 mm wide",
         example=0.0085,
     ),
     Quantity(
@@ -159,9 +137,7 @@ COIL: Final[tuple[Quantity, ...]] = (
         "V",
         "voltage across the coil while it is on",
         between(1e-3, 1e5),
-        None,
-        "assumed",
-        "magnet",
+        source="assumed",
         example=1.0,
     ),
     Quantity(
@@ -170,11 +146,9 @@ COIL: Final[tuple[Quantity, ...]] = (
         "ohm",
         "resistance through which the current dies away, beside the coil's own",
         between(0.0, 1e9),
-        None,
-        "assumed: a diode alone, its voltage neglected",
-        "magnet",
+        source="assumed: a diode alone, its voltage neglected",
         example=0.0,
-        remark="0 ohm unless given",
+        absent=0.0,
     ),
     Quantity(
         "saturation_field",
@@ -182,11 +156,9 @@ COIL: Final[tuple[Quantity, ...]] = (
         "T",
         "field at which the iron saturates",
         between(1e-3, 100.0),
-        None,
-        "iron, 1.5-2.1 T (handbook tables); the lower middle",
-        "magnet",
+        source="iron, 1.5-2.1 T (handbook tables); the lower middle",
         example=1.6,
-        remark="1.6 T unless given",
+        absent=1.6,
     ),
     Quantity(
         "thermal_resistance",
@@ -194,12 +166,10 @@ COIL: Final[tuple[Quantity, ...]] = (
         "K/W",
         "warming of the electromagnet for each watt",
         between(1e-4, 1e7),
-        None,
-        "1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of 2-25 "
-        "(Incropera, table 1.1)",
-        "magnet",
+        source="1.55 cm2 (a cylinder 3.5 mm wide, 12.4 mm high) in still air at 15 W/(m2 K), of "
+        "2-25 (Incropera, table 1.1)",
         example=430.0,
-        remark="430 K/W unless given",
+        absent=430.0,
     ),
     Quantity(
         "temperature_rise",
@@ -207,11 +177,9 @@ COIL: Final[tuple[Quantity, ...]] = (
         "K",
         "warming that is allowed",
         between(1e-2, 1000.0),
-        None,
-        "assumed: from 25 °C to 45 °C, for a finger stays on it",
-        "magnet",
+        source="assumed: from 25 °C to 45 °C, for a finger stays on it",
         example=20.0,
-        remark="20 K unless given",
+        absent=20.0,
     ),
 )
 """The electromagnet by how it is made."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, floor, inf, isfinite, isnan, log10
 from typing import Final
 
 Rows = tuple[tuple[float, float], ...]
 """A piecewise-linear function by its corners, SI: (speed, force) or (time, value)."""
+
+PAPER: Final = '"Dynamics of tactile device drive"'
 
 DISPLAY: Final[dict[str, tuple[str, float]]] = {
     "kg": ("g", 1e3),
@@ -65,11 +67,16 @@ POSITIVE: Final = Bounds(lower=0.0)
 NON_NEGATIVE: Final = Bounds(lower=0.0, lower_closed=True)
 POSITIVE_OR_RIGID: Final = Bounds(lower=0.0, upper_closed=True)
 FINITE_OR_NOT: Final = Bounds(lower_closed=True, upper_closed=True)
+SHARE: Final = Bounds(lower=0.0, upper=1.0, upper_closed=True)
 
 
 def between(lower: float, upper: float) -> Bounds:
     """The values from `lower` to `upper`, both included."""
     return Bounds(lower, upper, lower_closed=True, upper_closed=True)
+
+
+FINE: Final = between(1e-8, 0.1)
+"""Rows that are so close to a curve: their number grows with one over the root of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +101,8 @@ class Quantity:
     alternative: str = ""
     """The key from which a mandatory one follows where that is given in its place."""
     absent: float | None = None
-    """SI value that holds where a device file leaves it out; None: there is none, or it follows
-    from others."""
+    """SI value that holds where a device file, or a call in Python, leaves it out; None: there is
+    none, or it follows from others."""
     remark: str = ""
     """What else its device file says about it."""
     example: float | None = None
@@ -145,10 +152,9 @@ class Quantity:
     @property
     def usual(self) -> str:
         """A usual value of it as text: "10 g"; of one that must be rows, their last."""
-        value = self.example if self.default is None else self.default
-        if value is None:
-            value = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
-        return self.written(value)
+        unknown = self.rows[-1][1] if self.rows else 1.0 / self.display_scale
+        stated = (self.default, self.example, self.absent, unknown)
+        return self.written(next(value for value in stated if value is not None))
 
     def written(self, value: float) -> str:
         """`value` (SI) as a device file has it: "1.5 mm"; every digit that matters."""
@@ -158,6 +164,12 @@ class Quantity:
     def unless_given(self) -> str:
         """Words for the value that holds where a device file leaves it out; empty: none does."""
         return "" if self.absent is None else f"{self.written(self.absent)} unless given"
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What a variable of a dataset that holds it says of it: meaning, symbol, SI unit."""
+        unit = {"units": self.unit} if self.unit else {}
+        return {"long_name": self.meaning, "symbol": self.symbol} | unit
 
     def required(self, value: float) -> str:
         """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""
@@ -186,6 +198,11 @@ class Quantity:
     def text(self, value: float) -> str:
         """`value` (SI) for a person to read: "1.500 mm"."""
         return f"{self.digits(value)} {self.display_unit}".rstrip()
+
+
+def in_table(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
+    """Rows of one table of a device file."""
+    return tuple(replace(row, section=section) for row in rows)
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:

@@ -1,11 +1,10 @@
-"""The table of quantities, last part: the numbers of a motion."""
+"""The table of quantities, last part: what is found of motions and scans, and judged by what."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.drive import PAPER
-from pindrive.quantities.quantity import Quantity, between
+from pindrive.quantities.quantity import PAPER, Quantity, between, in_table
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
@@ -15,89 +14,61 @@ _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("peak_force", "R_{},max", "N", "largest friction force on the pin, {}"),
 )
 
-TRANSIENT: Final[tuple[Quantity, ...]] = (
-    Quantity(
-        "transient.peak_displacement",
+_NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
+    (
+        "peak_displacement",
         "x_m,a",
         "m",
         "displacement at the first turning point on the way out",
-        source=f"{PAPER}, (14)",
+        "(14)",
     ),
-    Quantity(
-        "transient.peak_time",
-        "t_a",
-        "s",
-        "time of the peak displacement",
-        source=f"{PAPER}, (13)",
-    ),
-    Quantity(
-        "transient.trough_displacement",
+    ("peak_time", "t_a", "s", "time of the peak displacement", "(13)"),
+    (
+        "trough_displacement",
         "x_m,c",
         "m",
         "displacement at the turning point that follows the peak",
-        source=f"{PAPER}, (16)",
+        "(16)",
     ),
-    Quantity(
-        "transient.trough_time",
-        "t_c",
-        "s",
-        "time of the trough",
-        source=f"{PAPER}, (15)",
-    ),
-    Quantity(
-        "transient.swing",
-        "x_m,a - x_m,c",
-        "m",
-        "from peak to trough",
-        source=f"{PAPER}, (17)",
-    ),
-    Quantity(
-        "transient.return_velocity",
-        "v_m,b",
-        "m/s",
-        "extreme velocity on the way back",
-        source=f"{PAPER}, (20)",
-    ),
-    Quantity(
-        "transient.return_velocity_time",
-        "t_b",
-        "s",
-        "time of the extreme return velocity",
-        source=f"{PAPER}, (19)",
-    ),
-    Quantity(
-        "transient.first_reversal_time",
-        "t_1",
-        "s",
-        "first time the pin stops sliding on the plate",
-        source=f"{PAPER}, (21)",
-    ),
-    Quantity(
-        "transient.settling_time",
+    ("trough_time", "t_c", "s", "time of the trough", "(15)"),
+    ("swing", "x_m,a - x_m,c", "m", "from peak to trough", "(17)"),
+    ("return_velocity", "v_m,b", "m/s", "extreme velocity on the way back", "(20)"),
+    ("return_velocity_time", "t_b", "s", "time of the extreme return velocity", "(19)"),
+    ("first_reversal_time", "t_1", "s", "first time the pin stops sliding on the plate", "(21)"),
+    (
+        "settling_time",
         "t_s",
         "s",
         "from then on within the settling band about the resting place",
-        source=f"{PAPER}, the time of the transitional period",
+        "the time of the transitional period",
     ),
-    Quantity(
-        "transient.rest_time",
+    (
+        "rest_time",
         "t_r",
         "s",
         "from then on it stays at rest; infinite for a motion that never comes to rest",
+        "",
     ),
-    Quantity(
-        "transient.last_event_time",
+    (
+        "last_event_time",
         "t_e",
         "s",
         "last change at a contact; 0 without any, infinite where they go on forever",
+        "",
     ),
-    Quantity(
-        "transient.peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin"
+    ("peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin", ""),
+    ("peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched", ""),
+    ("settled", "", "", "whether the motion settled in its duration", ""),
+)
+"""Name, symbol, unit, meaning, and where the paper has it."""
+
+TRANSIENT: Final[tuple[Quantity, ...]] = (
+    *(
+        Quantity(
+            f"transient.{name}", symbol, unit, meaning, source=f"{PAPER}, {place}" if place else ""
+        )
+        for name, symbol, unit, meaning, place in _NUMBERS
     ),
-    Quantity(
-        "transient.peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched"
-    ),
-    Quantity("transient.settled", "", "", "whether the motion settled in its duration"),
     *(
         Quantity(
             f"transient.{contact}.{name}",
@@ -165,23 +136,161 @@ RATE: Final = Quantity(
     "Hz",
     "how many even samples a second a file of a motion has",
     between(1e-6, 1e12),
-    1000.0,
-    "assumed",
+    source="assumed",
+    absent=1000.0,
 )
 """Of files over time."""
 
-SERIES: Final[dict[str, Quantity]] = {
-    quantity.name: quantity
-    for quantity in (
-        Quantity("time", "t", "s", "time since the release"),
-        Quantity("position", "x", "m", "deflection of the pin from the spring's rest"),
-        Quantity("velocity", "x'", "m/s", "velocity of the pin in the housing"),
-        Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
-        Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
-        Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
-        Quantity("stretch", "s", "m", "stretch of the finger's skin"),
-        Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
-        Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
+MOTION: Final[tuple[Quantity, ...]] = (
+    Quantity("time", "t", "s", "time since the release"),
+    Quantity("position", "x", "m", "deflection of the pin from the spring's rest"),
+    Quantity("velocity", "x'", "m/s", "velocity of the pin in the housing"),
+    Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
+    Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
+    Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
+    Quantity("stretch", "s", "m", "stretch of the finger's skin"),
+    Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
+    Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),
+)
+"""What is known of a motion at a time."""
+
+SCANNED: Final[tuple[Quantity, ...]] = (
+    Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
+    Quantity("hand_y", "y_h", "m", "place of the hand down the page"),
+    Quantity("luminance", "L", "1", "luminance under the pin's spot"),
+    Quantity("command", "u", "", "whether the magnet is switched on"),
+    Quantity("current", "c", "1", "current in the coil, a part of the full one"),
+    Quantity("pull", "P", "N", "pull of the magnet"),
+)
+"""What is known of a scan at a time besides, on the clock of the hand's path."""
+
+SERIES: Final[dict[str, Quantity]] = {quantity.name: quantity for quantity in (*MOTION, *SCANNED)}
+"""The columns over time of files and datasets, by their names."""
+
+# ---- scans ------------------------------------------------------------------------------------
+
+GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
+HANDS: Final = "hand speed in finger studies, 20-100 mm/s (arXiv 2505.11162)"
+FELT: Final = between(1e-9, 1.0)
+
+CRITERIA: Final = in_table(
+    "judge",
+    Quantity(
+        "felt",
+        "d_1",
+        "m",
+        "motion that is felt as a pulse",
+        FELT,
+        45e-6,
+        "9-45 µm at 20-150 Hz on glabrous skin, the upper end "
+        "(Hämäläinen & Järvilehto 1981, Brain Res. 219:1)",
+    ),
+    Quantity(
+        "direction",
+        "d_2",
+        "m",
+        "motion of skin whose direction is perceived",
+        FELT,
+        5e-5,
+        f"{GLEESON}, from 0.05 mm",
+    ),
+    Quantity(
+        "direction_sure",
+        "d_3",
+        "m",
+        "motion of skin whose direction is told right in more than 95 % of cases",
+        FELT,
+        2e-4,
+        f"{GLEESON}, 0.2 mm",
+    ),
+    Quantity(
+        "direction_speed",
+        "v_3",
+        "m/s",
+        "speed at which it must be gone for that",
+        between(1e-9, 1e3),
+        2e-3,
+        f"{GLEESON}, 2 mm/s",
+    ),
+    Quantity(
+        "echo",
+        "h_e",
+        "1",
+        "a swing this part as high as the line before it is a line that is not there",
+        between(1e-6, 1.0),
+        0.5,
+        "assumed",
+    ),
+)
+"""The limits that a scan is judged by: a table of a device file."""
+
+_FOUND: Final = (
+    ("latency_on", "t_l,on", "s", "from a line's first edge until the pin goes along"),
+    ("latency_off", "t_l,off", "s", "from its last edge until the pin comes back"),
+    ("lag_on", "l_on", "m", "what the hand goes until the pin goes along"),
+    ("lag_off", "l_off", "m", "what the hand goes until the pin comes back"),
+    ("stroke", "h", "m", "how far the line moves the pin"),
+    ("skin_on", "d_on", "m", "how far the skin moves as a line begins"),
+    ("skin_off", "d_off", "m", "how far the skin moves as it ends"),
+    ("smear_time", "t_s", "s", "from the pin's release until it has settled"),
+    ("smear", "l_s", "m", "what the hand goes until then: the smear"),
+    ("overshoot", "o", "1", "swing beyond the place of rest, a part of the way"),
+    ("contrast", "C", "1", "crest against trough, (P - T) / (|P| + |T|)"),
+)
+
+LINE: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(f"line.{name}", symbol, unit, meaning) for name, symbol, unit, meaning in _FOUND
+)
+"""What is found of each line under each pin."""
+
+JUDGED: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(f"judged.{name}", symbol, "", meaning)
+    for name, symbol, meaning in (
+        ("lines", "n", "printed lines that passed whole under a pin, counted under each pin"),
+        ("shown", "n_1", "shown: the pin went along, and the skin moved enough to be felt"),
+        ("unseen", "n_2", "missed: the control block did not see them"),
+        ("merged", "n_3", "missed: the magnet or the pin was not yet back from the line before"),
+        ("faint", "n_4", "missed: the pin did not go along, or the skin did not move enough"),
+        ("echoes", "n_5", "false: swings forward that no magnet made, felt like a line"),
+        ("unsettled", "n_6", "shown, yet not settled before the next line or the hand's stop"),
+        ("direction", "n_7", "shown, and the skin moved enough to tell its direction"),
+        ("sure", "n_8", "shown, and it moved enough to tell it right in 95 % of cases"),
     )
-}
-"""What is known of a motion at a time, by the names of the columns of its files and datasets."""
+)
+"""What is found of a scan."""
+
+SPEED: Final[tuple[Quantity, ...]] = (
+    Quantity("speed.pitch", "p", "m", "distance between two lines", between(1e-6, 10.0)),
+    Quantity("speed.width", "w", "m", "width of the lines", between(1e-7, 10.0)),
+    Quantity(
+        "speed.part",
+        "r",
+        "1",
+        "part of its way that the pin must be back between",
+        between(1e-6, 1.0),
+        source="assumed",
+        absent=0.5,
+    ),
+    Quantity(
+        "speed.slowest",
+        "v_min",
+        "m/s",
+        "slowest hand tried",
+        between(1e-4, 100.0),
+        source=f"a fourth of the slowest of {HANDS}",
+        absent=0.005,
+    ),
+    Quantity(
+        "speed.fastest",
+        "v_max",
+        "m/s",
+        "fastest hand tried",
+        between(1e-4, 100.0),
+        source=f"ten times the fastest of {HANDS}",
+        absent=1.0,
+    ),
+)
+"""What the largest hand speed is found for."""
+
+JUDGE: Final = LINE + JUDGED + SPEED
+"""What is found of scans and speeds."""

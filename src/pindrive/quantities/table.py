@@ -7,15 +7,32 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass, fields, replace
 from operator import index
-from typing import Final, SupportsFloat, SupportsIndex, cast
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Final,
+    SupportsFloat,
+    SupportsIndex,
+    TypeVar,
+    cast,
+    dataclass_transform,
+)
 
 from pindrive import lazy
-from pindrive.quantities.device import DEVICE_INPUTS, DEVICE_PARTS, PIN
+from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
 from pindrive.quantities.drive import INPUTS, PARTS
-from pindrive.quantities.evaluation import JUDGE
+from pindrive.quantities.electromagnet import COIL, MAGNET
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.results import FINAL, OUTPUTS, RATE
+from pindrive.quantities.results import CRITERIA, FINAL, JUDGE, OUTPUTS, RATE
+
+DEVICE_INPUTS: Final = tuple(
+    replace(row, absent=row.default) if row.absent is None else row
+    for row in MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
+)
+"""What a device file may give beyond the drive, in its order; all of it may be left out."""
+
 
 DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
@@ -23,6 +40,23 @@ DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 QUANTITIES: Final[dict[str, Quantity]] = {
     q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE)
 }
+
+T = TypeVar("T")
+
+if TYPE_CHECKING:
+    from dataclasses import Field
+
+    class Number:
+        """The type of a `checked` field that takes a number, SI, or text with a unit."""
+
+        def __get__(self, instance: object, owner: object) -> float: ...
+        def __set__(self, instance: object, value: float | str) -> None: ...
+
+    class OptionalNumber:
+        """The same, of one that may be None."""
+
+        def __get__(self, instance: object, owner: object) -> float | None: ...
+        def __set__(self, instance: object, value: float | str | None) -> None: ...
 
 
 class Refusal(str):
@@ -33,13 +67,24 @@ class Refusal(str):
     said: str
     """The words without the place where the value was written."""
 
+    @classmethod
+    def of(cls, label: str, said: str, where: str) -> Refusal:
+        """These words, with the place said first."""
+        words = cls(f"{where}: {said}" if where else said)
+        words.label, words.said = label, said
+        return words
+
+    def at(self, where: str, key: str) -> Refusal:
+        """The same of a value written at a place; its label is the key if that is its last part."""
+        own = self.label.partition("[")[0]
+        full = key if key.endswith(f".{own}") else own
+        label, said = (full + words.removeprefix(own) for words in (self.label, self.said))
+        return Refusal.of(label, said, where)
+
 
 def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
-    said = f"{label} must be {required}, got {given}"
-    words = Refusal(f"{where}: {said}" if where else said)
-    words.label, words.said = label, said
-    return words
+    return Refusal.of(label, f"{label} must be {required}, got {given}", where)
 
 
 def told_by(error: Exception) -> Refusal | str:
@@ -104,6 +149,36 @@ def check(
         shown = given if given is not None else f"{number!r} {unit}".rstrip()
         raise ValueError(refusal(label, required, shown, where))
     return number
+
+
+def default(name: str) -> Any:
+    """What holds where the quantity called `name` is not given, SI; None where nothing does."""
+    return QUANTITIES[name].absent
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def checked(cls: type[T]) -> type[T]:
+    """A frozen dataclass, made by keywords, whose fields that are named as quantities are checked.
+
+    They are kept as floats; one may be None where that is its default. Its own `__post_init__` is
+    called then. Of a field that is refused it raises what `check` raises.
+    """
+    then = getattr(cls, "__post_init__", None)
+    taken: list[tuple[str, bool]] = []
+
+    def check_fields(self: Any) -> None:
+        for name, optional in taken:
+            value = getattr(self, name)
+            if not (optional and value is None):
+                object.__setattr__(self, name, check(name, value))
+        if then:
+            then(self)
+
+    cls.__post_init__ = check_fields  # type: ignore[attr-defined]
+    made = dataclass(frozen=True, kw_only=True)(cls)
+    given: tuple[Field[Any], ...] = fields(made)  # type: ignore[arg-type]
+    taken += [(field.name, field.default is None) for field in given if field.name in QUANTITIES]
+    return made
 
 
 def check_whole(

@@ -6,9 +6,9 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.files.device import TABLES, keys_meant, not_known
+from pindrive.files.device import keys_meant, not_known
 from pindrive.files.schema import number
-from pindrive.files.template import DRIVE, NUMBERS, usual
+from pindrive.files.template import DRIVE, NUMBERS, TABLES, usual
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import UnitError, quoted, to_si

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.files.device import Setting, device_of
-from pindrive.files.ratios import written
+from pindrive.files.schema import written
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
 

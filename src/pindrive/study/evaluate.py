@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.files.ratios import scaled_rows
+from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.quantities.evaluation import JUDGED, LINE
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
+from pindrive.quantities.results import ENDING, ENERGY, JUDGED, LINE, TRANSIENT
 from pindrive.quantities.table import QUANTITIES, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 

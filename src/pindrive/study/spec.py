@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.device.reading import Page
 from pindrive.files.device import (
-    STUDY_KEYS,
-    TABLES,
     ConfigError,
     Setting,
     device_of,
@@ -21,6 +19,7 @@ from pindrive.files.device import (
     settings_of,
 )
 from pindrive.files.recording import is_file
+from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted

@@ -17,7 +17,7 @@ from zlib import crc32
 
 import numpy as np
 
-from pindrive.device.coil import COIL_MAY, COIL_NEEDS, DIRECT
+from pindrive.device.electromagnet import COIL, DIRECT
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
@@ -196,7 +196,7 @@ def _fixed(plan: Plan) -> dict[str, float]:
     swept = {*plan.axes}
     if swept & {"drive.damping", "drive.damping_ratio"}:
         swept |= {"drive.damping", "drive.damping_ratio"}
-    if any(key == f"magnet.{name}" for key in swept for name in (*COIL_NEEDS, *COIL_MAY)):
+    if any(key == f"magnet.{name}" for key in swept for name in COIL):
         swept |= {f"magnet.{name}" for name in DIRECT}
     return {
         key: value

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.device.reading import Page
 from pindrive.files.device import DeviceFile, keys_meant
-from pindrive.files.ratios import written
+from pindrive.files.schema import written
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.coil import check_one_way
+from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
 from pindrive.files.template import NUMBERS
 from pindrive.motion.friction import GRAVITY, KINETIC, within

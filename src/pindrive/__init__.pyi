@@ -1,0 +1,26 @@
+# Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
+
+from pindrive.device.device import Device as Device
+from pindrive.device.hand import HandPath as HandPath
+from pindrive.device.page import Scene as Scene
+from pindrive.device.reading import Page as Page
+from pindrive.device.scanning import Scan as Scan
+from pindrive.device.scanning import scan as scan
+from pindrive.files.device import load_device as load_device
+from pindrive.motion.batch import simulate_batch as simulate_batch
+from pindrive.motion.drive import Contact as Contact
+from pindrive.motion.drive import Drive as Drive
+from pindrive.motion.drive import Profile as Profile
+from pindrive.motion.motion import Motion as Motion
+from pindrive.motion.release import Release as Release
+from pindrive.motion.simulate import simulate as simulate
+from pindrive.quantities.status import Status as Status
+from pindrive.quantities.table import ImplausibleValueWarning as ImplausibleValueWarning
+from pindrive.study.robustness import robustness as robustness
+from pindrive.study.sensitivity import local_sensitivity as local_sensitivity
+from pindrive.study.sensitivity import sobol as sobol
+from pindrive.study.study import Study as Study
+from pindrive.study.study import load_study as load_study
+
+__all__: list[str]
+__version__: str
