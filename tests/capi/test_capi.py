@@ -322,7 +322,7 @@ def compare(c: Interface, number: int, motion: c_void_p, core: Any) -> float:
     for i in range(0, outcome.segments, max(outcome.segments // 7, 1)):
         segment = Segment()
         c("segment_of", motion, c_size_t(i), byref(segment))
-        for name in table.keys() & {field[0] for field in Segment._fields_}:
+        for name in table.keys() & {column[0] for column in Segment._fields_}:
             same(getattr(segment, name), table[name][i], number)
     return float(outcome.known_until)
 
