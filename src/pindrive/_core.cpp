@@ -16,12 +16,10 @@
 #include <vector>
 
 #include "interrupt.hpp"
+#include "owned_motion.hpp"
 #include "pindrive/certify.hpp"
 #include "pindrive/crossings.hpp"
-#include "pindrive/dual.hpp"
 #include "pindrive/energy.hpp"
-#include "pindrive/motion.hpp"
-#include "pindrive/simulate.hpp"
 #include "pindrive/transient.hpp"
 
 namespace nb = nanobind;
@@ -43,105 +41,42 @@ Array<T> to_array(std::vector<T>&& values) {
 
 // ---- what Python hands over ----------------------------------------------------------------------
 
-using Rows = std::vector<std::pair<double, double>>;
+using pd::result, pd::Rows;
+template <class T>
+using CoreMotion = pd::OwnedMotion<T>;
+using Dual = pd::Dual<double>;
 /// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
 using ContactNumbers = std::tuple<double, double, double, Rows>;
 /// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
 /// row for a constant; displacement, velocity, skin stretch, duration.
 using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
                            double, double, double, double>;
-using Dual = pd::Dual<double>;
 
-/// A number of the core from the one in Python and its derivative along a parameter.
-template <class T>
-T number(double value, double slope) {
-  if constexpr (std::is_same_v<T, Dual>)
-    return {value, slope};
-  else
-    return value;
+/// A tuple of Python's as the struct with the same fields.
+template <class Struct, class Tuple>
+Struct as(const Tuple& tuple) {
+  return std::apply([](const auto&... field) { return Struct{field...}; }, tuple);
 }
-/// What goes back to Python: of a number with its derivative, the derivative.
-double result(double value) { return value; }
-double result(Dual value) { return value.slope; }
 
-template <class T>
-struct Columns {
-  std::vector<T> first, second;
-
-  Columns(const Rows& rows, const Rows& along) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      first.push_back(number<T>(rows[i].first, along[i].first));
-      second.push_back(number<T>(rows[i].second, along[i].second));
-    }
-  }
-  pd::Profile<T> profile() const {
-    if (first.size() == 1) return {second[0]};
-    return {first.data(), second.data(), first.size()};
-  }
-};
-
-template <class T>
-struct OwnedContact {
-  pd::Contact<T> contact;
-  std::vector<pd::Branch<T>> branches;
-
-  OwnedContact(const ContactNumbers& at, const ContactNumbers& along)
-      : contact{number<T>(std::get<0>(at), std::get<0>(along)),
-                number<T>(std::get<1>(at), std::get<1>(along)),
-                number<T>(std::get<2>(at), std::get<2>(along))} {
-    const Columns<T> rows(std::get<3>(at), std::get<3>(along));
-    branches.resize(rows.first.size() + 1);
-    contact.branches = pd::branches_of(rows.first.data(), rows.second.data(),
-                                       static_cast<int>(rows.first.size()), branches.data());
-    contact.curve = branches.data();
-  }
-};
-
-/// A motion that owns its inputs and its segments. As dual numbers, all that it is asked for are
-/// derivatives along the direction in which its inputs change.
-template <class T>
-class CoreMotion {
- public:
-  template <class GoOn>
-  CoreMotion(const Numbers& at, const Numbers& along, GoOn go_on)
-      : plate_(std::get<3>(at), std::get<3>(along)),
-        finger_(std::get<4>(at), std::get<4>(along)),
-        mouse_velocity_(std::get<5>(at), std::get<5>(along)),
-        plate_load_(std::get<6>(at), std::get<6>(along)),
-        drive_{entry<0>(at, along), entry<1>(at, along), entry<2>(at, along), plate_.contact,
-               finger_.contact},
-        inputs_{mouse_velocity_.profile(), entry<7>(at, along),   entry<8>(at, along),
-                entry<10>(at, along),      plate_load_.profile(), entry<9>(at, along)},
-        outcome_(pd::simulate(drive_, inputs_, [&](const pd::Segment<T>& segment) {
-          segments_.push_back(segment);
-          return go_on();
-        })) {}
-
-  pd::Motion<T> view() const {
-    return {drive_, inputs_, segments_.data(), segments_.size(), outcome_};
-  }
-  const std::vector<pd::Segment<T>>& segments() const { return segments_; }
-  const pd::Outcome<T>& outcome() const { return outcome_; }
-  const pd::Drive<T>& drive() const { return drive_; }
-
- private:
-  template <std::size_t i>
-  static T entry(const Numbers& at, const Numbers& along) {
-    return number<T>(std::get<i>(at), std::get<i>(along));
-  }
-
-  OwnedContact<T> plate_, finger_;
-  Columns<T> mouse_velocity_, plate_load_;
-  pd::Drive<T> drive_;
-  pd::Inputs<T> inputs_;
-  std::vector<pd::Segment<T>> segments_;
-  pd::Outcome<T> outcome_;
-};
+pd::Numbers numbers(const Numbers& given) {
+  return std::apply(
+      [](double mass, double stiffness, double damping, const ContactNumbers& plate,
+         const ContactNumbers& finger, const auto&... rest) {
+        return pd::Numbers{mass,
+                           stiffness,
+                           damping,
+                           as<pd::ContactNumbers>(plate),
+                           as<pd::ContactNumbers>(finger),
+                           rest...};
+      },
+      given);
+}
 
 template <class T>
 std::unique_ptr<CoreMotion<T>> run(const Numbers& at, const Numbers& along) {
-  return interruptible(
-      [&](auto go_on) { return std::make_unique<CoreMotion<T>>(at, along, go_on); });
+  return interruptible([&](auto go_on) {
+    return std::make_unique<CoreMotion<T>>(numbers(at), numbers(along), go_on);
+  });
 }
 
 // ---- what Python asks for ------------------------------------------------------------------------

@@ -1,0 +1,119 @@
+/// A motion that owns what the core only refers to: the rows of its inputs, the branches of its friction
+/// curves, its segments. What the faces of the core in Python and C stand on.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "pindrive/dual.hpp"
+#include "pindrive/motion.hpp"
+#include "pindrive/simulate.hpp"
+
+namespace pindrive {
+
+/// (speed, force) of a friction curve, or (time, value) of an input: one row for a constant.
+using Rows = std::vector<std::pair<double, double>>;
+
+struct ContactNumbers {
+  double kinetic, static_limit, stiffness;
+  Rows curve;
+};
+
+/// A drive and its release in plain numbers, as Drive and Inputs have them.
+struct Numbers {
+  double mass, stiffness, damping;
+  ContactNumbers plate, finger;
+  Rows mouse_velocity, plate_load;
+  double displacement, velocity, skin_stretch, duration;
+};
+
+/// A number of the core from its value and its derivative along a direction.
+template <class T>
+T number(double value, double slope) {
+  if constexpr (std::is_same_v<T, Dual<double>>)
+    return {value, slope};
+  else
+    return value;
+}
+
+/// What is asked of a motion: a value; of a number with its derivative, the derivative.
+inline double result(double value) { return value; }
+inline double result(Dual<double> value) { return value.slope; }
+
+template <class T>
+struct OwnedRows {
+  std::vector<T> first, second;
+
+  OwnedRows(const Rows& rows, const Rows& along) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      first.push_back(number<T>(rows[i].first, along[i].first));
+      second.push_back(number<T>(rows[i].second, along[i].second));
+    }
+  }
+  Profile<T> profile() const {
+    if (first.size() == 1) return {second[0]};
+    return {first.data(), second.data(), first.size()};
+  }
+};
+
+template <class T>
+struct OwnedContact {
+  Contact<T> contact;
+  std::vector<Branch<T>> branches;
+
+  OwnedContact(const ContactNumbers& at, const ContactNumbers& along)
+      : contact{number<T>(at.kinetic, along.kinetic),
+                number<T>(at.static_limit, along.static_limit),
+                number<T>(at.stiffness, along.stiffness)} {
+    const OwnedRows<T> rows(at.curve, along.curve);
+    branches.resize(rows.first.size() + 1);
+    contact.branches = branches_of(rows.first.data(), rows.second.data(),
+                                   static_cast<int>(rows.first.size()), branches.data());
+    contact.curve = branches.data();
+  }
+};
+
+/// As dual numbers, all that it is asked for are derivatives along the direction in which its inputs
+/// change. It stays where it was made: the core refers to what it owns.
+template <class T>
+class OwnedMotion {
+ public:
+  /// go_on() says, after each segment, whether to go on.
+  template <class GoOn>
+  OwnedMotion(const Numbers& at, const Numbers& along, GoOn go_on)
+      : plate_(at.plate, along.plate),
+        finger_(at.finger, along.finger),
+        mouse_velocity_(at.mouse_velocity, along.mouse_velocity),
+        plate_load_(at.plate_load, along.plate_load),
+        drive_{number<T>(at.mass, along.mass), number<T>(at.stiffness, along.stiffness),
+               number<T>(at.damping, along.damping), plate_.contact, finger_.contact},
+        inputs_{mouse_velocity_.profile(),
+                number<T>(at.displacement, along.displacement),
+                number<T>(at.velocity, along.velocity),
+                number<T>(at.duration, along.duration),
+                plate_load_.profile(),
+                number<T>(at.skin_stretch, along.skin_stretch)},
+        outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
+          segments_.push_back(segment);
+          return go_on();
+        })) {}
+  OwnedMotion(const OwnedMotion&) = delete;
+  OwnedMotion& operator=(const OwnedMotion&) = delete;
+
+  Motion<T> view() const { return {drive_, inputs_, segments_.data(), segments_.size(), outcome_}; }
+  const std::vector<Segment<T>>& segments() const { return segments_; }
+  const Outcome<T>& outcome() const { return outcome_; }
+  const Drive<T>& drive() const { return drive_; }
+
+ private:
+  OwnedContact<T> plate_, finger_;
+  OwnedRows<T> mouse_velocity_, plate_load_;
+  Drive<T> drive_;
+  Inputs<T> inputs_;
+  std::vector<Segment<T>> segments_;
+  Outcome<T> outcome_;
+};
+
+}  // namespace pindrive

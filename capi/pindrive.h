@@ -1,0 +1,323 @@
+/* pindrive in C: the exact motion of a pin that friction moves, event by event. SI units throughout.
+ *
+ *     pindrive_drive *drive = pindrive_drive_new();
+ *     pindrive_drive_set(drive, "mass", 0.010);
+ *     pindrive_drive_set(drive, "stiffness", 100.0);
+ *     pindrive_drive_set(drive, "damping", 0.40);
+ *     pindrive_drive_set(drive, "plate.kinetic", 0.020);
+ *     pindrive_drive_set(drive, "finger.kinetic", 0.005);
+ *     pindrive_release *release = pindrive_release_new();
+ *     pindrive_release_set(release, "mouse_velocity", 0.10);
+ *     pindrive_release_set(release, "displacement", 1.5e-3);
+ *     pindrive_motion *motion;
+ *     if (pindrive_simulate(drive, release, NULL, NULL, &motion) != PINDRIVE_OK)
+ *       fprintf(stderr, "%s\n", pindrive_last_error());
+ *     double t = 0.02, x;
+ *     pindrive_evaluate(motion, PINDRIVE_POSITION, &t, 1, PINDRIVE_RIGHT, &x);
+ *     pindrive_motion_free(motion);
+ *     pindrive_release_free(release);
+ *     pindrive_drive_free(drive);
+ *
+ * Every function that can fail returns a pindrive_error; pindrive_last_error() then says in one line
+ * what was given and what is allowed. Nothing is written to what a failed call should have filled. A
+ * motion keeps no reference to the drive and the release that it was made of. Different threads may
+ * use the library at once, and read one motion at once; a drive or a release is changed by one thread
+ * at a time. Null pointers are allowed where it says so, and in the functions that end in _free.
+ */
+#ifndef PINDRIVE_H
+#define PINDRIVE_H
+
+#include <stddef.h>
+
+#if defined(_WIN32) && defined(PINDRIVE_SHARED)
+#ifdef PINDRIVE_BUILDING
+#define PINDRIVE_API __declspec(dllexport)
+#else
+#define PINDRIVE_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define PINDRIVE_API __attribute__((visibility("default")))
+#else
+#define PINDRIVE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The version of this interface: raised wherever a caller has to change. */
+#define PINDRIVE_INTERFACE 1
+
+/* That of the library which is running. */
+PINDRIVE_API int pindrive_interface(void);
+
+/* ---- errors ---------------------------------------------------------------------------------- */
+
+typedef int pindrive_error;
+enum {
+  PINDRIVE_OK = 0,
+  PINDRIVE_MORE = 1,          /* done, but there was more than fitted */
+  PINDRIVE_BAD_NAME = 2,      /* nothing has that name */
+  PINDRIVE_BAD_VALUE = 3,     /* a number, or a code, out of its range */
+  PINDRIVE_NULL = 4,          /* a null pointer where one is needed */
+  PINDRIVE_UNSUPPORTED = 5,   /* a drive and a release that the core cannot follow together */
+  PINDRIVE_DERIVATIVE = 6,    /* asked of derivatives what only a motion has */
+  PINDRIVE_STOPPED = 7,       /* go_on returned 0 */
+  PINDRIVE_OUT_OF_MEMORY = 8
+};
+
+/* What the last call of this thread that failed was given, and what is allowed; valid until the next
+ * one fails. Empty before. */
+PINDRIVE_API const char *pindrive_last_error(void);
+
+/* ---- drives and releases --------------------------------------------------------------------- */
+
+typedef struct pindrive_drive pindrive_drive;
+typedef struct pindrive_release pindrive_release;
+
+/* A drive without friction whose mass and stiffness are still to be given; null when memory is out. */
+PINDRIVE_API pindrive_drive *pindrive_drive_new(void);
+PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
+
+/* Sets a number of a drive. Names, units, and ranges, which pindrive_simulate() checks:
+ *   mass              kg     > 0: electromagnet and pin
+ *   stiffness         N/m    > 0: spring
+ *   damping           N s/m  >= 0
+ *   plate.kinetic     N      >= 0: kinetic friction; sets plate.static too, which may follow
+ *   plate.static      N      >= plate.kinetic
+ *   finger.kinetic, finger.static: the same at the finger
+ *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first */
+PINDRIVE_API pindrive_error pindrive_drive_set(pindrive_drive *drive, const char *name,
+                                               double value);
+
+/* Gives a contact, "plate" or "finger", a friction curve: kinetic friction forces[i] (N, >= 0) at
+ * sliding speeds[i] (m/s, increasing from 0), linear between. Its kinetic friction becomes forces[0],
+ * and its static friction too, which may follow. count 0 takes the curve away. */
+PINDRIVE_API pindrive_error pindrive_drive_set_curve(pindrive_drive *drive, const char *contact,
+                                                     const double *speeds, const double *forces,
+                                                     size_t count);
+
+/* A release at rest at the spring's rest, with a plate that stands still; null when memory is out. */
+PINDRIVE_API pindrive_release *pindrive_release_new(void);
+PINDRIVE_API void pindrive_release_free(pindrive_release *release);
+
+/* Sets a number of a release. Names, units, ranges:
+ *   mouse_velocity  m/s  constant velocity of the plate under the mouse
+ *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
+ *   displacement    m    x(0), from the spring's rest
+ *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
+ *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
+ *   duration        s    > 0; infinite: until the ending is known, as it is at first */
+PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
+                                                 double value);
+
+/* Gives a release "mouse_velocity" or "plate_load" over time: values[i] at times[i] (s, increasing,
+ * count >= 1), linear between, constant outside. */
+PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
+                                                         const char *name, const double *times,
+                                                         const double *values, size_t count);
+
+/* ---- simulation ------------------------------------------------------------------------------ */
+
+typedef struct pindrive_motion pindrive_motion;
+
+/* Asked now and then whether to go on; 0 stops the computation. */
+typedef int (*pindrive_go_on)(void *context);
+
+/* Simulates a release; `motion` is to be freed. go_on may be null. A simulation that had to be given
+ * up is no error: the motion's outcome says so. */
+PINDRIVE_API pindrive_error pindrive_simulate(const pindrive_drive *drive,
+                                              const pindrive_release *release,
+                                              pindrive_go_on go_on, void *context,
+                                              pindrive_motion **motion);
+
+/* The exact derivatives of that motion, through its events, along a direction: every number of the
+ * drive and the release changes at the rate that stands in drive_rate and release_rate, whose
+ * profiles and curves have as many rows. What is then asked of `derivative` is the derivative of what
+ * the motion would answer: of values at a time, of numbers, of the times of its segments. */
+PINDRIVE_API pindrive_error pindrive_differentiate(const pindrive_drive *drive,
+                                                   const pindrive_release *release,
+                                                   const pindrive_drive *drive_rate,
+                                                   const pindrive_release *release_rate,
+                                                   pindrive_go_on go_on, void *context,
+                                                   pindrive_motion **derivative);
+
+/* A direction along which nothing changes: every number, and every row, of a drive or a release is 0.
+ * To be changed by the functions above and freed; null when memory is out. */
+PINDRIVE_API pindrive_drive *pindrive_drive_rate_new(const pindrive_drive *drive);
+PINDRIVE_API pindrive_release *pindrive_release_rate_new(const pindrive_release *release);
+
+PINDRIVE_API void pindrive_motion_free(pindrive_motion *motion);
+
+/* Whether it was followed to its end, and what stopped it. */
+typedef int pindrive_status;
+enum {
+  PINDRIVE_STATUS_OK = 0,
+  PINDRIVE_STATUS_TOO_MANY_EVENTS = 1,
+  PINDRIVE_STATUS_STANDSTILL = 2,
+  PINDRIVE_STATUS_INCONSISTENT = 4
+};
+
+/* How it ends. */
+typedef int pindrive_end;
+enum {
+  PINDRIVE_END_MOVING = 0,     /* not known within the duration */
+  PINDRIVE_END_RESTING = 1,    /* at rest for ever */
+  PINDRIVE_END_DECAYING = 2,   /* free decay, no further event */
+  PINDRIVE_END_FREE = 3,       /* undamped oscillation, no further event */
+  PINDRIVE_END_GRAZING = 4,    /* the same, touching the plate's velocity once a period */
+  PINDRIVE_END_STICK_SLIP = 5, /* a cycle of carried and sliding phases */
+  PINDRIVE_END_LIMIT_CYCLE = 6 /* a cycle sustained by falling friction, without a carried phase */
+};
+
+typedef struct pindrive_outcome {
+  pindrive_status status;
+  pindrive_end end;
+  double steady_since; /* of a steady oscillation, s; else NaN */
+  double period;       /* of a steady oscillation, s; else NaN */
+  double known_until;  /* the last time at which the state is known, s; infinite once the end is */
+  double simulated;    /* end of the last segment, s, where a cycle begins again ... */
+  double cycle_begin;  /* ... from here, s; NaN without a cycle */
+  size_t segments;
+} pindrive_outcome;
+
+PINDRIVE_API pindrive_error pindrive_outcome_of(const pindrive_motion *motion,
+                                                pindrive_outcome *outcome);
+
+/* What a status means and what to do about it. */
+PINDRIVE_API const char *pindrive_status_text(pindrive_status status);
+
+/* ---- the motion over time -------------------------------------------------------------------- */
+
+typedef int pindrive_quantity;
+enum {
+  PINDRIVE_POSITION = 0,         /* m */
+  PINDRIVE_VELOCITY = 1,         /* m/s */
+  PINDRIVE_ACCELERATION = 2,     /* m/s^2 */
+  PINDRIVE_PLATE_FORCE = 3,      /* friction of the plate on the pin, N */
+  PINDRIVE_FINGER_FORCE = 4,     /* friction of the finger on the pin, N */
+  PINDRIVE_SKIN_STRETCH = 5,     /* of a compliant finger, m */
+  PINDRIVE_SKIN_STRETCH_RATE = 6 /* m/s */
+};
+
+/* Which limit is asked for at an event. */
+typedef int pindrive_side;
+enum { PINDRIVE_LEFT = 0, PINDRIVE_RIGHT = 1 };
+
+/* values[i] of a quantity at times[i] in [0, known_until]. */
+PINDRIVE_API pindrive_error pindrive_evaluate(const pindrive_motion *motion,
+                                              pindrive_quantity quantity, const double *times,
+                                              size_t count, pindrive_side side, double *values);
+
+/* What a contact does in a segment. */
+typedef int pindrive_contact_state;
+enum {
+  PINDRIVE_SLIP_BACKWARD = -1,
+  PINDRIVE_STICK = 0,
+  PINDRIVE_SLIP_FORWARD = 1,
+  PINDRIVE_ABSENT = 2,
+  PINDRIVE_ELASTIC_STICK = 3
+};
+
+/* What happens to a contact at an event. */
+typedef int pindrive_transition;
+enum {
+  PINDRIVE_NONE = 0,
+  PINDRIVE_STICKS = 1,
+  PINDRIVE_SLIPS = 2,
+  PINDRIVE_CROSSES = 3 /* its sliding velocity changes its sign */
+};
+
+/* One mode of the motion from `begin` to `end` (infinite for one that lasts for ever). */
+typedef struct pindrive_segment {
+  double begin, end;                       /* s */
+  double position, velocity, acceleration; /* at its begin: m, m/s, m/s^2 */
+  pindrive_contact_state plate, finger;
+  pindrive_transition plate_event, finger_event; /* at its end */
+} pindrive_segment;
+
+/* Segment `index` of the outcome's `segments`. */
+PINDRIVE_API pindrive_error pindrive_segment_of(const pindrive_motion *motion, size_t index,
+                                                pindrive_segment *segment);
+
+typedef struct pindrive_event {
+  double time;               /* s */
+  double position, velocity; /* m, m/s */
+  pindrive_transition plate, finger;
+} pindrive_event;
+
+/* The functions that follow fill at most `capacity` entries, say in `count` how many they filled, and
+ * return PINDRIVE_MORE where there were more. They ask of a motion, not of derivatives. */
+
+/* The events in [from, to], cycles expanded. */
+PINDRIVE_API pindrive_error pindrive_events(const pindrive_motion *motion, double from, double to,
+                                            pindrive_event *events, size_t capacity, size_t *count);
+
+/* Times and values of the extrema of position, velocity or acceleration in [0, until]: its begin and
+ * end, where it turns, and both sides of a jump. Between two neighbours it goes one way. */
+PINDRIVE_API pindrive_error pindrive_extrema(const pindrive_motion *motion,
+                                             pindrive_quantity quantity, double until,
+                                             double *times, double *values, size_t capacity,
+                                             size_t *count);
+
+/* Where position, velocity or acceleration changes from one side of a level to the other in
+ * [0, until]: the times, and +1 or -1 for the side to which it goes. */
+PINDRIVE_API pindrive_error pindrive_crossings(const pindrive_motion *motion,
+                                               pindrive_quantity quantity, double level,
+                                               double until, double *times, signed char *sides,
+                                               size_t capacity, size_t *count);
+
+/* ---- numbers of a motion --------------------------------------------------------------------- */
+
+/* How many numbers a motion has, and the name of each, such as "transient.settling_time". */
+PINDRIVE_API size_t pindrive_number_count(void);
+PINDRIVE_API const char *pindrive_number_name(size_t index);
+
+/* All of them over [0, duration], in that order; NaN where a motion has no such number. The duration
+ * is > 0 and at most known_until; NaN: long enough to see the ending. The settling band is a part of
+ * |x(0) - x_end|, in (0, 1]; 0.05 is usual. */
+PINDRIVE_API pindrive_error pindrive_numbers(const pindrive_motion *motion, double duration,
+                                             double settling_band, double *values);
+
+/* The duration that NaN stands for above, s. */
+PINDRIVE_API pindrive_error pindrive_duration(const pindrive_motion *motion, double settling_band,
+                                              double *duration);
+
+/* The energy ledger over [0, duration], J: the same for its entries. */
+PINDRIVE_API size_t pindrive_energy_count(void);
+PINDRIVE_API const char *pindrive_energy_name(size_t index);
+PINDRIVE_API pindrive_error pindrive_energy(const pindrive_motion *motion, double duration,
+                                            double *values);
+
+/* The certificate over [0, duration]: how far, relative to the terms of each law, the motion is from
+ * obeying it. Of a correct motion all are of the order of rounding. */
+PINDRIVE_API size_t pindrive_certificate_count(void);
+PINDRIVE_API const char *pindrive_certificate_name(size_t index);
+PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, double duration,
+                                                 double *values);
+
+/* ---- many releases --------------------------------------------------------------------------- */
+
+/* A number of the drive or the release that is another one in each point of a batch. */
+typedef struct pindrive_varied {
+  const char *name;     /* as in pindrive_drive_set and pindrive_release_set */
+  const double *values; /* one for each point */
+} pindrive_varied;
+
+/* The numbers of `points` releases: a drive and a release in which some numbers vary. Point i fills
+ * numbers[i * pindrive_number_count()] and what follows it, status[i] and end[i]; a point that cannot
+ * be simulated has an error there, which is PINDRIVE_OK otherwise, and NaN for numbers. The last three
+ * may be null. Each is measured over its own duration, long enough to see its ending where the release
+ * has none. */
+PINDRIVE_API pindrive_error pindrive_batch(const pindrive_drive *drive,
+                                           const pindrive_release *release,
+                                           const pindrive_varied *varied, size_t varied_count,
+                                           size_t points, double settling_band,
+                                           pindrive_go_on go_on, void *context, double *numbers,
+                                           pindrive_status *status, pindrive_end *end,
+                                           pindrive_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,286 @@
+/* The C interface, called from C: what it computes, and what it says of each mistake. */
+#include "pindrive.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void expect(int holds, const char *what) {
+  if (holds) return;
+  ++failures;
+  printf("FAILED: %s\n", what);
+}
+
+/* That a call fails with an error, and that what it says has these words. */
+static void refuses(pindrive_error error, pindrive_error expected, const char *words) {
+  if (error == expected && strstr(pindrive_last_error(), words) != NULL) return;
+  ++failures;
+  printf("FAILED: error %d, \"%s\", not %d, \"%s\"\n", error, pindrive_last_error(),
+         expected, words);
+}
+
+static pindrive_drive *the_drive(void) {
+  pindrive_drive *drive = pindrive_drive_new();
+  expect(pindrive_drive_set(drive, "mass", 0.010) == PINDRIVE_OK, "mass");
+  expect(pindrive_drive_set(drive, "stiffness", 100.0) == PINDRIVE_OK, "stiffness");
+  expect(pindrive_drive_set(drive, "damping", 0.40) == PINDRIVE_OK, "damping");
+  expect(pindrive_drive_set(drive, "plate.kinetic", 0.020) == PINDRIVE_OK, "plate.kinetic");
+  expect(pindrive_drive_set(drive, "finger.kinetic", 0.005) == PINDRIVE_OK, "finger.kinetic");
+  return drive;
+}
+
+static pindrive_release *the_release(void) {
+  pindrive_release *release = pindrive_release_new();
+  expect(pindrive_release_set(release, "mouse_velocity", 0.10) == PINDRIVE_OK, "mouse_velocity");
+  expect(pindrive_release_set(release, "displacement", 1.5e-3) == PINDRIVE_OK, "displacement");
+  return release;
+}
+
+static pindrive_motion *run(const pindrive_drive *drive, const pindrive_release *release) {
+  pindrive_motion *motion = NULL;
+  expect(pindrive_simulate(drive, release, NULL, NULL, &motion) == PINDRIVE_OK, "simulate");
+  return motion;
+}
+
+/* A number of a motion by its name; NaN if it has none. */
+static double number(const pindrive_motion *motion, const char *name) {
+  double values[64];
+  size_t i;
+  expect(pindrive_number_count() <= 64, "the numbers fit");
+  expect(pindrive_numbers(motion, NAN, 0.05, values) == PINDRIVE_OK, "numbers");
+  for (i = 0; i < pindrive_number_count(); ++i)
+    if (strcmp(pindrive_number_name(i), name) == 0) return values[i];
+  expect(0, name);
+  return NAN;
+}
+
+static void a_motion(void) {
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion = run(drive, release);
+  pindrive_outcome outcome;
+  pindrive_segment first, last;
+  pindrive_event events[64];
+  double times[2] = {0, 0.02}, x[2], laws[16], energy[16], turns[64], values[64], duration;
+  signed char sides[64];
+  size_t i, count, all;
+
+  /* A motion keeps no reference to what it was made of. */
+  pindrive_release_free(release);
+  pindrive_drive_free(drive);
+
+  expect(pindrive_outcome_of(motion, &outcome) == PINDRIVE_OK, "outcome");
+  expect(outcome.status == PINDRIVE_STATUS_OK && outcome.end == PINDRIVE_END_RESTING, "it rests");
+  expect(isnan(outcome.period) && isnan(outcome.cycle_begin), "it does not oscillate for ever");
+  expect(isinf(outcome.known_until), "a motion that rests is known for ever");
+  expect(pindrive_segment_of(motion, 0, &first) == PINDRIVE_OK, "first segment");
+  expect(first.begin == 0 && first.position == 1.5e-3, "it starts where it was released");
+  expect(first.velocity == 0.10, "with the velocity of the plate");
+  expect(pindrive_segment_of(motion, outcome.segments - 1, &last) == PINDRIVE_OK, "last segment");
+  expect(isinf(last.end) && last.finger == PINDRIVE_STICK, "it ends at rest on the finger");
+
+  expect(pindrive_evaluate(motion, PINDRIVE_POSITION, times, 2, PINDRIVE_RIGHT, x) == PINDRIVE_OK,
+         "positions");
+  expect(x[0] == 1.5e-3 && x[1] != x[0], "positions over time");
+  expect(pindrive_events(motion, 0, 10, events, 64, &all) == PINDRIVE_OK && all > 0, "events");
+  expect(pindrive_events(motion, 0, 10, events, 1, &count) == PINDRIVE_MORE && count == 1,
+         "one event of several");
+  expect(events[0].time == first.end && events[0].plate == first.plate_event, "the first event");
+  expect(pindrive_extrema(motion, PINDRIVE_POSITION, 1, turns, values, 64, &count) == PINDRIVE_OK,
+         "extrema");
+  expect(count > 2 && values[1] == number(motion, "transient.peak_displacement"),
+         "the first extremum is the peak");
+  expect(pindrive_crossings(motion, PINDRIVE_VELOCITY, 0.05, 1, turns, sides, 64, &count) ==
+                 PINDRIVE_OK &&
+             count > 0 && sides[0] == -1,
+         "the velocity falls through a level");
+  expect(pindrive_duration(motion, 0.05, &duration) == PINDRIVE_OK && duration > 0, "duration");
+  expect(number(motion, "transient.settling_time") < duration, "it settles");
+
+  expect(pindrive_certificate(motion, NAN, laws) == PINDRIVE_OK, "certificate");
+  for (i = 0; i < pindrive_certificate_count(); ++i)
+    expect(laws[i] < 1e-12, pindrive_certificate_name(i));
+  expect(pindrive_energy(motion, NAN, energy) == PINDRIVE_OK, "energy");
+  for (i = 0; i < pindrive_energy_count(); ++i)
+    if (strcmp(pindrive_energy_name(i), "residual") == 0)
+      expect(fabs(energy[i]) < 1e-15 * energy[2], "the energy adds up");
+
+  refuses(pindrive_segment_of(motion, outcome.segments, &last), PINDRIVE_BAD_VALUE, "one of");
+  times[1] = -1;
+  refuses(pindrive_evaluate(motion, PINDRIVE_POSITION, times, 2, PINDRIVE_RIGHT, x),
+          PINDRIVE_BAD_VALUE, "times[1] must be");
+  refuses(pindrive_evaluate(motion, 9, times, 1, PINDRIVE_RIGHT, x),
+          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 6, not 9");
+  refuses(pindrive_numbers(motion, -1, 0.05, values), PINDRIVE_BAD_VALUE, "duration must be");
+  refuses(pindrive_numbers(motion, 1, 0, values), PINDRIVE_BAD_VALUE, "settling_band must be");
+  refuses(pindrive_crossings(motion, PINDRIVE_PLATE_FORCE, 0, 1, turns, sides, 64, &count),
+          PINDRIVE_BAD_VALUE, "must be position, velocity or acceleration");
+  refuses(pindrive_events(motion, 0, INFINITY, events, 64, &count), PINDRIVE_BAD_VALUE,
+          "to must be finite");
+  refuses(pindrive_numbers(NULL, 1, 0.05, values), PINDRIVE_NULL, "motion must not be null");
+  pindrive_motion_free(motion);
+}
+
+/* Derivatives along the mass, against the difference of two motions. */
+static void derivatives(void) {
+  const double step = 1e-6, time = 0.01;
+  pindrive_drive *drive = the_drive(), *rate = pindrive_drive_rate_new(drive);
+  pindrive_release *release = the_release(), *still = pindrive_release_rate_new(release);
+  pindrive_motion *derivative = NULL, *less, *more;
+  double slope, below, above, event;
+  size_t count;
+  expect(pindrive_drive_set(rate, "mass", 1) == PINDRIVE_OK, "a direction");
+  expect(pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative) ==
+             PINDRIVE_OK,
+         "differentiate");
+  pindrive_drive_set(drive, "mass", 0.010 * (1 - step));
+  less = run(drive, release);
+  pindrive_drive_set(drive, "mass", 0.010 * (1 + step));
+  more = run(drive, release);
+  pindrive_evaluate(derivative, PINDRIVE_POSITION, &time, 1, PINDRIVE_RIGHT, &slope);
+  pindrive_evaluate(less, PINDRIVE_POSITION, &time, 1, PINDRIVE_RIGHT, &below);
+  pindrive_evaluate(more, PINDRIVE_POSITION, &time, 1, PINDRIVE_RIGHT, &above);
+  expect(fabs(slope - (above - below) / (2 * step * 0.010)) < 1e-6 * fabs(slope),
+         "the derivative of a position");
+  slope = number(derivative, "transient.peak_displacement");
+  below = number(less, "transient.peak_displacement");
+  above = number(more, "transient.peak_displacement");
+  expect(fabs(slope - (above - below) / (2 * step * 0.010)) < 1e-6 * fabs(slope),
+         "the derivative of a number");
+  refuses(pindrive_events(derivative, 0, 1, NULL, 0, &count), PINDRIVE_DERIVATIVE,
+          "not of its derivatives");
+  pindrive_release_set_profile(still, "plate_load", &time, &event, 1);
+  expect(pindrive_drive_set_curve(rate, "plate", &time, &time, 1) == PINDRIVE_OK, "a curve");
+  refuses(pindrive_differentiate(drive, release, rate, still, NULL, NULL, &derivative),
+          PINDRIVE_BAD_VALUE, "the rate of plate.curve must have 0 rows");
+  pindrive_motion_free(derivative);
+  pindrive_motion_free(less);
+  pindrive_motion_free(more);
+  pindrive_drive_free(drive);
+  pindrive_drive_free(rate);
+  pindrive_release_free(release);
+  pindrive_release_free(still);
+}
+
+/* Each mistake in a drive or a release is told in words. */
+static void mistakes(void) {
+  static const struct {
+    const char *name;
+    double value;
+    pindrive_error error;
+    const char *words;
+  } cases[] = {
+      {"mass", 0, PINDRIVE_BAD_VALUE, "mass must be above 0 and finite, not 0"},
+      {"stiffness", INFINITY, PINDRIVE_BAD_VALUE, "stiffness must be above 0 and finite"},
+      {"damping", -1, PINDRIVE_BAD_VALUE, "damping must be at least 0"},
+      {"plate.kinetic", -0.5, PINDRIVE_BAD_VALUE, "plate.kinetic must be at least 0"},
+      {"plate.static", 0.01, PINDRIVE_BAD_VALUE, "plate.static must be at least the kinetic"},
+      {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be above 0"},
+      {"displacement", NAN, PINDRIVE_BAD_VALUE, "displacement must be finite"},
+      {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, or NaN"},
+      {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be at least 0"},
+      {"skin_stretch", 1e-3, PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger"},
+      {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be above 0"},
+      {"weight", 1, PINDRIVE_BAD_NAME, "has no weight, but"},
+  };
+  const double speeds[] = {0, 0.1, 0.05}, forces[] = {0.02, 0.01, 0.01};
+  pindrive_motion *motion = NULL;
+  size_t i;
+  for (i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
+    pindrive_error error = pindrive_drive_set(drive, cases[i].name, cases[i].value);
+    if (error == PINDRIVE_BAD_NAME)
+      error = pindrive_release_set(release, cases[i].name, cases[i].value);
+    if (error == PINDRIVE_OK) error = pindrive_simulate(drive, release, NULL, NULL, &motion);
+    refuses(error, cases[i].error, cases[i].words);
+    expect(motion == NULL, "a refused simulation makes no motion");
+    pindrive_drive_free(drive);
+    pindrive_release_free(release);
+  }
+  {
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
+    pindrive_drive_set_curve(drive, "plate", speeds, forces, 3);
+    refuses(pindrive_simulate(drive, release, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
+            "row 2 of plate.curve must come after");
+    pindrive_drive_set_curve(drive, "plate", NULL, NULL, 0);
+    pindrive_drive_set_curve(drive, "plate", speeds, forces, 2);
+    pindrive_drive_set(drive, "plate.kinetic", 0.03);
+    refuses(pindrive_simulate(drive, release, NULL, NULL, &motion), PINDRIVE_BAD_VALUE,
+            "plate.kinetic must be the first force of its curve");
+    refuses(pindrive_drive_set_curve(drive, "thumb", speeds, forces, 2), PINDRIVE_BAD_NAME,
+            "the contacts plate and finger");
+    refuses(pindrive_release_set_profile(release, "displacement", speeds, forces, 2),
+            PINDRIVE_BAD_NAME, "the profiles mouse_velocity and plate_load");
+    refuses(pindrive_simulate(NULL, release, NULL, NULL, &motion), PINDRIVE_NULL, "drive");
+    pindrive_drive_free(drive);
+    pindrive_release_free(release);
+  }
+}
+
+static int never(void *context) {
+  ++*(int *)context;
+  return 0;
+}
+
+/* Next to no friction and no damping: a motion of very many events, which its caller stops. */
+static void stopping(void) {
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion = NULL;
+  int asked = 0;
+  pindrive_drive_set(drive, "damping", 0);
+  pindrive_drive_set(drive, "plate.kinetic", 0);
+  pindrive_drive_set(drive, "finger.kinetic", 1e-9);
+  refuses(pindrive_simulate(drive, release, never, &asked, &motion), PINDRIVE_STOPPED, "stopped");
+  expect(asked == 1 && motion == NULL, "it is asked once and makes no motion");
+  pindrive_drive_free(drive);
+  pindrive_release_free(release);
+}
+
+static void a_batch(void) {
+  const double masses[3] = {0.008, -1, 0.012};
+  const pindrive_varied varied = {"mass", masses}, unknown = {"weight", masses};
+  const size_t width = pindrive_number_count();
+  double *numbers = malloc(3 * width * sizeof *numbers);
+  pindrive_status status[3];
+  pindrive_end end[3];
+  pindrive_error error[3];
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = the_release();
+  pindrive_motion *motion;
+  expect(pindrive_batch(drive, release, &varied, 1, 3, 0.05, NULL, NULL, numbers, status, end,
+                        error) == PINDRIVE_OK,
+         "batch");
+  expect(error[0] == PINDRIVE_OK && error[1] == PINDRIVE_BAD_VALUE && error[2] == PINDRIVE_OK,
+         "one point is refused");
+  expect(isnan(numbers[width]) && end[2] == PINDRIVE_END_RESTING, "and has no numbers");
+  pindrive_drive_set(drive, "mass", 0.012);
+  motion = run(drive, release);
+  expect(numbers[2 * width] == number(motion, pindrive_number_name(0)), "as one motion has it");
+  refuses(pindrive_batch(drive, release, &unknown, 1, 3, 0.05, NULL, NULL, numbers, NULL, NULL,
+                         NULL),
+          PINDRIVE_BAD_NAME, "neither a drive nor a release has weight");
+  pindrive_motion_free(motion);
+  pindrive_drive_free(drive);
+  pindrive_release_free(release);
+  free(numbers);
+}
+
+int main(void) {
+  expect(pindrive_interface() == PINDRIVE_INTERFACE, "the header is that of the library");
+  a_motion();
+  derivatives();
+  mistakes();
+  stopping();
+  a_batch();
+  pindrive_motion_free(NULL);
+  pindrive_drive_free(NULL);
+  pindrive_release_free(NULL);
+  printf("%d failures\n", failures);
+  return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,428 @@
+"""The C interface, installed and used from C, and its answers beside those of the extension."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import shutil
+import subprocess
+import sys
+from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
+from dataclasses import dataclass, field
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from pindrive import Status, _core
+from pindrive.quantities.results import ENDING, TRANSIENT
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(sys.executable).parent
+
+pytestmark = pytest.mark.skipif(
+    sys.platform == "win32", reason="where the library lies is tested on the others"
+)
+
+
+def run(*command: str | Path) -> None:
+    program = shutil.which(str(command[0]), path=str(BIN)) or str(command[0])
+    done = subprocess.run(
+        [program, *map(str, command[1:])], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the C interface is installed."""
+    folder = tmp_path_factory.mktemp("capi")
+    settings = ("-DPINDRIVE_C=ON", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_INSTALL_LIBDIR=lib")
+    run("cmake", "-S", ROOT, "-B", folder / "build", "-G", "Ninja", *settings)
+    run("cmake", "--build", folder / "build")
+    run("cmake", "--install", folder / "build", "--prefix", folder / "prefix")
+    return folder / "prefix"
+
+
+def test_a_program_in_c99(prefix: Path, tmp_path: Path) -> None:
+    source = ROOT / "tests" / "capi"
+    run("cmake", "-S", source, "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", tmp_path)
+    run(tmp_path / "consumer")
+
+
+def test_the_example_of_the_header_is_a_program(prefix: Path, tmp_path: Path) -> None:
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    lines = re.findall(r"^ \*     (.*)$", header, re.MULTILINE)
+    source, program = tmp_path / "example.c", tmp_path / "example"
+    body = "\n".join(lines)
+    source.write_text(
+        "#include <stdio.h>\n#include <pindrive.h>\nint main(void) {\n"
+        f'{body}\nprintf("%.17g\\n", x);\nreturn 0;\n}}\n'
+    )
+    library = prefix / "lib"
+    run(
+        *("cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", source, "-o", program),
+        *(f"-I{prefix / 'include'}", f"-L{library}", f"-Wl,-rpath,{library}", "-lpindrive"),
+    )
+    said = subprocess.run([program], capture_output=True, text=True, check=True).stdout
+    case = Case()
+    assert float(said) == case.core().position(np.array([0.02]), True)[0]
+
+
+# ---- random drives, to the bit -------------------------------------------------------------------
+
+Rows = list[tuple[float, float]]
+
+
+@dataclass
+class Case:
+    """A drive and a release in the core's numbers; the default is that of the README."""
+
+    numbers: dict[str, float] = field(
+        default_factory=lambda: {
+            "mass": 0.010,
+            "stiffness": 100.0,
+            "damping": 0.40,
+            "plate.kinetic": 0.020,
+            "plate.static": 0.020,
+            "finger.kinetic": 0.005,
+            "finger.static": 0.005,
+            "finger.stiffness": inf,
+            "displacement": 1.5e-3,
+            "velocity": 0.10,
+            "skin_stretch": nan,
+            "duration": inf,
+        }
+    )
+    curves: dict[str, Rows] = field(default_factory=lambda: {"plate": [], "finger": []})
+    inputs: dict[str, Rows] = field(
+        default_factory=lambda: {"mouse_velocity": [(0.0, 0.10)], "plate_load": [(0.0, 1.0)]}
+    )
+
+    def as_core(self) -> tuple[Any, ...]:
+        """In the order of the extension."""
+        n = self.numbers
+
+        def contact(name: str, stiffness: float) -> tuple[float, float, float, Rows]:
+            kinetic, at_rest = n[f"{name}.kinetic"], n[f"{name}.static"]
+            return kinetic, at_rest, stiffness, self.curves[name]
+
+        return (
+            *(n["mass"], n["stiffness"], n["damping"]),
+            *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
+            *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
+            *(n["displacement"], n["velocity"], n["skin_stretch"], n["duration"]),
+        )
+
+    def core(self) -> _core.Motion:
+        return _core.simulate(*self.as_core())
+
+
+def drawn(random: np.random.Generator) -> Case:
+    """A drive of any kind that the core can follow."""
+    case = Case()
+    n = case.numbers
+
+    def between(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    n["mass"], n["stiffness"] = between(2e-3, 2e-2), between(20, 400)
+    ratio = random.choice([0.0, between(0, 0.3), between(0, 2), 1.0])
+    n["damping"] = float(ratio * 2 * np.sqrt(n["mass"] * n["stiffness"]))
+    for contact, largest in (("plate", 0.1), ("finger", 0.05)):
+        kinetic = between(1e-3, largest) * bool(random.integers(5))
+        n[f"{contact}.kinetic"] = kinetic
+        n[f"{contact}.static"] = kinetic * random.choice([1.0, between(1, 2)])
+    n["displacement"] = between(-3e-3, 3e-3)
+    kind = random.integers(4)
+    speed = between(-0.3, 0.3)
+    case.inputs["mouse_velocity"] = [(0.0, speed)]
+    if kind == 1:
+        n["finger.stiffness"] = n["stiffness"] * between(1, 50)
+    if kind == 2:
+        fall = between(0.3, 1.1)
+        for contact in ("plate", "finger"):
+            kinetic = n[f"{contact}.kinetic"]
+            case.curves[contact] = [(0.0, kinetic), (0.05, kinetic * fall), (0.3, kinetic)]
+    if kind == 3:
+        times = [0.0, between(0.01, 0.1), between(0.11, 0.3)]
+        case.inputs["mouse_velocity"] = [(t, between(-0.3, 0.3)) for t in times]
+        case.inputs["plate_load"] = [(t, between(0, 2)) for t in times]
+    n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
+    if random.integers(3) == 0:
+        n["duration"] = between(0.01, 1)
+    return case
+
+
+def doubles(values: Any) -> Any:
+    """An array as C takes it."""
+    return np.ascontiguousarray(values, float).ctypes.data_as(POINTER(c_double))
+
+
+class Interface:
+    """The installed library."""
+
+    def __init__(self, prefix: Path) -> None:
+        name = "libpindrive.dylib" if sys.platform == "darwin" else "libpindrive.so"
+        self.library = ctypes.CDLL(str(prefix / "lib" / name))
+        for function in ("drive_new", "release_new", "drive_rate_new", "release_rate_new"):
+            getattr(self.library, f"pindrive_{function}").restype = c_void_p
+        for function in ("number", "energy", "certificate"):
+            getattr(self.library, f"pindrive_{function}_count").restype = c_size_t
+            getattr(self.library, f"pindrive_{function}_name").restype = c_char_p
+        self.library.pindrive_last_error.restype = c_char_p
+        self.library.pindrive_status_text.restype = c_char_p
+
+    def __call__(self, name: str, *arguments: Any) -> int:
+        """Calls a function that may fail, which it must not; 1 where there was more."""
+        error: int = getattr(self.library, f"pindrive_{name}")(*arguments)
+        assert error <= 1, self.library.pindrive_last_error()
+        return error
+
+    def names(self, of: str) -> list[str]:
+        count = getattr(self.library, f"pindrive_{of}_count")()
+        name = getattr(self.library, f"pindrive_{of}_name")
+        return [name(c_size_t(i)).decode() for i in range(count)]
+
+    def filled(self, case: Case, drive: c_void_p, release: c_void_p) -> tuple[c_void_p, c_void_p]:
+        """A drive and a release with the numbers of a case."""
+        for contact, rows in case.curves.items():
+            if rows:
+                speeds, forces = zip(*rows, strict=True)
+                count = c_size_t(len(rows))
+                self(
+                    "drive_set_curve",
+                    drive,
+                    contact.encode(),
+                    *map(doubles, (speeds, forces)),
+                    count,
+                )
+        for name, value in case.numbers.items():
+            ours = name in ("displacement", "velocity", "skin_stretch", "duration")
+            target, of = (release, "release") if ours else (drive, "drive")
+            self(f"{of}_set", target, name.encode(), c_double(value))
+        for name, rows in case.inputs.items():
+            times, values = map(doubles, zip(*rows, strict=True))
+            self("release_set_profile", release, name.encode(), times, values, c_size_t(len(rows)))
+        return drive, release
+
+    def given(self, case: Case) -> tuple[c_void_p, c_void_p]:
+        new = (self.library.pindrive_drive_new, self.library.pindrive_release_new)
+        return self.filled(case, *(c_void_p(make()) for make in new))
+
+    def rate(self, case: Case, drive: c_void_p, release: c_void_p) -> tuple[c_void_p, c_void_p]:
+        of_drive, of_release = (
+            c_void_p(make(of))
+            for make, of in (
+                (self.library.pindrive_drive_rate_new, drive),
+                (self.library.pindrive_release_rate_new, release),
+            )
+        )
+        return self.filled(case, of_drive, of_release)
+
+    def free(self, **handles: c_void_p) -> None:
+        for kind, handle in handles.items():
+            getattr(self.library, f"pindrive_{kind.partition('_')[0]}_free")(handle)
+
+
+QUANTITIES = (
+    *("position", "velocity", "acceleration", "plate_force", "finger_force"),
+    *("stretch", "stretch_rate"),
+)
+"""In the order of pindrive_quantity."""
+
+
+class Outcome(ctypes.Structure):
+    """pindrive_outcome."""
+
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("end", ctypes.c_int),
+        ("steady_since", c_double),
+        ("period", c_double),
+        ("known_until", c_double),
+        ("simulated", c_double),
+        ("cycle_begin", c_double),
+        ("segments", c_size_t),
+    )
+
+
+class Segment(ctypes.Structure):
+    """pindrive_segment."""
+
+    _fields_ = (
+        *((name, c_double) for name in ("begin", "end", "position", "velocity", "acceleration")),
+        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
+    )
+
+
+class Event(ctypes.Structure):
+    """pindrive_event."""
+
+    _fields_ = (
+        *((name, c_double) for name in ("time", "position", "velocity")),
+        *((name, ctypes.c_int) for name in ("plate", "finger")),
+    )
+
+
+@pytest.fixture(scope="module")
+def c(prefix: Path) -> Interface:
+    return Interface(prefix)
+
+
+def numbers_of_core(core: Any, duration: float) -> list[float]:
+    """Those of C, in its order, from the extension."""
+    transient = core.transient(duration, 0.05)
+    uses = [transient.pop("plate"), transient.pop("finger")]
+    position, amplitude = transient.pop("end_position"), transient.pop("amplitude")
+    return [
+        *transient.values(),
+        *(number for use in uses for number in use.values()),
+        *(position, core.steady_since, amplitude, core.period),
+    ]
+
+
+def test_numbers_have_their_names_of_the_table(c: Interface) -> None:
+    assert c.names("number") == [
+        number.name for number in (*TRANSIENT, *ENDING) if number.name != "transient.settled"
+    ]
+    core = Case().core()
+    assert c.names("energy") == [*core.ledger(0.1)]
+    assert c.names("certificate") == [*core.certificate(0.1)]
+
+
+def test_codes_are_those_of_python(c: Interface) -> None:
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    codes = dict(re.findall(r"PINDRIVE_STATUS_(\w+) = (\d+)", header))
+    assert codes == {
+        status.name.upper(): str(status.value)
+        for status in Status
+        if status < Status.incomplete and status is not Status.stopped
+    }
+    for code in codes.values():
+        assert c.library.pindrive_status_text(int(code)).decode() == Status(int(code)).explanation
+
+
+def same(found: Any, expected: Any, case: int) -> None:
+    """The same bits, NaN where NaN is."""
+    assert_array_equal(np.asarray(found, float), np.asarray(expected, float), f"case {case}")
+
+
+def compare(c: Interface, number: int, motion: c_void_p, core: Any) -> float:
+    """Values, segments and numbers of a motion, or their derivatives; the duration looked at."""
+    outcome = Outcome()
+    c("outcome_of", motion, byref(outcome))
+    same((outcome.steady_since, outcome.period), (core.steady_since, core.period), number)
+    table = core.segments()
+    assert outcome.segments == len(table["begin"])
+    for i in range(0, outcome.segments, max(outcome.segments // 7, 1)):
+        segment = Segment()
+        c("segment_of", motion, c_size_t(i), byref(segment))
+        for name in table.keys() & {column[0] for column in Segment._fields_}:
+            same(getattr(segment, name), table[name][i], number)
+    return float(outcome.known_until)
+
+
+def evaluated(c: Interface, motion: c_void_p, quantity: int, times: Any, side: int) -> Any:
+    values = np.empty(len(times))
+    c("evaluate", motion, quantity, doubles(times), c_size_t(len(times)), side, doubles(values))
+    return values
+
+
+def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
+    random = np.random.default_rng(16)
+    capacity = 4000
+    events, count = (Event * capacity)(), c_size_t()
+    times, values = np.empty(capacity), np.empty(capacity)
+    sides = np.empty(capacity, np.int8)
+    endings = set()
+    for number in range(1000):
+        case = drawn(random)
+        core = case.core()
+        drive, release = c.given(case)
+        motion = c_void_p()
+        c("simulate", drive, release, None, None, byref(motion))
+        known = compare(c, number, motion, core)
+        assert known == core.known_until
+        endings.add(core.end)
+
+        duration = core.duration(0.05)
+        found = c_double()
+        c("duration", motion, c_double(0.05), byref(found))
+        assert found.value == duration
+        at = np.append(random.uniform(0, duration, 5), 0.0)
+        for quantity, name in enumerate(QUANTITIES):
+            same(evaluated(c, motion, quantity, at, 1), getattr(core, name)(at, True), number)
+        for of, expected in (
+            ("numbers", numbers_of_core(core, duration)),
+            ("energy", [*core.ledger(duration).values()]),
+            ("certificate", [*core.certificate(duration).values()]),
+        ):
+            row = np.empty(len(expected))
+            band = (c_double(0.05),) if of == "numbers" else ()
+            c(of, motion, c_double(duration), *band, doubles(row))
+            same(row, expected, number)
+        until = min(duration, known)
+        c(
+            *("events", motion, c_double(0), c_double(until)),
+            *(events, c_size_t(capacity), byref(count)),
+        )
+        same([e.time for e in events[: count.value]], core.events(0.0, until, capacity)[0], number)
+        quantity = int(random.integers(3))
+        arrays = doubles(times), doubles(values), c_size_t(capacity), byref(count)
+        c("extrema", motion, quantity, c_double(until), *arrays)
+        turns = core.extrema(quantity, until, capacity)
+        same((times[: count.value], values[: count.value]), turns, number)
+        level = float(np.median(turns[1]))
+        c(
+            *("crossings", motion, quantity, c_double(level), c_double(until), doubles(times)),
+            *(sides.ctypes.data_as(c_char_p), c_size_t(capacity), byref(count)),
+        )
+        across = core.crossings(quantity, level, until, capacity)
+        same((times[: count.value], sides[: count.value]), across, number)
+        c.free(drive=drive, release=release, motion=motion)
+    assert len(endings) >= 4
+
+
+def test_derivatives_have_the_bits_of_python(c: Interface) -> None:
+    random = np.random.default_rng(61)
+    for number in range(100):
+        case, rate = drawn(random), Case()
+        rate.numbers = {name: float(random.normal()) for name in case.numbers}
+        for name in ("finger.stiffness", "skin_stretch", "duration"):
+            if not np.isfinite(case.numbers[name]):
+                rate.numbers[name] = 0.0
+        for rates, given in ((rate.curves, case.curves), (rate.inputs, case.inputs)):
+            for name, rows in given.items():
+                rates[name] = [tuple(random.normal(size=2)) for _ in rows]
+        for contact, rows in rate.curves.items():
+            if rows:
+                rate.numbers[f"{contact}.kinetic"] = rows[0][1]
+        core = _core.differentiate(case.as_core(), rate_as_core(rate))
+        drive, release = c.given(case)
+        of_drive, of_release = c.rate(rate, drive, release)
+        derivative = c_void_p()
+        handles = (drive, release, of_drive, of_release)
+        c("differentiate", *handles, None, None, byref(derivative))
+        compare(c, number, derivative, core)
+        duration = case.core().duration(0.05)
+        at = random.uniform(0, duration, 5)
+        for quantity, name in enumerate(QUANTITIES):
+            same(evaluated(c, derivative, quantity, at, 1), getattr(core, name)(at, True), number)
+        row = np.empty(len(c.names("number")))
+        c("numbers", derivative, c_double(duration), c_double(0.05), doubles(row))
+        same(row, numbers_of_core(core, duration), number)
+        c.free(drive=drive, release=release, motion=derivative)
+        c.free(drive=of_drive, release=of_release)
+
+
+def rate_as_core(rate: Case) -> tuple[Any, ...]:
+    """Along a direction the stiffness of the plate stays infinite."""
+    numbers = list(rate.as_core())
+    kinetic, at_rest, _, rows = numbers[3]
+    numbers[3] = (kinetic, at_rest, 0.0, rows)
+    return tuple(numbers)
