@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+import typer
 from rich.console import Group
 from rich.text import Text
 
@@ -22,6 +23,7 @@ from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.refusals import why
 from pindrive.study.runner import human_bytes
 from pindrive.study.slices import elasticity
+from pindrive.study.validation import coefficient_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -279,6 +281,14 @@ def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
         if key not in case.keys:
             value = setting.value
             yield key, value if isinstance(value, str) else json.dumps(value)
+
+
+def say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
+    """Print what becomes of the plate's friction coefficient, where the study changes it."""
+    found = coefficient_words(plan, tolerances=tolerances)
+    if found:
+        words, doubtful = found
+        typer.echo(f"warning: {words}" if doubtful else words, err=doubtful)
 
 
 def count(number: int) -> str:

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from io import BytesIO
 from itertools import groupby, product
 from math import inf, isfinite, isnan
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -30,7 +28,6 @@ from pindrive.plot.style import (
     Figure,
     event_marker,
     event_name,
-    save,
 )
 from pindrive.plot.trace import MM, Trace
 from pindrive.quantities.table import QUANTITIES, digits, duration, short
@@ -41,13 +38,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.motion.motion import Motion
-
-
-def write_figure(motion: Motion, path: Path, format: str) -> None:
-    """Draw the motion as "png", "svg" or "pdf"."""
-    file = BytesIO()
-    save(plot_motion(motion), file, format)
-    path.write_bytes(file.getvalue())
 
 
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from io import BytesIO
+from pathlib import Path
 from textwrap import fill
-from typing import IO, TYPE_CHECKING, Any, Final
+from typing import IO, Any, Final
 
 import matplotlib.style
 from matplotlib.figure import Figure as _Figure
-
-if TYPE_CHECKING:
-    import os
 
 PALETTE: Final = {
     "curve": "#0072B2",  # blue
@@ -101,5 +100,10 @@ def save(
         format: "png" (250 dpi), "svg" or "pdf"; the ending of the path unless given.
     """
     kind = format or str(target).rpartition(".")[2].lower()
+    file = BytesIO()  # a disk that is full then fails here, not in Matplotlib, which leaves it open
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure.savefig(target, format=kind, **_SAVING.get(kind, {}))
+        figure.savefig(file, format=kind, **_SAVING.get(kind, {}))
+    if isinstance(target, (str, os.PathLike)):
+        Path(target).write_bytes(file.getvalue())
+    else:
+        target.write(file.getvalue())
