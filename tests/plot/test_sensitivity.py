@@ -78,7 +78,7 @@ def test_elasticities_are_written_with_their_signs(found: Influence, figure: Fig
     assert image.get_clim() == (-1.0, 1.0)
     assert to_hex(image.cmap(1.0)) == to_hex(PALETTE["curve"]), "blue: it grows"
     assert to_hex(image.cmap(0.0)) == to_hex(PALETTE["stick"]), "orange: it falls"
-    assert axes.get_xlabel() == "blue: it grows, orange: it falls; ·: below 0.005, −: none"
+    assert axes.get_xlabel() == "blue: it grows, orange: it falls\n·: below 0.005, −: none"
 
 
 def bars(axes: Axes, colour: str) -> dict[tuple[int, int], Any]:

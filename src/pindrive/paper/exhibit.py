@@ -15,7 +15,7 @@ import numpy as np
 from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
-from pindrive.plot.style import SMALL, STYLE
+from pindrive.plot.style import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,6 +55,8 @@ class Exhibit:
         found = {}
         with matplotlib.style.context(STYLE, after_reset=True):
             figure = self.draw(self.data)
+            for artist in figure.findobj():
+                artist.set_gid(None)  # what several artists share is no id of SVG
             for format, about in metadata.items():
                 file = BytesIO()
                 figure.savefig(file, format=format, metadata=about, dpi=DPI)
@@ -93,7 +95,6 @@ def page(height: float, **arguments: Any) -> Figure:
 
 def tidy(axes: Axes, title: str = "") -> None:
     """Small ticks, and a title that stands at the left."""
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     if title:
         axes.set_title(title, loc="left", fontsize=8.0)
 

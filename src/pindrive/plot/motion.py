@@ -22,6 +22,7 @@ from pindrive.plot.style import (
     CONTACTS,
     EVENT_SHAPE,
     GREY,
+    HALO,
     PALETTE,
     SMALL,
     STYLE,
@@ -94,7 +95,7 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
         for mode in ("carried", "resting"):
             _shade(axes, trace.stuck(mode), mode, _TINT[mode])
         axes.set_ylabel(label)
-        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is a)
+        axes.tick_params(labelbottom=axes is a)
     x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
     v.plot(trace.t, trace.v, color=PALETTE["curve"], gid="curve")
     a.plot(trace.broken(trace.t), trace.broken(trace.a), color=PALETTE["curve"], gid="curve")
@@ -125,7 +126,6 @@ def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
     axes.set_xlabel(above.get_xlabel())
     above.set_xlabel("")
     above.tick_params(labelbottom=False)
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
@@ -164,7 +164,6 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
     axes.set_ylabel("velocity $v$ (mm/s)")
     axes.set_xlim(_room(trace.x, margin=0.1))
     axes.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -284,6 +283,7 @@ def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
             textcoords="offset points",
             ha="right" if right else "left",
             fontsize=SMALL,
+            path_effects=HALO,
         )
 
 
@@ -334,6 +334,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
             ha="right" if late else "left",
             va="bottom" if up else "top",
             fontsize=SMALL,
+            path_effects=HALO,
         )
 
 

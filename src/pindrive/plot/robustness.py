@@ -117,7 +117,6 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
         )
     axes.set_ylim(0.0, top)
     axes.set_xlabel(axis_label(number))
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _outcome(found: Robustness) -> str:

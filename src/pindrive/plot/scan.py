@@ -274,7 +274,6 @@ def _size(painting: Painting) -> float:
 def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
     bar = figure.colorbar(image, cax=place, extend="both")
     bar.set_label("deflection, forward (mm)", fontsize=SMALL)
-    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
@@ -290,7 +289,6 @@ def _frame(axes: Axes, title: str) -> None:
     axes.set_xlabel("across the page (mm)")
     axes.set_ylabel("down (mm)")
     axes.set_aspect("equal")
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     for spine in axes.spines.values():
         spine.set_visible(True)
         spine.set_linewidth(0.4)

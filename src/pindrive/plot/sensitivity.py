@@ -122,7 +122,7 @@ def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) ->
             color="white" if dark else "0.55" if text in ("-", "·") else "black",
         )
     axes.set_title("near: % of change for 1 % more of", fontsize=8.0)
-    signs = f"blue: it grows, orange: it falls; ·: below 0.005, {MINUS}: none"
+    signs = f"blue: it grows, orange: it falls\n·: below 0.005, {MINUS}: none"
     axes.set_xlabel(signs, fontsize=SMALL, color=GREY)
 
 
