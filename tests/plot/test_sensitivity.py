@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from figure_reading import collisions, legend_of
 from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_influence
 from pindrive.plot.style import PALETTE
-from pindrive.study.sensitivity import Influence, influence
+from pindrive.study.sensitivity import Influence, sobol
 from pindrive.study.slices import symbol, words
 from pindrive.study.study import load_study
 
@@ -24,7 +24,7 @@ KEYS = ("plate_kinetic", "finger_kinetic", "mass", "stiffness", "damping_ratio",
 
 @pytest.fixture(scope="module")
 def found() -> Influence:
-    return influence(load_study(STUDY), tolerances=True, rows=128)
+    return sobol(load_study(STUDY), tolerances=True, rows=128, near=True)
 
 
 @pytest.fixture(scope="module")

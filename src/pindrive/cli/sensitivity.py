@@ -53,7 +53,7 @@ def sensitivity(
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
     from pindrive.study.outputs import known_output
-    from pindrive.study.sensitivity import askable, influence
+    from pindrive.study.sensitivity import askable, sobol
     from pindrive.study.study import load_study
 
     with refusing():
@@ -61,7 +61,7 @@ def sensitivity(
         with picturing(plot, plan.inputs) as draw:
             among = askable(plan)
             with points_bar() as tell:
-                found = influence(
+                found = sobol(
                     plan,
                     tolerances=tolerances,
                     numbers=[known_output(name, "--number", among) for name in number or ()],
@@ -69,6 +69,7 @@ def sensitivity(
                     seed=seed,
                     threads=threads,
                     progress=tell,
+                    near=True,
                 )
             draw(found.plot)
     from pindrive.cli.study_tables import influence_report, say_coefficient

@@ -19,8 +19,8 @@ from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import base_value
+from pindrive.study.evaluate import why
 from pindrive.study.outputs import NUMBERS, label
-from pindrive.study.refusals import why
 from pindrive.study.runner import human_bytes
 from pindrive.study.slices import elasticity
 from pindrive.study.validation import coefficient_words
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.study.design import Plan
+    from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
-    from pindrive.study.refusals import RefusedPoints
     from pindrive.study.robustness import Robustness, Share, WorstCase
     from pindrive.study.runner import Result
     from pindrive.study.sensitivity import Influence

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from pindrive.motion.batch import batched
 from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
-from pindrive.paper.exhibit import Exhibit, by_case, page, tidy, trend
+from pindrive.paper.exhibit import Exhibit, by_case, page, trend
 from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
 
@@ -126,7 +126,6 @@ def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
                 axes.plot(data[along], y, **look, label=case)
             axes.set_ylabel(unit)
             axes.set_xlabel(label)
-            tidy(axes)
             axes.set_xlim(0.0, float(data[along].max()))
             axes.set_ylim(0.0, None)
         row[0].set_yticks([0, 45, 90, 135])
@@ -236,7 +235,6 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
     right.set_ylabel(r"damping ratio $\zeta$")
     for axes in (left, right):
         axes.set_xlabel(r"mouse speed $v_p/\omega_0(x_0 - x_d)$")
-        tidy(axes)
     return figure
 
 
@@ -326,7 +324,6 @@ def _draw_steady_and_rest(data: xr.Dataset) -> Figure:
         axes.set_xlim(0.0, float(x.max()))
         axes.set_ylim(0.0, None)
         axes.legend(frameon=False)
-        tidy(axes)
     return figure
 
 
@@ -388,5 +385,4 @@ def _draw_printed_forms(data: xr.Dataset) -> Figure:
     axes.set_xlim(0.0, float(data.ratio.max()))
     handles = [*axes.get_lines()[: len(SLIPS)], Line2D([], [], **factors, label=_FACTORS_LABEL)]
     axes.legend(handles=handles, frameon=False, loc="lower center", ncols=2)
-    tidy(axes)
     return figure

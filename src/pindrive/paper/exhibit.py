@@ -15,13 +15,13 @@ import numpy as np
 from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
+from pindrive.lazy import stats
 from pindrive.plot.style import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import xarray as xr
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
 WIDTH: Final = 180 / 25.4
@@ -93,12 +93,6 @@ def page(height: float, **arguments: Any) -> Figure:
     return Figure(figsize=(WIDTH, height / 25.4), layout="constrained", **arguments)
 
 
-def tidy(axes: Axes, title: str = "") -> None:
-    """Small ticks, and a title that stands at the left."""
-    if title:
-        axes.set_title(title, loc="left", fontsize=8.0)
-
-
 def trend(values: ArrayLike) -> str:
     """How values go along their axis: throughout, on the whole (rank correlation), or neither."""
     y = np.asarray(values, dtype=np.float64)
@@ -107,18 +101,12 @@ def trend(values: ArrayLike) -> str:
         return "rises throughout"
     if (steps <= 0.0).all():
         return "falls throughout"
-    rank = rank_correlation(y)
+    rank = float(stats.spearmanr(np.arange(len(y)), y).statistic)
     if abs(rank) < 0.5:
         return "goes up and down"
     return f"{'rises' if rank > 0 else 'falls'} on the whole (rank correlation {rank:.2f})".replace(
         "-", "−"
     )
-
-
-def rank_correlation(values: ArrayLike) -> float:
-    """Spearman's, of values against their order."""
-    ranks = np.argsort(np.argsort(np.asarray(values)))
-    return float(np.corrcoef(ranks, np.arange(len(ranks)))[0, 1])
 
 
 def listed(words: list[str]) -> str:

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
-from pindrive.paper.exhibit import Exhibit, at_most, page, tidy, trend
+from pindrive.paper.exhibit import Exhibit, at_most, page, trend
 from pindrive.paper.population import SEED
 from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.contours import MAP, draw_contours, jump_key
@@ -241,7 +241,6 @@ def _draw_map(
     )
     draw_contours(axes, x, y, values, levels[1:], norm)
     axes.plot(GROUPS[across].baseline, GROUPS[up].baseline, **BASELINE)
-    tidy(axes)
     axes.set_xlabel(f"{MEANING[across]} ${GROUPS[across].symbol}$")
     axes.set_ylabel(f"{MEANING[up]} ${GROUPS[up].symbol}$")
 

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, FancyBboxPatch, Patch
 
 from pindrive import Profile, simulate
 from pindrive.paper import baseline
-from pindrive.paper.exhibit import Exhibit, page, tidy
+from pindrive.paper.exhibit import Exhibit, page
 from pindrive.plot.style import GREY, HALO, PALETTE, SMALL
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
@@ -148,7 +148,11 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         for axes, factor, letter in zip(column, data.factor.values, "abc", strict=True):
             of = data.sel(reading=reading, factor=factor)
             unit = "ζ = {:g}" if reading == "ratio" else "b = {:g} N·s/m, ζ = {:.2g}"
-            tidy(axes, f"({letter})  {unit.format(factor, float(of.damping_ratio))}")
+            axes.set_title(
+                f"({letter})  {unit.format(factor, float(of.damping_ratio))}",
+                loc="left",
+                fontsize=8.0,
+            )
             axes.axhline(0.0, color="0.8", lw=0.5, zorder=0)
             _shade(axes, t, of["mode"].values)
             axes.plot(t, 1e3 * of.displacement, color=PALETTE["curve"], gid="curve")
@@ -236,7 +240,6 @@ def velocity() -> Exhibit:
 def _draw_velocity(data: xr.Dataset) -> Figure:
     figure = page(70)
     axes = figure.subplots()
-    tidy(axes)
     t, v = 1e3 * data.time.values, 1e3 * data.velocity.values
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0)
     level, released = 1e3 * float(data.plate_velocity), 1e3 * float(data.released)

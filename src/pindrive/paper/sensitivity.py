@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline
-from pindrive.paper.exhibit import Exhibit, listed, page, tidy, trend
+from pindrive.paper.exhibit import Exhibit, listed, page, trend
 from pindrive.plot.style import GREY, PALETTE
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
@@ -154,7 +154,6 @@ def _panels(height: float, draw: Callable[[Axes, Parameter], None], label: str) 
     figure = page(height)
     panels = figure.subplots(2, 3).flat
     for i, (axes, p) in enumerate(zip(panels, PARAMETERS, strict=True)):
-        tidy(axes)
         draw(axes, p)
         axes.set_xlabel(f"{p.name} ${p.symbol}$ ({p.unit})")
         axes.set_xlim(min(0.0, p.scale * p.least), p.scale * p.most)

@@ -11,8 +11,7 @@ from matplotlib.patches import Patch
 
 from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
 from pindrive.quantities.quantity import counted
-from pindrive.study.design import variable
-from pindrive.study.slices import QUANTITY, axis_label, symbol
+from pindrive.study.slices import QUANTITY, axis_label, ranges
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +48,7 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
             axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
         figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
         title = plain(f"{name}: {_outcome(found)}", _WIDTH)
-        lines = filter(None, (title, _left_out(found), _scatter(found)))
+        lines = filter(None, (title, _left_out(found), ranges(found.ranges.scatter)))
         figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=8.0)
     return figure
 
@@ -137,20 +136,6 @@ def _left_out(found: Robustness) -> str:
         return ""
     drawn = counted(found.draws, "draw")
     return f"left out, as contradictory: {100.0 * found.refused / found.draws:.2g} % of {drawn}"
-
-
-def _scatter(found: Robustness) -> str:
-    """What scatters, and how."""
-    said = []
-    for key, scatter in found.ranges.scatter.items():
-        quantity = QUANTITY[variable(key)]
-        low, high = (f"{quantity.display_scale * x:.3g}" for x in scatter.span)
-        around = "" if scatter.kind in ("uniform", "loguniform") else " (3σ)"
-        said.append(
-            f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip() + around
-        )
-    lines = [", ".join(said[i : i + 5]) for i in range(0, len(said), 5)]
-    return ",\n".join(lines)
 
 
 def _key(found: Robustness) -> list[Line2D | Patch]:

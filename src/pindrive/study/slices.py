@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.quantities.quantity import Quantity
+    from pindrive.study.distributions import Distribution
 
 
 QUANTITY: Final[dict[str, Quantity]] = {
@@ -112,6 +113,17 @@ def values(given: Mapping[str, float], width: int) -> str:
         else:
             lines[-1] = f"{lines[-1]}, {said}" if lines[-1] else said
     return ",\n".join(lines)
+
+
+def ranges(scatter: Mapping[str, Distribution]) -> str:
+    """What varies, five in a line: "m 9.4 … 10.6 g (3σ), k …"."""
+    said = []
+    for key, axis in scatter.items():
+        quantity = QUANTITY[variable(key)]
+        low, high = (f"{quantity.display_scale * x:.3g}" for x in axis.span)
+        ends = f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip()
+        said.append(ends + ("" if axis.kind in ("uniform", "loguniform") else " (3σ)"))
+    return ",\n".join(", ".join(said[i : i + 5]) for i in range(0, len(said), 5))
 
 
 _MOST_SLICES: Final = 3
