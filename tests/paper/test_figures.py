@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import matplotlib.style
 import numpy as np
 import pytest
 import xarray as xr
@@ -18,6 +19,7 @@ from matplotlib.patches import FancyBboxPatch
 from figure_reading import Array, collisions, data, legend_of, lines, patch_spans, points
 from pindrive.paper import analysis, maps, motions, sensitivity
 from pindrive.paper.exhibit import Exhibit
+from pindrive.plot.style import STYLE
 from pindrive.quantities.units import to_si
 
 SI = {"mN": "N", "N·s/m": "N*s/m", "N/m": "N/m", "g": "kg", "mm/s": "m/s", "mm": "m"}
@@ -52,7 +54,8 @@ EXHIBITS: dict[str, Callable[[], Exhibit]] = {
 def drawn(name: str) -> tuple[xr.Dataset, Figure]:
     exhibit = EXHIBITS[name]()
     assert exhibit.name == name
-    return exhibit.data, exhibit.draw(exhibit.data)
+    with matplotlib.style.context(STYLE, after_reset=True):
+        return exhibit.data, exhibit.draw(exhibit.data)
 
 
 def by_label(axes: Axes) -> dict[str, tuple[Array, Array]]:

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Group, RenderableType
-from rich.text import Text
 
-from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words
+from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words, whole_lines
 from pindrive.device.dataset import gap_words, numbers
 from pindrive.evaluation.resolution import criterion
 from pindrive.quantities.device import PIN
@@ -49,7 +48,7 @@ PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y
 
 def scan_report(scan: Scan) -> RenderableType:
     """Its pins in a table, then its hand, its device and how far it can be trusted, in words."""
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _words(scan))
+    lines = whole_lines(_words(scan))
     return Group(_pins(scan), *lines)
 
 
@@ -99,7 +98,7 @@ def _words(scan: Scan) -> list[str]:
 
 def judgement_report(judgement: Judgement) -> RenderableType:
     """What became of the lines, in words, and the numbers of those shown."""
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in verdict_words(judgement))
+    lines = whole_lines(verdict_words(judgement))
     tables = [_counts(judgement)] if judgement.lines else []
     if judgement.shown:
         tables.append(_spreads(judgement))
@@ -217,7 +216,7 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
         "Settled: besides, what the first line alone leaves swinging is over before the second.",
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
-    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in words))
+    return Group(table, *whole_lines(words))
 
 
 def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:

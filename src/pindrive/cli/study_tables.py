@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import typer
 from rich.console import Group
-from rich.text import Text
 
-from pindrive.cli.tables import new_table
+from pindrive.cli.tables import new_table, whole_lines
 from pindrive.files import template
 from pindrive.files.device import keys_meant
 from pindrive.lazy import h5py
@@ -190,7 +189,7 @@ def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
     if found.all_met:
         tables.append(_yield(found, found.all_met))
         tables.append(_worst_cases(plan, found))
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _draws(plan, found))
+    lines = whole_lines(_draws(plan, found))
     return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
 
 

@@ -17,6 +17,8 @@ from pindrive.quantities.results import TRANSIENT
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from pindrive.device.device import Device
     from pindrive.device.hand import HandPath
     from pindrive.files.device import DeviceFile
@@ -46,6 +48,11 @@ def show(report: RenderableType) -> None:
     console().print(report, crop=False)
 
 
+def whole_lines(lines: Iterable[str]) -> Iterator[Text]:
+    """Lines that the terminal may wrap, so that what is copied of them is whole."""
+    return (Text(line, no_wrap=True, overflow="ignore") for line in lines)
+
+
 def device_report(device: DeviceFile) -> RenderableType:
     """What a device file describes, and what follows from it."""
     drive = device.drive
@@ -67,7 +74,7 @@ def device_report(device: DeviceFile) -> RenderableType:
     elif not drive.plate.frictionless:
         lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
     lines += [device.recording_words] if device.recording_words else []
-    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
+    return Group(table, *whole_lines(lines))
 
 
 def regime(damping_ratio: float) -> str:
@@ -84,7 +91,7 @@ def motion_report(motion: Motion) -> RenderableType:
     words = [ending(motion), trust(motion)]
     if motion.status:
         words.append(f"The simulation {motion.status.explanation}.")
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
+    lines = whole_lines(words)
     return Group(_phases(motion), _numbers(motion), *lines)
 
 

@@ -129,7 +129,7 @@ def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
             axes.set_xlim(0.0, float(data[along].max()))
             axes.set_ylim(0.0, None)
         row[0].set_yticks([0, 45, 90, 135])
-        row[1].legend(frameon=False)
+        row[1].legend()
     return figure
 
 
@@ -217,7 +217,7 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
         Line2D([], [], color=GREY, lw=0.7, ls=dashes, label=label)
         for dashes, label in _BOUNDS.values()
     ]
-    left.legend(handles=handles, frameon=False, loc="lower right", ncols=2)
+    left.legend(handles=handles, loc="lower right", ncols=2)
     right.pcolormesh(
         data.speed_of_map,
         data.ratio_of_map,
@@ -323,7 +323,7 @@ def _draw_steady_and_rest(data: xr.Dataset) -> Figure:
     for axes, x in ((left, data.place), (right, data.finger)):
         axes.set_xlim(0.0, float(x.max()))
         axes.set_ylim(0.0, None)
-        axes.legend(frameon=False)
+        axes.legend()
     return figure
 
 
@@ -384,5 +384,5 @@ def _draw_printed_forms(data: xr.Dataset) -> Figure:
     axes.set_ylim(1e-3, 100)
     axes.set_xlim(0.0, float(data.ratio.max()))
     handles = [*axes.get_lines()[: len(SLIPS)], Line2D([], [], **factors, label=_FACTORS_LABEL)]
-    axes.legend(handles=handles, frameon=False, loc="lower center", ncols=2)
+    axes.legend(handles=handles, loc="lower center", ncols=2)
     return figure

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from html import escape
 from io import BytesIO
 from math import ceil, log10
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
 import numpy as np
@@ -16,7 +16,7 @@ from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
 from pindrive.lazy import stats
-from pindrive.plot.style import STYLE
+from pindrive.plot.style import STYLE, new_figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
 
-WIDTH: Final = 180 / 25.4
-"""Of every figure, inches."""
+WIDTH: Final = 180.0
+"""Of every figure, mm."""
 DPI: Final = 160
 
 
@@ -88,9 +88,9 @@ def summary(data: xr.Dataset) -> dict[str, list[float]]:
     return found
 
 
-def page(height: float, **arguments: Any) -> Figure:
+def page(height: float) -> Figure:
     """An empty figure as wide as a page and `height` mm high."""
-    return Figure(figsize=(WIDTH, height / 25.4), layout="constrained", **arguments)
+    return new_figure(WIDTH, height)
 
 
 def trend(values: ArrayLike) -> str:

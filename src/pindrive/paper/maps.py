@@ -264,7 +264,7 @@ def _draw_time(data: xr.Dataset) -> Figure:
     bar.set_ticks([0.25, 0.5, 1, 2, 4, 8], labels=["¼", "½", "1", "2", "4", "8"])
     bar.ax.minorticks_off()
     handles = [Line2D([], [], **BASELINE), *jump_key(figure)]
-    figure.legend(handles=handles, loc="outside upper right", ncols=2, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=2)
     return figure
 
 
@@ -276,5 +276,5 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         _draw_map(axes, data, across, up, "peak", levels)
     _draw_scale(figure, panels, "$x_{m,a}/x_0$", "neither")
     handles = [Line2D([], [], **BASELINE)]
-    figure.legend(handles=handles, loc="outside upper right", frameon=False)
+    figure.legend(handles=handles, loc="outside upper right")
     return figure

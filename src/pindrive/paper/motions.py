@@ -181,7 +181,7 @@ def _key(figure: Figure, *more: Artist) -> None:
         Patch(color=PALETTE["carried"], alpha=0.55, lw=0.0, label="carried by the plate"),
         Patch(color=PALETTE["resting"], alpha=0.22, lw=0.0, label="at rest on the finger"),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=3, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
 
 
 # ---- Figure 2 ------------------------------------------------------------------------------------

@@ -178,7 +178,7 @@ def _draw_settling(data: xr.Dataset) -> Figure:
         Line2D([], [], color=PALETTE["resting"], label="at rest"),
         Line2D([], [], **BASELINE),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=3, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
     return figure
 
 
@@ -201,7 +201,7 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         Line2D([], [], **_START, label="initial deflection $x_0$"),
         Line2D([], [], **BASELINE),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=3, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
     return figure
 
 

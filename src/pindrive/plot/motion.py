@@ -29,6 +29,7 @@ from pindrive.plot.style import (
     Figure,
     event_marker,
     event_name,
+    new_figure,
 )
 from pindrive.plot.trace import MM, Trace
 from pindrive.quantities.table import QUANTITIES, digits, duration, short
@@ -63,7 +64,7 @@ def plot_motion(motion: Motion) -> Figure:
         trace = Trace.of(motion)
         skin = not motion.drive.finger.rigid
         height = 150 if skin else 125
-        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(180, height)
         columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
         rows = columns[0].subgridspec(3 + skin, 1)
         x = figure.add_subplot(rows[0], label="x")
@@ -79,9 +80,7 @@ def plot_motion(motion: Motion) -> Figure:
         _draw_portrait(motion, trace, portrait)
         _draw_key(motion, trace, key)
         figure.align_ylabels((x, v, a, s) if s else (x, v, a))
-        figure.suptitle(
-            f"{outcome(motion)}\n{parameters(motion)}", x=0.008, ha="left", fontsize=8.0
-        )
+        figure.head(f"{outcome(motion)}\n{parameters(motion)}")
     return figure
 
 
@@ -199,7 +198,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
         label = r"$x_\mathrm{end}$, about which it oscillates"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
-    axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
+    axes.legend(handles=handles, loc="upper left", borderaxespad=0.0)
 
 
 # ---- the signs -----------------------------------------------------------------------------------

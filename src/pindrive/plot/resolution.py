@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from pindrive.evaluation.resolution import criterion
-from pindrive.plot.style import GREY, HANDS, PALETTE, STYLE, Figure, plain
+from pindrive.plot.style import GREY, HANDS, PALETTE, STYLE, Figure, new_figure, plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,7 +40,7 @@ def plot_speeds(
         device: its name, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure = Figure(figsize=(120 / 25.4, 105 / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(120, 105)
         axes = figure.add_subplot(label="speed")
         ordered = sorted(limits, key=lambda limit: limit.pitch)
         pitch = np.array([limit.pitch for limit in ordered]) * MM
@@ -68,14 +68,14 @@ def plot_speeds(
             handles += axes.plot(pitch, slowest, **style, label=said, gid="slowest")
         handles += _bands(axes, ordered)[:1]
         handles.append(Patch(**HANDS, label="hands in finger studies"))
-        figure.legend(handles=handles, loc="outside lower left", ncols=2, frameon=False)
+        figure.legend(handles=handles, loc="outside lower left", ncols=2)
         axes.set_xlim(0.0, 1.04 * pitch.max())
         axes.set_ylim(0.0, top)
         axes.set_xlabel("pitch of the lines (mm)")
         axes.set_ylabel("hand speed (mm/s)")
         title = f"How fast the hand may move{f': {device}' if device else ''}"
         words = fill(criterion(part, criteria.direction), 78)
-        figure.suptitle(f"{plain(title, 66)}\n{words}", x=0.012, ha="left", fontsize=8.0)
+        figure.head(f"{plain(title, 66)}\n{words}")
     return figure
 
 

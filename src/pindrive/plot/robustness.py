@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.study.slices import QUANTITY, axis_label, ranges
 
@@ -37,8 +37,7 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         count = len(found.values)
         columns = min(count, 2)
         rows = -(-count // columns)
-        size = (180 / 25.4, (30 + 58 * rows) / 25.4)
-        figure = Figure(figsize=size, dpi=250, layout="constrained")
+        figure = new_figure(180, 30 + 58 * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         for axes, number in zip(grid.flat, found.values, strict=False):
             _draw(axes, found, number)
@@ -46,10 +45,10 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
             axes.set_axis_off()
         for axes in grid[:, 0]:
             axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
-        figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
+        figure.legend(handles=_key(found), loc="outside lower left", ncols=4)
         title = plain(f"{name}: {_outcome(found)}", _WIDTH)
         lines = filter(None, (title, _left_out(found), ranges(found.ranges.scatter)))
-        figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=8.0)
+        figure.head("\n".join(lines))
     return figure
 
 

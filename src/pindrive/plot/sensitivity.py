@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from pindrive.lazy import matplotlib
-from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.design import variable
 from pindrive.study.slices import elasticity, ranges, symbol, words
 
@@ -58,7 +58,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
     ]
     with matplotlib.style.context(STYLE, after_reset=True):
         height = 38 + 5.6 * len(numbers)
-        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(180, height)
         if found.near:
             near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
             draw_elasticities(near, found.near, numbers)
@@ -78,12 +78,9 @@ def plot_influence(found: Influence, name: str) -> Figure:
             Patch(color=_TOTAL, label="with interactions"),
             Line2D([], [], color="black", lw=0.6, label="95 % interval of the latter"),
         ]
-        figure.legend(handles=bars, loc="outside lower right", ncols=3, frameon=False)
-        figure.suptitle(
-            f"{plain(f'{name}: which parameter matters', _WIDTH)}\n{ranges(found.ranges.scatter)}",
-            x=0.008,
-            ha="left",
-            fontsize=8.0,
+        figure.legend(handles=bars, loc="outside lower right", ncols=3)
+        figure.head(
+            f"{plain(f'{name}: which parameter matters', _WIDTH)}\n{ranges(found.ranges.scatter)}"
         )
     return figure
 
@@ -113,7 +110,7 @@ def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) ->
             fontsize=5.8,
             color="white" if dark else "0.55" if text in ("-", "·") else "black",
         )
-    axes.set_title("near: % of change for 1 % more of", fontsize=8.0)
+    axes.set_title("near: % of change for 1 % more of")
     signs = f"blue: it grows, orange: it falls\n·: below 0.005, {MINUS}: none"
     axes.set_xlabel(signs, fontsize=SMALL, color=GREY)
 
@@ -138,7 +135,7 @@ def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
         if not found.over[number].spread > 0.0:
             words_for = "constant" if found.over[number].spread == 0.0 else "does not exist"
             axes.text(-0.4, row, words_for, va="center", fontsize=5.8, color="0.55")
-    axes.set_title("over the ranges: part of the variance due to", fontsize=8.0)
+    axes.set_title("over the ranges: part of the variance due to")
     parts = {0.0: "0", 0.5: "½", 1.0: "1"} if len(found.keys) <= _FEW else {0.0: "0", 1.0: "1"}
     scale = axes.secondary_xaxis("bottom")
     scale.set_label("scale")
@@ -162,20 +159,19 @@ def plot_elasticities(found: Elasticities) -> Figure:
     """
     numbers = [n for n, row in found.table.items() if not np.isnan([*row.values()]).all()]
     with matplotlib.style.context(STYLE, after_reset=True):
-        size = (45 + 14 * len(found.keys)) / 25.4, (26 + 5.6 * max(1, len(numbers))) / 25.4
-        figure = Figure(figsize=size, dpi=250, layout="constrained")
+        figure = new_figure(45 + 14 * len(found.keys), 26 + 5.6 * max(1, len(numbers)))
         axes = figure.subplots()
         axes.tick_params(labelsize=SMALL, length=0.0, labeltop=True, labelbottom=False)
         axes.spines[["left", "bottom"]].set_visible(False)
         if numbers:
             draw_elasticities(axes, found, numbers)
-        axes.set_title("% of change for 1 % more of", fontsize=8.0)
+        axes.set_title("% of change for 1 % more of")
         axes.set_xlim(-0.5, len(found.keys) - 0.5)
         axes.set_ylim(len(numbers) - 0.5, -0.5)
         axes.set_yticks(range(len(numbers)), [words(n) for n in numbers])
         axes.set_xticks(range(len(found.keys)), [symbol(variable(key)) for key in found.keys])
         title = f"{found.name}: elasticities" if found.name else "Elasticities"
-        figure.suptitle(title, x=0.008, ha="left", fontsize=8.0)
+        figure.head(title)
     return figure
 
 
@@ -191,7 +187,7 @@ def plot_motion_sensitivity(found: Sensitivity) -> Figure:
     times = np.linspace(0.0, found.duration, _SAMPLES)
     slopes = found.position(times)
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure = Figure(figsize=(180 / 25.4, 85 / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(180, 85)
         axes = figure.add_subplot()
         axes.axhline(0.0, color=GREY, lw=0.6)
         named = zip(found.parameters, found.sizes, slopes, strict=True)
@@ -202,8 +198,7 @@ def plot_motion_sensitivity(found: Sensitivity) -> Figure:
         axes.set_title(
             "How far each parameter $p$ moves the pin, for a change by its own size",
             loc="left",
-            fontsize=8.0,
         )
         axes.margins(x=0.0)
-        axes.legend(frameon=False, ncols=2)
+        axes.legend(ncols=2)
     return figure

@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from pindrive._core import settling_band
 from pindrive.plot.contours import MAP, draw_contours, jump_key, line_colours
-from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.slices import QUANTITY, axis_label, value, values
 
@@ -59,7 +59,7 @@ def plot_study(
         width = 110 if columns == 1 else 180
         each = 58 if not y else 78 if columns == 1 else 62 if columns == 2 else 52
         height = 24 + len(rows) * each
-        figure = Figure(figsize=(width / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(width, height)
         grid = figure.subplots(len(rows), columns, squeeze=False, sharex=True, sharey="row")
         for panels, axes in zip(rows, grid, strict=True):
             if y:
@@ -73,9 +73,7 @@ def plot_study(
         handles = _key([panel for row in rows for panel in row])
         handles += jump_key(figure)
         if handles:
-            figure.legend(
-                handles=handles, loc="outside lower left", ncols=len(handles), frameon=False
-            )
+            figure.legend(handles=handles, loc="outside lower left", ncols=len(handles))
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
         _title(figure, view, {**view.told, **still}, int(width * 0.66))
     return figure
@@ -95,7 +93,7 @@ def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -
     }
     name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
     said = [plain(name, width), values(shown, width), *view.links]
-    figure.suptitle("\n".join(filter(None, said)), x=0.008, ha="left", fontsize=8.0)
+    figure.head("\n".join(filter(None, said)))
 
 
 def _scale(axes: Axes, view: View, x: str, y: str) -> None:
@@ -220,7 +218,7 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
     axes.margins(x=0.0)
     axes.set_ylabel(axis_label(panels[0].number))
     if named and len(panels) > 1:
-        axes.legend(frameon=False, loc="best")
+        axes.legend(loc="best")
 
 
 def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:

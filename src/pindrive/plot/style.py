@@ -62,7 +62,12 @@ STYLE: Final[dict[str, Any]] = {
     "axes.formatter.limits": (-2, 5),
     "lines.linewidth": 1.1,
     "lines.markersize": 4.0,
+    "axes.titlesize": 8.0,
+    "figure.titlesize": 8.0,
+    "figure.dpi": 250,
+    "figure.constrained_layout.use": True,
     "legend.fontsize": SMALL,
+    "legend.frameon": False,
     "hatch.linewidth": 0.5,
     "agg.path.chunksize": 5000,  # a third faster with a hundred thousand points
     "svg.fonttype": "none",  # text as text
@@ -103,12 +108,21 @@ class Figure(_Figure):
     Matplotlib leaves that to pyplot, which this package does without: it would open windows.
     """
 
+    def head(self, text: str) -> None:
+        """Write lines of text at its top, on the left."""
+        self.suptitle(text, x=0.008, ha="left")
+
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         """The picture, and its size on the screen, at which it is as large as on paper."""
         file = BytesIO()
         save(self, file, "png")
         width, height = (round(96 * inches) for inches in self.get_size_inches())
         return file.getvalue(), {"width": width, "height": height}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of so many millimetres; made, and drawn in, within `STYLE`."""
+    return Figure(figsize=(width / 25.4, height / 25.4))
 
 
 def save(
