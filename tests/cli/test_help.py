@@ -8,15 +8,28 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer.main
 
+import pindrive.cli
 from command import run
 from pindrive.cli.app import app
-from pindrive.cli.help import COMMANDS, OPTIONS
+from pindrive.cli.help import COMMAND_GROUPS
 
-GROUP: typer.core.TyperGroup = typer.main.get_command(app)  # type: ignore[assignment]
+PROGRAM: Any = typer.main.get_command(app)
+NAMES: list[str] = PROGRAM.list_commands(None)
+SHARED = {
+    *("__init__", "app", "errors", "help", "options", "progress"),
+    *("scan_tables", "study_tables", "tables"),
+}
+HEADINGS = (
+    *("Arguments", "What is written", "What is on the page", "What is asked"),
+    *("How it is computed", "Files", "Help", "Example"),
+)
+BEFORE_OTHERS = ("init", "sweep")
+"""The commands whose files those of others' examples are."""
 
 SHORTER = {
     "scan": ["--set", "array.columns=1", "--set", "array.rows=1"],
@@ -26,47 +39,76 @@ SHORTER = {
 """What the examples add here, to be quick; it changes nothing in what the command takes."""
 
 
-def test_each_command_has_a_group_and_an_example_of_itself() -> None:
-    assert GROUP.commands.keys() == COMMANDS.keys()
-    for name, (_, example) in COMMANDS.items():
-        assert shlex.split(example)[:2] == ["pindrive", name]
+def test_each_command_has_a_file_a_group_and_an_example_of_itself() -> None:
+    folder = Path(pindrive.cli.__file__).parent
+    assert {*NAMES} == {path.stem for path in folder.glob("*.py")} - SHARED
+    for name in NAMES:
+        command = PROGRAM.commands[name]
+        assert command.callback.__module__ == f"pindrive.cli.{name}"
+        assert command.rich_help_panel in COMMAND_GROUPS
+        assert shlex.split(command.epilog)[:2] == ["pindrive", name]
+
+
+def test_a_file_added_is_a_command_added(tmp_path: Path) -> None:
+    """Its group and that of its option are new, too."""
+    folder = Path(pindrive.cli.__file__).parent
+    (tmp_path / "weigh.py").write_text(
+        "from typing import Annotated\n"
+        "import typer\n"
+        "from pindrive.cli.help import ASKED, command\n"
+        "@command('Balances', 'pindrive weigh --twice')\n"
+        "def weigh(\n"
+        "    twice: Annotated[bool, typer.Option('--twice', rich_help_panel=ASKED)] = False\n"
+        ") -> None:\n"
+        "    'Weigh a pin.'\n"
+        "    typer.echo('10 g' * (1 + twice))\n",
+        encoding="utf-8",
+    )
+    code = (
+        "import sys, pindrive.cli\n"
+        f"pindrive.cli.__path__ = [{str(folder)!r}, {str(tmp_path)!r}]\n"
+        "from pindrive.cli.app import main\n"
+        "main()"
+    )
+
+    def said(*arguments: str) -> str:
+        command = [sys.executable, "-c", code, *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    assert said("--help").endswith("\nBalances:\n  weigh        Weigh a pin.\n")
+    assert "What is asked:\n  --twice" in said("weigh", "--help")
+    assert said("weigh", "--twice") == "10 g10 g\n"
 
 
 def test_the_help_lists_the_commands_under_their_groups_with_whole_sentences() -> None:
     said = run("--help").stdout
-    headings = list(dict.fromkeys(group for group, _ in COMMANDS.values()))
-    assert re.findall(r"^(\S.*):$", said, re.M) == ["Help", *headings]
+    assert re.findall(r"^(\S.*):$", said, re.M) == ["Help", *COMMAND_GROUPS]
     assert "..." not in said.partition("\n")[2]
     sections = re.split(r"^(\S.*):$", said, flags=re.M)
     listed = dict(zip(sections[1::2], sections[2::2], strict=True))
-    for name, (group, _) in COMMANDS.items():
+    for name in NAMES:
+        group = PROGRAM.commands[name].rich_help_panel
         assert re.search(rf"^  {name} ", listed[group], re.M)
 
 
-def test_every_option_has_one_group() -> None:
-    grouped = [name for names in OPTIONS.values() for name in names]
-    assert len(grouped) == len({*grouped})
-    used = {
-        parameter.name
-        for command in (GROUP, *GROUP.commands.values())
-        for parameter in command.params
-        if parameter.param_type_name == "option"
-    }
-    assert used | {"help"} == {*grouped}
+def test_every_option_has_a_group() -> None:
+    for name in NAMES:
+        for parameter in PROGRAM.commands[name].params:
+            assert (parameter.rich_help_panel is None) == (
+                parameter.param_type_name == "argument"
+            ), (name, parameter.name)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: str) -> None:
     said = run(name, "--help").stdout
     headings = re.findall(r"^(\S.*):$", said, re.M)
-    order = ["Arguments", *OPTIONS, "Example"]
-    assert headings == [heading for heading in order if heading in headings]
-    assert said.endswith(f"\nExample:\n  {COMMANDS[name][1]}\n")
-    for parameter in GROUP.commands[name].params:
+    assert headings == [heading for heading in HEADINGS if heading in headings]
+    assert said.endswith(f"\nExample:\n  {PROGRAM.commands[name].epilog}\n")
+    for parameter in PROGRAM.commands[name].params:
         if parameter.param_type_name != "option":
             continue
-        assert parameter.name
-        heading = next(group for group, names in OPTIONS.items() if parameter.name in names)
+        heading = parameter.rich_help_panel
         section = re.split(rf"^{heading}:$", said, flags=re.M)[1].partition("\n\n")[0]
         assert all(option in section for option in parameter.opts)
 
@@ -75,10 +117,10 @@ def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: 
 def test_the_examples_run_one_after_the_other() -> None:
     """All but that of `paper`, which has tests of its own and takes long."""
     assert run("init", "study.toml", "--study").exit_code == 0
-    for name, (_, example) in COMMANDS.items():
+    for name in sorted(NAMES, key=lambda name: name not in BEFORE_OTHERS):
         if name == "paper":
             continue
-        words = shlex.split(example)[1:]
+        words = shlex.split(PROGRAM.commands[name].epilog)[1:]
         result = run(*words, *SHORTER.get(name, []))
         assert (result.exit_code, result.stderr) == (0, ""), result.output
         for option in ("-o", "--plot"):
@@ -111,7 +153,7 @@ def test_the_script_for_a_shell(
     ("typed", "offered"),
     [
         ("pindrive si", ["simulate"]),
-        ("pindrive s", ["simulate", "scan", "speed", "sweep", "sensitivity"]),
+        ("pindrive s", ["simulate", "scan", "speed", "sensitivity", "sweep"]),
         ("pindrive init --", ["--force", "--device", "--study", "--help"]),
     ],
 )

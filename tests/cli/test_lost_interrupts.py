@@ -38,7 +38,7 @@ def test_an_import_runs_to_its_end(loses: str, tmp_path: Path) -> None:
     (tmp_path / "loses.py").write_text(LOSES[loses])
     program = """
         import time
-        from pindrive.cli.interrupts import interruptible
+        from pindrive.cli.errors import interruptible
         interruptible()
         try:
             import loses
@@ -53,7 +53,7 @@ def test_an_import_runs_to_its_end(loses: str, tmp_path: Path) -> None:
 def test_a_finalizer_cannot_lose_it(tmp_path: Path) -> None:
     program = f"""
         import time
-        from pindrive.cli.interrupts import interruptible
+        from pindrive.cli.errors import interruptible
         interruptible()
         class Last:
             def __del__(self):
@@ -73,7 +73,7 @@ def test_ignored_stays_ignored(tmp_path: Path) -> None:
     program = f"""
         import signal
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        from pindrive.cli.interrupts import interruptible
+        from pindrive.cli.errors import interruptible
         interruptible()
         {ASKS.strip()}
     """

@@ -18,7 +18,7 @@ from pindrive.cli.study_tables import (
 from pindrive.study.design import Plan
 from pindrive.study.outputs import NUMBERS, label
 from pindrive.study.robustness import Robustness, robustness
-from pindrive.study.sensitivity import Influence, influence
+from pindrive.study.sensitivity import Influence, sobol
 from pindrive.study.slices import elasticity
 from pindrive.study.study import load_study
 from table_reading import numbers, printed, table
@@ -29,7 +29,7 @@ OVER = "Over the whole ranges: part of the variance due to, "
 
 @pytest.fixture(scope="module")
 def found() -> Influence:
-    return influence(load_study(STUDY), tolerances=True, rows=128)
+    return sobol(load_study(STUDY), tolerances=True, rows=128, near=True)
 
 
 @pytest.fixture(scope="module")

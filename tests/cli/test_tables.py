@@ -10,8 +10,13 @@ import numpy as np
 import pytest
 
 from pindrive import Motion, Release, simulate
-from pindrive.cli.evaluation_tables import judgement_report, speed_report, verdict_words
-from pindrive.cli.tables import device_words, ending, motion_report, regime, scan_report
+from pindrive.cli.scan_tables import (
+    judgement_report,
+    scan_report,
+    speed_report,
+    verdict_words,
+)
+from pindrive.cli.tables import device_words, ending, motion_report, regime
 from pindrive.device import Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Criteria, Judgement, judge

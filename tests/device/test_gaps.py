@@ -17,7 +17,8 @@ from scipy.optimize import minimize_scalar
 
 from command import GOOD, run
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
-from pindrive.cli.tables import console, meeting_words, scan_report
+from pindrive.cli.scan_tables import scan_report
+from pindrive.cli.tables import console, meeting_words
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.device.gaps import smallest_gaps
 from pindrive.device.pin_array import Neighbours

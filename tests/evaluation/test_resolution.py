@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from pindrive import Contact, Drive
 from pindrive.cli.app import app
-from pindrive.cli.evaluation_tables import beyond, speed_report
+from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
 from pindrive.device import Device, Electromagnet, HandPath, Scene, scan
 from pindrive.evaluation import Criteria, judge

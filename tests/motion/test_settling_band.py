@@ -16,7 +16,7 @@ from command import EXAMPLE, GOOD, refused, run
 from pindrive import Contact, Drive, Release, Status, simulate, simulate_batch
 from pindrive.files.device import load_device, motion_of
 from pindrive.study.robustness import robustness
-from pindrive.study.sensitivity import influence
+from pindrive.study.sensitivity import sobol
 from pindrive.study.study import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -197,7 +197,7 @@ def test_sensitivity_and_robustness_use_it() -> None:
     )
     usual, narrow = (load_study("study.toml", given) for given in ((), ("settling_band=1 %",)))
     numbers = ("transient_settling_time",)
-    one, other = (influence(plan, numbers=numbers, rows=128) for plan in (usual, narrow))
+    one, other = (sobol(plan, numbers=numbers, rows=128, near=True) for plan in (usual, narrow))
     assert one.near and other.near
     motion = motion_of(load_device(EXAMPLE))
     assert other.near.values["transient_settling_time"] == motion.settling_time(0.01)

@@ -18,10 +18,10 @@ from typer.testing import CliRunner
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
 from pindrive.paper import formulas, maps, population, report
-from pindrive.paper.claim import Claim
 from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
 from pindrive.paper.exhibit import html as as_html
 from pindrive.paper.exhibit import markdown as as_markdown
+from pindrive.paper.population import Claim
 from pindrive.paper.report import Report
 from pindrive.paper.sensitivity import PARAMETERS
 

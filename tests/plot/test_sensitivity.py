@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from figure_reading import collisions, legend_of
 from pindrive.plot.sensitivity import _BAR, _FIRST, _TOTAL, plot_influence
 from pindrive.plot.style import PALETTE
-from pindrive.study.sensitivity import Influence, influence
+from pindrive.study.sensitivity import Influence, sobol
 from pindrive.study.slices import symbol, words
 from pindrive.study.study import load_study
 
@@ -24,7 +24,7 @@ KEYS = ("plate_kinetic", "finger_kinetic", "mass", "stiffness", "damping_ratio",
 
 @pytest.fixture(scope="module")
 def found() -> Influence:
-    return influence(load_study(STUDY), tolerances=True, rows=128)
+    return sobol(load_study(STUDY), tolerances=True, rows=128, near=True)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def test_elasticities_are_written_with_their_signs(found: Influence, figure: Fig
     assert image.get_clim() == (-1.0, 1.0)
     assert to_hex(image.cmap(1.0)) == to_hex(PALETTE["curve"]), "blue: it grows"
     assert to_hex(image.cmap(0.0)) == to_hex(PALETTE["stick"]), "orange: it falls"
-    assert axes.get_xlabel() == "blue: it grows, orange: it falls; ·: below 0.005, −: none"
+    assert axes.get_xlabel() == "blue: it grows, orange: it falls\n·: below 0.005, −: none"
 
 
 def bars(axes: Axes, colour: str) -> dict[tuple[int, int], Any]:

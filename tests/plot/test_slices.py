@@ -10,14 +10,18 @@ import pytest
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy.interpolate import RegularGridInterpolator
 from typer.testing import CliRunner, Result
 
 from figure_reading import collisions, legend_of, patch_spans
 from pindrive.cli.app import app
-from pindrive.plot.slices import _flattened, _line_colours, plot_study
+from pindrive.plot.contours import draw_contours, find_jumps, jump_key, line_colours
+from pindrive.plot.slices import _flattened, plot_study
 from pindrive.study.runner import sweep
 from pindrive.study.slices import View, quantiles
 from pindrive.study.study import load_study
@@ -161,20 +165,72 @@ def test_a_single_curve_is_shaded_where_it_has_no_value(grid: View) -> None:
     assert list(legend_of(figure)) == ["not settled in the time followed"]
 
 
-def test_contours_are_labelled_and_their_levels_stand_at_the_scale(grid: View) -> None:
+def contours(axes: Axes) -> dict[str, list[Values]]:
+    """The pieces of each contour, by its level as text."""
+    found = [c for c in axes.collections if c.get_gid() == "contour"]
+    return {str(c.get_label()): [np.asarray(p.vertices) for p in c.get_paths()] for c in found}
+
+
+def test_contours_are_at_their_levels_which_stand_at_the_scale(grid: View) -> None:
     figure = draw(grid, ["settling_time"])
     _, _, _, *scales = figure.axes
-    for axes in figure.axes[:3]:
-        for lines in (c for c in axes.collections if c.get_gid() == "contours"):
-            written = {text.get_text() for text in lines.labelTexts}  # type: ignore[attr-defined]
-            levels = {f"{level:.6g}" for level in lines.levels}  # type: ignore[attr-defined]
-            assert written and written <= levels
-            bar = scales[0] if len(scales) == 1 else scales[figure.axes.index(axes)]
-            assert {f"{tick:.6g}" for tick in bar.get_yticks()} == levels
+    for axes, values in zip(figure.axes[:3], meshes(figure), strict=True):
+        levels = contours(axes)
+        bar = scales[0] if len(scales) == 1 else scales[figure.axes.index(axes)]
+        if np.isnan(values).all():
+            assert not levels
+            continue
+        assert {f"{tick:.6g}" for tick in bar.get_yticks()} == {*levels}
+        x, y = 1e3 * grid.data.mouse_velocity.values, grid.data.stiffness.values
+        at = RegularGridInterpolator((y, x), values, bounds_error=False, fill_value=None)
+        for level, pieces in levels.items():
+            for piece in pieces:
+                there = at(piece[:, ::-1])  # NaN beside a point without a number
+                np.testing.assert_allclose(there[~np.isnan(there)], float(level), rtol=1e-9)
+        for text in (t for t in axes.texts if t.get_gid() == "level"):
+            ends = [
+                np.abs(piece - text.get_position()).max(axis=1).min()
+                for piece in levels[text.get_text()]
+            ]
+            assert min(ends) == 0.0, "a label stands on its own contour"
+
+
+X, Y = np.linspace(0.0, 1.0, 21), np.linspace(0.0, 10.0, 11)
+
+
+def test_contours_end_at_a_jump() -> None:
+    """The left half goes from 0 to 10, the right half from 20 to 30: 15 is nowhere."""
+    values = np.where(X > 0.52, 20.0, 0.0) + Y[:, None]
+    figure = Figure()
+    axes = figure.subplots()
+    draw_contours(axes, X, Y, values, [5.0, 15.0, 25.0], Normalize(0.0, 30.0))
+    assert len(jump_key(figure)) == 1
+    found = contours(axes)
+    assert found["15"] == []
+    for level, left, right in (("5", 0.0, 0.5), ("25", 0.55, 1.0)):
+        (piece,) = found[level]
+        assert (piece[:, 0].min(), piece[:, 0].max()) == pytest.approx((left, right))
+        np.testing.assert_allclose(piece[:, 1], 5.0)
+    (fronts,) = (c for c in axes.collections if c.get_gid() == "jumps")
+    ends = np.array([path.vertices for path in fronts.get_paths()])
+    np.testing.assert_allclose(ends[..., 0], 0.525)
+    assert (ends[..., 1].min(), ends[..., 1].max()) == (0.0, 10.0)
+    assert {text.get_text() for text in axes.texts} == {"5", "25"}
+
+
+def test_what_is_steep_is_no_jump() -> None:
+    for smooth in (X, X**4, np.exp(5 * X) / 150, np.sqrt(X), np.sin(9 * X), np.abs(X - 0.4)):
+        assert not find_jumps(smooth, X).any()
+    for jump in (0.6, -0.6):
+        found = find_jumps(np.sin(2 * X) + jump * (X > 0.32), X)
+        assert np.flatnonzero(found).tolist() == [6]
+    assert not find_jumps(np.array([0.0, 1.0]), X[:2]).any(), "nothing to compare with"
+    assert not find_jumps(np.where(X > 0.5, np.nan, X), X).any()
 
 
 def test_lines_on_bright_colours_are_black() -> None:
-    assert _line_colours([0.0, 0.3, 0.7, 1.0], 0.0, 1.0) == ["white", "white", "black", "black"]
+    norm = Normalize(0.0, 1.0)
+    assert line_colours([0.0, 0.3, 0.7, 1.0], norm) == ["white", "white", "black", "black"]
 
 
 def test_a_panel_that_others_would_flatten_has_its_own_scale() -> None:

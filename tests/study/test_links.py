@@ -20,7 +20,7 @@ from pindrive.study.evaluate import evaluate
 from pindrive.study.local_sensitivity import elasticities
 from pindrive.study.outputs import MEASURED
 from pindrive.study.robustness import robustness
-from pindrive.study.sensitivity import influence
+from pindrive.study.sensitivity import sobol
 from pindrive.study.study import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -309,14 +309,14 @@ def test_draws_of_scans_are_told_by_their_reasons() -> None:
 
 def test_sensitivity_leaves_out_what_cannot_exist_and_says_why() -> None:
     plan = study(TOLERANCES.replace("[spec", 'plate.static = "25 %"\n[spec'))
-    found = influence(plan, rows=128)
+    found = sobol(plan, rows=128, near=True)
     (refusal,) = found.refusals
     assert 0 < refusal.count < found.points
     assert refusal.reason.startswith("plate.static must be at least the kinetic friction")
     said = run("sensitivity", "study.toml", "--rows", "128")
     share = f"{100 * refusal.count / 512:.3g} %"
     assert f"{refusal.count} of 512 points ({share}) cannot exist and are left out:" in said
-    assert influence(study(TOLERANCES), rows=128).refusals == ()
+    assert sobol(study(TOLERANCES), rows=128, near=True).refusals == ()
 
 
 KEYS = ("plate.kinetic", "finger.kinetic", "finger.stiffness", "drive.mass")

@@ -17,9 +17,8 @@ import xarray as xr
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.files.output import OutputError
 from pindrive.study import runner
-from pindrive.study.checkpoint import Journal
 from pindrive.study.design import Plan
-from pindrive.study.store import Piece, Store
+from pindrive.study.store import Journal, Piece, Store
 from pindrive.study.study import load_study
 from studies import HERE, SAMPLED, files, plan, run, uninterrupted
 

@@ -35,7 +35,7 @@ from pindrive.study.evaluate import evaluate
 from pindrive.study.outputs import SCAN_OUTPUTS
 from pindrive.study.robustness import robustness
 from pindrive.study.runner import on_threads, sweep
-from pindrive.study.sensitivity import influence
+from pindrive.study.sensitivity import sobol
 from pindrive.study.slices import View
 from pindrive.study.study import load_study
 from scan_studies import COILED, DEVICE, GRATING, study, swept
@@ -396,7 +396,7 @@ def test_sobol_indices_are_those_of_scans() -> None:
     """How long the hand moves depends on its speed alone; a pin's answer on both."""
     picture("page.png", slice(80, 100))
     plan = study(TOLERANCES, ONE_LINE)
-    found = influence(plan, tolerances=True, rows=128, threads=1)
+    found = sobol(plan, tolerances=True, rows=128, threads=1, near=True)
     assert found.near is None
     assert found.points == 512 and len(found.refusals) == 0
     time = found.over["hand_duration"].total
@@ -419,7 +419,7 @@ def test_sobol_indices_are_those_of_scans() -> None:
 def test_counts_have_no_sensitivity() -> None:
     plan = study("[axes]\narray.columns = [1, 2]\n")
     with pytest.raises(ValueError, match=r"axes\.array\.columns counts pins, and there is nothing"):
-        influence(plan)
+        sobol(plan, near=True)
 
 
 def test_nothing_varied_has_no_sensitivity() -> None:

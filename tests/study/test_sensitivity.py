@@ -17,8 +17,7 @@ from pindrive.files.device import load_device, motion_of
 from pindrive.files.template import DRIVE
 from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.local_sensitivity import elasticities
-from pindrive.study.sensitivity import influence, ranges_of
-from pindrive.study.sobol import sobol_indices
+from pindrive.study.sensitivity import ranges_of, sobol, sobol_indices
 from pindrive.study.study import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -119,7 +118,7 @@ def test_a_study_over_its_axes_or_its_tolerances() -> None:
 
 def test_the_peak_depends_on_speed_and_frequency_alone() -> None:
     """Before the peak the pin is carried: the paper's (14) has no finger friction of note."""
-    found = influence(load_study(STUDY), tolerances=True, rows=512)
+    found = sobol(load_study(STUDY), tolerances=True, rows=512, near=True)
     speed = found.keys.index("motion.mouse_velocity")
     peak = found.over["transient_peak_displacement"].total.value
     assert peak[speed] > 0.9 and np.delete(peak, speed).max() < 0.1
@@ -220,7 +219,7 @@ def test_the_command_prints_tables_and_draws(tmp_path: Path) -> None:
     near, first, total = (line[1:] for line in lines if line[:1] == ["settling_time"])
     row = elasticities(load_study(STUDY), KEYS, LINKS).table["transient_settling_time"]
     assert near[2] == f"{row['drive.mass']:+.2f}"
-    over = influence(load_study(STUDY), tolerances=True, rows=128).over["transient_settling_time"]
+    over = sobol(load_study(STUDY), tolerances=True, rows=128).over["transient_settling_time"]
     assert f"{over.first.value[1]:.2f}" in first
     assert f"{over.total.value[1]:.2f}" in total
     assert "1 024 points (Sobol' design of 128 rows)" in said.stdout

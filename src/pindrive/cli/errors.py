@@ -1,131 +1,82 @@
-"""What the commands share: how they take a device file, and how they refuse."""
+"""How a command ends before its end: bad input in a line for each problem, and Ctrl-C.
+
+An exception that is raised while a module is imported may be caught there, or renamed; raised while
+a process is started, it leaves one that nobody knows. In such places Ctrl-C is raised a moment
+later, so that no library can lose it.
+"""
 
 from __future__ import annotations
 
-import re
+import signal
 import sys
-from collections.abc import Iterator, Sequence
+import threading
+import time
+from _thread import interrupt_main, start_new_thread
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from types import FrameType
 
 import typer
-
-from pindrive.cli.help import HelpfulGroup
-
-if TYPE_CHECKING:
-    from pindrive.files.output import Output
-
-_UsageError: Any = typer.BadParameter.__base__
-DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
-OverridesOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="KEY=VALUE",
-        help='Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
-    ),
-]
-
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
 
-def count_option(
-    option: str,
-    help: str,
-    metavar: str = "COUNT",
-    *,
-    least: int = 1,
-    most: int = 10**18,
-    power_of_2: bool = False,
-) -> Any:
-    """An option that is a whole number from `least` to `most`, or such a power of 2."""
-    required = f"{'a power of 2' if power_of_2 else 'a whole number'} of at least {least}"
-    bounded = f"{required} and at most {most}"
-
-    def count(text: str) -> int:
-        number = int(text) if re.fullmatch(r"[0-9]{1,1000}", str(text)) else -1
-        if least <= number <= most and not (power_of_2 and number & (number - 1)):
-            return number
-        stated = bounded if number > most or most < 10**18 else required
-        typer.echo(f"{option} must be {stated}, got {text}", err=True)
-        raise typer.Exit(2)
-
-    return typer.Option(option, metavar=metavar, help=help, parser=count)
-
-
-class OneLine(HelpfulGroup):
-    """Commands whose usage errors are one line too."""
-
-    def main(
-        self,
-        args: Sequence[str] | None = None,
-        prog_name: str | None = None,
-        complete_var: str | None = None,
-        standalone_mode: bool = True,
-        *more: Any,
-        **extra: Any,
-    ) -> Any:
-        """Run the command that the arguments name."""
-        try:
-            status = super().main(args, prog_name, complete_var, False, *more, **extra)
-        except _UsageError as error:
-            if not standalone_mode:
-                raise
-            typer.echo(error.format_message(), err=True)
-            sys.exit(error.exit_code)
-        if standalone_mode:
-            sys.exit(status or 0)
-        return status
-
-
 @contextmanager
-def refusing() -> Iterator[None]:
-    """Bad input ends the command with a line for each problem and exit status 2."""
+def refusing(stopped: Callable[[], str] = lambda: "stopped; nothing was written") -> Iterator[None]:
+    """Bad input ends the command with a line for each problem and exit status 2.
+
+    Args:
+        stopped: what is said after Ctrl-C.
+    """
     try:
         yield
     except ValueError as error:
         typer.echo(str(error), err=True)
         raise typer.Exit(2) from None
     except KeyboardInterrupt:
-        typer.echo("stopped", err=True)
+        typer.echo(stopped(), err=True)
         raise typer.Exit(INTERRUPTED) from None
 
 
-def picture(path: Path, option: str = "--plot") -> Output:
-    """A picture that is to be written, in the format that its name asks for.
-
-    Raises:
-        ValueError: it asks for none.
-    """
-    from pindrive.files.output import PICTURES, Output
-
-    suffix = path.suffix.lower()
-    if suffix not in PICTURES:
-        raise ValueError(f"{option} {path}: must end in {', '.join(PICTURES)}")
-    return Output(path, PICTURES[suffix], option)
+_UNINTERRUPTIBLE = (
+    "importlib._bootstrap",
+    "_frozen_importlib",  # its name until importlib is imported
+    "multiprocessing",
+    "scipy.stats._qmc",  # calls Python from functions that cannot raise
+)
+"""Modules and packages whose functions run to their end before an interrupt is raised."""
+_AGAIN = 0.02
+"""Seconds after which it is looked again."""
 
 
-def picture_format(path: Path) -> str:
-    """The format of a picture, as Matplotlib calls it."""
-    return path.suffix.lower().removeprefix(".")
+def interruptible() -> None:
+    """Raise KeyboardInterrupt on Ctrl-C from now on; where Ctrl-C is ignored, it stays ignored."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupt)
+        sys.unraisablehook = _unraisable
 
 
-def measures(text: str, name: str, example: str, option: str) -> list[float]:
-    """Values of a quantity, apart by commas, as an option of the command line gives them, in SI."""
-    return [measure(part.strip(), name, example, option) for part in text.split(",")]
+def _interrupt(_: int, frame: FrameType | None) -> None:
+    while frame:
+        if str(frame.f_globals.get("__name__")).startswith(_UNINTERRUPTIBLE):
+            start_new_thread(_later, ())
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
 
 
-def measure(text: str, name: str, example: str, option: str) -> float:
-    """One value of the quantity called `name`, as an option gives it, in SI and within bounds."""
-    from pindrive.quantities.table import QUANTITIES, check, refusal
-    from pindrive.quantities.units import UnitError, quoted, to_si
+def _later() -> None:
+    time.sleep(_AGAIN)
+    if sys.platform == "win32":
+        interrupt_main()
+    else:  # a signal that ends a wait of the main thread, too
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
-    label = name.rpartition(".")[2]
-    try:
-        value = to_si(text, QUANTITIES[name].unit, example)
-    except UnitError as error:
-        raise ValueError(refusal(label, str(error), quoted(text), option)) from None
-    return check(name, value, where=option, label=label, given=quoted(text))
+
+def _unraisable(lost: sys.UnraisableHookArgs) -> None:
+    """An interrupt that was raised where nothing can catch it is raised again."""
+    if isinstance(lost.exc_value, KeyboardInterrupt):
+        start_new_thread(_later, ())
+    else:
+        sys.__unraisablehook__(lost)

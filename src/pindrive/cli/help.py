@@ -1,45 +1,76 @@
-"""What the help of each command shows beside its options: their groups, and an example."""
+"""How the program and its commands are listed and explained, and where each command is found."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, Final
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Any, Final, TypeVar
 
+import typer
 from typer.core import TyperCommand, TyperGroup
 
-COMMANDS: Final[dict[str, tuple[str, str]]] = {
-    "init": ("Device and study files", "pindrive init device.toml --device"),
-    "check": ("Device and study files", "pindrive check device.toml"),
-    "simulate": ("One release", 'pindrive simulate device.toml --set mass="1.2 g" --plot pin.png'),
-    "scan": ("The whole device", 'pindrive scan device.toml --text "a" --plot scan.png'),
-    "speed": ("The whole device", 'pindrive speed device.toml --pitch "4 mm" --plot speed.png'),
-    "sweep": ("Studies", "pindrive sweep study.toml -o study.nc"),
-    "map": ("Studies", "pindrive map study.nc --number settling_time -o map.png"),
-    "sensitivity": ("Studies", "pindrive sensitivity study.toml --tolerances --plot matters.png"),
-    "robustness": ("Studies", "pindrive robustness study.toml --plot yield.png"),
-    "paper": ("The paper behind the model", "pindrive paper --out report"),
-}
-"""By name, in the order of the help: the group it is listed in, and an example of its use."""
+Function = TypeVar("Function", bound=Callable[..., None])
 
-OPTIONS: Final[dict[str, tuple[str, ...]]] = {
-    "What is written": ("device", "study"),
-    "What is on the page": ("text", "image", "grating", "font", "path"),
-    "What is asked": (
-        *("pitch", "width", "part", "slowest", "fastest", "tolerances", "number"),
-        *("x", "y", "at", "overrides"),
-    ),
-    "How it is computed": (
-        *("rows", "draws", "seed", "threads", "cluster", "resume", "restart", "stop_after"),
-    ),
-    "Files": (
-        *("output", "plot", "pin", "film", "slow", "lines", "csv", "netcdf", "json", "samples"),
-        "rate",
-        *("out", "docs", "force"),
-    ),
-    "Help": ("version", "install_completion", "show_completion", "help"),
-}
-"""The groups of options in their order, each with the names of its parameters."""
-_GROUP_OF: Final = {name: group for group, names in OPTIONS.items() for name in names}
+COMMAND_GROUPS: Final = (
+    "Device and study files",
+    "One release",
+    "The whole device",
+    "Studies",
+    "The paper behind the model",
+)
+"""The order in which the help lists them; a group that is not here comes after them."""
+
+WRITTEN: Final = "What is written"
+PAGE: Final = "What is on the page"
+ASKED: Final = "What is asked"
+COMPUTED: Final = "How it is computed"
+FILES: Final = "Files"
+_PANELS: Final = ("Arguments", WRITTEN, PAGE, ASKED, COMPUTED, FILES, "Help")
+"""The groups of options, in the order of a command's help; the program's own are in the last."""
+
+_SHARED: Final = (
+    "app",
+    "errors",
+    "help",
+    "options",
+    "progress",
+    "scan_tables",
+    "study_tables",
+    "tables",
+)
+"""The files of this package that are no command."""
+_UsageError: Any = typer.BadParameter.__base__
+_marked: Final[list[tuple[Callable[..., None], dict[str, Any]]]] = []
+"""The functions that are commands, and what each is registered with."""
+
+
+def command(group: str, example: str) -> Callable[[Function], Function]:
+    """Make a function the command of its file, whose name it has.
+
+    Args:
+        group: of commands, under which the help lists it.
+        example: of its use, at the end of its help.
+    """
+
+    def mark(function: Function) -> Function:
+        name = function.__module__.rpartition(".")[2]
+        shown = {"name": name, "cls": HelpfulCommand, "epilog": example, "rich_help_panel": group}
+        _marked.append((function, shown))
+        return function
+
+    return mark
+
+
+def register(app: typer.Typer) -> None:
+    """Give a program all commands, each the function of a file of this package."""
+    package = __name__.rpartition(".")[0]
+    for file in iter_modules(sys.modules[package].__path__):
+        if file.name not in _SHARED:
+            import_module(f"{package}.{file.name}")
+    for function, shown in _marked:
+        app.command(**shown)(function)
 
 
 class HelpfulCommand(TyperCommand):
@@ -56,41 +87,63 @@ class HelpfulCommand(TyperCommand):
                 formatter.write(f"{'':>{formatter.current_indent}}{self.epilog}\n")
 
 
-class HelpfulGroup(TyperGroup):
-    """Commands that are listed group by group, each with its whole sentence."""
+class Program(TyperGroup):
+    """Commands that are listed group by group, and whose usage errors are one line."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the options, and the commands group by group."""
+        """Write the options, and the commands group by group, each with its whole sentence."""
         _write_options(self.get_params(ctx), ctx, formatter)
         groups: dict[str, list[tuple[str, str]]] = {}
         for name in self.list_commands(ctx):
-            command: Any = self.get_command(ctx, name)
-            words = command.get_short_help_str(limit=200)
-            groups.setdefault(command.rich_help_panel, []).append((name, words))
+            words = self.commands[name].get_short_help_str(limit=200)
+            groups.setdefault(self._group(name), []).append((name, words))
         widest = max(len(name) for rows in groups.values() for name, _ in rows)
         for group, rows in groups.items():
             with formatter.section(group):
                 formatter.write_dl([(name.ljust(widest), words) for name, words in rows])
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """The names in the order of the help."""
-        return sorted(super().list_commands(ctx), key=list(COMMANDS).index)
+        """The names in the order of the help: by group, then by name."""
+        return sorted(self.commands, key=lambda name: (_place(self._group(name)), name))
+
+    def _group(self, name: str) -> str:
+        return str(vars(self.commands[name])["rich_help_panel"])
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        *more: Any,
+        **extra: Any,
+    ) -> Any:
+        """Run the command that the arguments name."""
+        try:
+            status = super().main(args, prog_name, complete_var, False, *more, **extra)
+        except _UsageError as error:
+            if not standalone_mode:
+                raise
+            typer.echo(error.format_message(), err=True)
+            sys.exit(error.exit_code)
+        if standalone_mode:
+            sys.exit(status or 0)
+        return status
 
 
-def shown(name: str) -> dict[str, Any]:
-    """What a command called `name` is registered with, beside the function that it runs."""
-    group, example = COMMANDS[name]
-    return {"name": name, "cls": HelpfulCommand, "epilog": example, "rich_help_panel": group}
+def _place(group: str) -> tuple[int, str]:
+    known = group in COMMAND_GROUPS
+    return (COMMAND_GROUPS.index(group) if known else len(COMMAND_GROUPS), group)
 
 
 def _write_options(parameters: Iterable[Any], ctx: Any, formatter: Any) -> None:
-    groups: dict[str, list[tuple[str, str]]] = {"Arguments": []}
-    groups |= {group: [] for group in OPTIONS}
+    groups: dict[str, list[tuple[str, str]]] = {panel: [] for panel in _PANELS}
     for parameter in parameters:
         record = parameter.get_help_record(ctx)
         if record is not None:
             argument = parameter.param_type_name == "argument"
-            groups["Arguments" if argument else _GROUP_OF[parameter.name]].append(record)
+            stated = getattr(parameter, "rich_help_panel", None) or "Help"
+            groups["Arguments" if argument else stated].append(record)
     for group, records in groups.items():
         if records:
             with formatter.section(group):

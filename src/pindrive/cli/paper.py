@@ -8,14 +8,18 @@ from typing import Annotated
 import typer
 
 from pindrive.cli.errors import refusing
+from pindrive.cli.help import command
+from pindrive.cli.options import file_option
+from pindrive.cli.progress import steps
 
 
+@command("The paper behind the model", "pindrive paper --out report")
 def paper(
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="The report: a page, figures, data.")
+        Path | None, file_option("The report: a page, figures, data.", metavar="DIR")
     ] = None,
     docs: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="The report as Markdown, with pictures.")
+        Path | None, file_option("The report as Markdown, with pictures.", metavar="DIR")
     ] = None,
 ) -> None:
     """Recompute the paper, correct it, and judge what it says."""
@@ -32,8 +36,6 @@ def paper(
 
         pages = [(out, report.PAGE, "--out"), (docs, report.NAME, "--docs")]
         check_outputs([Output(d / name, REPORT, option) for d, name, option in pages if d])
-        from pindrive.cli.progress import steps
-
         written: dict[Path, dict[str, bytes]] = {}
         faces = (out is not None) + (docs is not None)
         with steps(report.STEPS + faces * report.FIGURES) as step:

@@ -45,3 +45,29 @@ def steps(count: int) -> Iterator[Callable[[str], None]]:
             begun += 1
 
         yield step
+
+
+@contextmanager
+def points_bar() -> Iterator[Progress]:
+    """A progress bar with points per second and time left, shown in a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    columns = (
+        rich_progress.TextColumn("{task.percentage:>3.0f} %"),
+        rich_progress.BarColumn(),
+        rich_progress.TextColumn("{task.fields[speed]}"),
+        rich_progress.TimeRemainingColumn(),
+    )
+    with rich_progress.Progress(
+        *columns, console=rich_console.Console(stderr=True), transient=True
+    ) as bar:
+        task = bar.add_task("", total=None, speed="")
+
+        def tell(done: int, total: int) -> None:
+            speed = bar.tasks[task].speed
+            digits = 0 if speed and speed >= 10.0 else 1
+            shown = f"{speed:,.{digits}f} points/s".replace(",", " ") if speed else ""
+            bar.update(task, completed=done, total=total, speed=shown)
+
+        yield tell

@@ -4,65 +4,62 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from pindrive.cli.errors import (
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import FILES, PAGE, command
+from pindrive.cli.options import (
+    CsvOption,
     DeviceArgument,
     OverridesOption,
-    measure,
+    PlotOption,
+    csv_rate,
+    file_option,
     measures,
     picture,
-    picture_format,
-    refusing,
+    save_picture,
 )
 from pindrive.cli.progress import bar
 
 STROKES = "strokes"
 
 
+def _page_option(metavar: str, help: str) -> Any:
+    return typer.Option(metavar=metavar, help=help, rich_help_panel=PAGE)
+
+
+@command("The whole device", 'pindrive scan device.toml --text "a" --plot scan.png')
 def scan(
     file: DeviceArgument,
     text: Annotated[
-        str | None, typer.Option(metavar="TEXT", help=r"What is on the page; \n begins a line.")
+        str | None, _page_option("TEXT", r"What is on the page; \n begins a line.")
     ] = None,
-    image: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="A picture of the page instead.")
-    ] = None,
+    image: Annotated[Path | None, _page_option("FILE", "A picture of the page instead.")] = None,
     grating: Annotated[
-        str | None, typer.Option(metavar="PITCHES", help='Lines instead, as in "4 mm, 2 mm".')
+        str | None, _page_option("PITCHES", 'Lines instead, as in "4 mm, 2 mm".')
     ] = None,
     font: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Font of the text; DejaVu Sans if none.")
+        Path | None, _page_option("FILE", "Font of the text; DejaVu Sans if none.")
     ] = None,
     path: Annotated[
-        str,
-        typer.Option(metavar="strokes|FILE", help="How the hand moves: a CSV of t [s], x, y."),
+        str, _page_option("strokes|FILE", "How the hand moves: a CSV of t [s], x, y.")
     ] = STROKES,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
-    ] = None,
+    plot: PlotOption = None,
     pin: Annotated[
-        int | None, typer.Option(metavar="NUMBER", help="The pin drawn in detail, from 0.")
+        int | None, file_option("The pin drawn in detail, from 0.", metavar="NUMBER")
     ] = None,
-    film: Annotated[
-        Path | None, typer.Option("--animate", metavar="FILE", help="Film it: .gif or .mp4.")
-    ] = None,
-    slow: Annotated[float, typer.Option(help="How many times slower the film is.")] = 4.0,
-    lines: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Each line under each pin, as CSV.")
-    ] = None,
-    csv: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Even samples; events go beside it, to FILE-events.csv."),
-    ] = None,
+    film: Annotated[Path | None, file_option("Film it: .gif or .mp4.", "--animate")] = None,
+    slow: Annotated[
+        float, typer.Option(help="How many times slower the film is.", rich_help_panel=FILES)
+    ] = 4.0,
+    lines: Annotated[Path | None, file_option("Each line under each pin, as CSV.")] = None,
+    csv: CsvOption = None,
     rate: Annotated[
-        str | None, typer.Option(metavar="FREQUENCY", help='Of the CSV, as in "1 kHz".')
+        str | None, file_option('Of the CSV, as in "1 kHz".', metavar="FREQUENCY")
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="All of it, as NetCDF.")
-    ] = None,
+    output: Annotated[Path | None, file_option("All of it, as NetCDF.", "--output", "-o")] = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Move the device over a page and say what its pins do."""
@@ -84,9 +81,7 @@ def scan(
             outputs.append(Output(lines, LINES_CSV, "--lines"))
         if output:
             outputs.append(Output(output, SCAN_NETCDF, "--output"))
-        if rate is not None and not csv:
-            raise ValueError("--rate goes with --csv")
-        frequency = measure("1 kHz" if rate is None else rate, "rate", "1 kHz", "--rate")
+        frequency = csv_rate(rate, csv) or 1000.0
         if csv:
             from pindrive.files.export import events_path
             from pindrive.files.output import SCAN_CSV, SCAN_EVENTS_CSV
@@ -137,21 +132,20 @@ def scan(
                 export.write_scan_csv(done, parts[csv], times)
                 export.write_scan_events(done, parts[export.events_path(csv)])
         if lines:
-            from pindrive.cli.evaluation_tables import write_lines
+            from pindrive.cli.scan_tables import write_lines
 
             with naming(lines):
                 write_lines(judgement, parts[lines])
         if plot:
             from pindrive.plot.scan import plot_scan
-            from pindrive.plot.style import save
 
             with naming(plot):
-                save(plot_scan(judgement, pin), parts[plot], picture_format(plot))
+                save_picture(plot_scan(judgement, pin), plot, parts[plot])
         if film:
             with naming(film), bar("Frames") as progress:
                 animate(judgement, parts[film], film_kind, slow=slow, progress=progress)
-    from pindrive.cli.evaluation_tables import judgement_report
-    from pindrive.cli.tables import scan_report, show
+    from pindrive.cli.scan_tables import judgement_report, scan_report
+    from pindrive.cli.tables import show
 
     for warning in done.warnings:
         typer.echo(f"warning: {warning}", err=True)

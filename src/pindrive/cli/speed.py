@@ -2,49 +2,49 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pindrive.cli.errors import (
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import ASKED, command
+from pindrive.cli.options import (
     DeviceArgument,
     OverridesOption,
+    PlotOption,
     measure,
     measures,
-    picture,
-    picture_format,
-    refusing,
+    picturing,
 )
 from pindrive.cli.progress import bar
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 
 
+def _asked(help: str, metavar: str | None = None) -> Any:
+    return typer.Option(metavar=metavar, help=help, rich_help_panel=ASKED)
+
+
+@command("The whole device", 'pindrive speed device.toml --pitch "4 mm" --plot speed.png')
 def speed(
     file: DeviceArgument,
     pitch: Annotated[
-        list[str] | None,
-        typer.Option(metavar="LENGTHS", help=f"From line to line; {USUAL} if none."),
+        list[str] | None, _asked(f"From line to line; {USUAL} if none.", "LENGTHS")
     ] = None,
-    width: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Of the lines; half the pitch if none.")
-    ] = None,
-    part: Annotated[
-        float, typer.Option(help="Part of its way that the pin must be back in between.")
-    ] = 0.5,
-    slowest: Annotated[str, typer.Option(metavar="SPEED", help="Hand tried.")] = "5 mm/s",
-    fastest: Annotated[str, typer.Option(metavar="SPEED", help="Hand tried.")] = "1000 mm/s",
-    plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw it: .png, .svg or .pdf.")
-    ] = None,
+    width: Annotated[str | None, _asked("Of the lines; half the pitch if none.", "LENGTH")] = None,
+    part: Annotated[float, _asked("Part of its way that the pin must be back in between.")] = 0.5,
+    slowest: Annotated[str, _asked("Hand tried.", "SPEED")] = "5 mm/s",
+    fastest: Annotated[str, _asked("Hand tried.", "SPEED")] = "1000 mm/s",
+    plot: PlotOption = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Say how fast the hand may move before two lines run into one."""
     from pindrive.files.device import load_device
 
-    with refusing(), ExitStack() as stack:
+    with refusing():
         device_file = load_device(file, overrides or (), whole=True)
         assert device_file.whole
         pitches = [
@@ -59,32 +59,29 @@ def speed(
         )
 
         from pindrive.evaluation.resolution import largest_speeds
-        from pindrive.files.output import naming, writing
 
-        parts = stack.enter_context(writing([picture(plot)] if plot else [], [file]))
-        device, criteria = device_file.whole.device(device_file.drive), device_file.whole.criteria()
-        with bar("Pitches") as progress:
-            limits = largest_speeds(
-                device,
-                pitches,
-                width=line,
-                part=part,
-                slowest=tried[0],
-                fastest=tried[1],
-                criteria=criteria,
-                progress=progress,
-            )
-        if plot:
-            from pindrive.plot.resolution import plot_speeds
-            from pindrive.plot.style import save
-
-            with naming(plot):
-                save(
-                    plot_speeds(limits, part, criteria, device_file.name),
-                    parts[plot],
-                    picture_format(plot),
+        with picturing(plot, [file]) as draw:
+            device = device_file.whole.device(device_file.drive)
+            criteria = device_file.whole.criteria()
+            with bar("Pitches") as progress:
+                limits = largest_speeds(
+                    device,
+                    pitches,
+                    width=line,
+                    part=part,
+                    slowest=tried[0],
+                    fastest=tried[1],
+                    criteria=criteria,
+                    progress=progress,
                 )
-    from pindrive.cli.evaluation_tables import speed_report
+
+            def figure() -> Figure:
+                from pindrive.plot.resolution import plot_speeds
+
+                return plot_speeds(limits, part, criteria, device_file.name)
+
+            draw(figure)
+    from pindrive.cli.scan_tables import speed_report
     from pindrive.cli.tables import show
 
     show(speed_report(limits, part, criteria))

@@ -8,20 +8,21 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+import typer
 from rich.console import Group
-from rich.text import Text
 
-from pindrive.cli.tables import new_table
+from pindrive.cli.tables import new_table, whole_lines
 from pindrive.files import template
 from pindrive.files.device import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import base_value
+from pindrive.study.evaluate import why
 from pindrive.study.outputs import NUMBERS, label
-from pindrive.study.refusals import why
 from pindrive.study.runner import human_bytes
 from pindrive.study.slices import elasticity
+from pindrive.study.validation import coefficient_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.study.design import Plan
+    from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
-    from pindrive.study.refusals import RefusedPoints
     from pindrive.study.robustness import Robustness, Share, WorstCase
     from pindrive.study.runner import Result
     from pindrive.study.sensitivity import Influence
@@ -188,7 +189,7 @@ def robustness_report(plan: Plan, found: Robustness) -> RenderableType:
     if found.all_met:
         tables.append(_yield(found, found.all_met))
         tables.append(_worst_cases(plan, found))
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _draws(plan, found))
+    lines = whole_lines(_draws(plan, found))
     return Group(*tables, *lines)  # a command that is broken into lines cannot be copied
 
 
@@ -279,6 +280,14 @@ def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
         if key not in case.keys:
             value = setting.value
             yield key, value if isinstance(value, str) else json.dumps(value)
+
+
+def say_coefficient(plan: Plan, *, tolerances: bool = False) -> None:
+    """Print what becomes of the plate's friction coefficient, where the study changes it."""
+    found = coefficient_words(plan, tolerances=tolerances)
+    if found:
+        words, doubtful = found
+        typer.echo(f"warning: {words}" if doubtful else words, err=doubtful)
 
 
 def count(number: int) -> str:

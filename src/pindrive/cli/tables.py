@@ -1,166 +1,28 @@
-"""Motions and scans as tables and words in a terminal."""
+"""Devices and motions as tables and words in a terminal."""
 
 from __future__ import annotations
 
-from math import degrees, isfinite, nan, tau
-from typing import TYPE_CHECKING, Final
+from math import degrees, isfinite, tau
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pindrive.device.dataset import gap_words, numbers
 from pindrive.motion.friction import Coefficients
-from pindrive.quantities.device import PIN
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
 from pindrive.quantities.results import TRANSIENT
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from collections.abc import Iterable, Iterator
 
     from pindrive.device.device import Device
     from pindrive.device.hand import HandPath
-    from pindrive.device.scanning import PinScan, Scan
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
-
-PINS_HEAD, PINS_TAIL = 24, 8
-"""How many pins of a large array are shown, from its first and from its last."""
-HEADINGS: Final = {
-    "pin.energised": "magnet\non",
-    "pin.switchings": "times\non",
-    "pin.slips": "slips\nwhile on",
-    "pin.captures": "times\ncaught",
-    "pin.carried": "time\nheld",
-    "pin.peak_displacement": "peak\n|x|",
-    "pin.peak_skin_force": "peak\nforce",
-    "pin.peak_stretch": "peak\nstretch",
-    "pin_gap": "least\ngap",
-}
-_MM: Final = 1e3
-
-
-def scan_report(scan: Scan) -> RenderableType:
-    """Its pins in a table, then its hand, its device and how far it can be trusted, in words."""
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in _words(scan))
-    return Group(_pins(scan), *lines)
-
-
-def _pins(scan: Scan) -> Table:
-    names = [q.name for q in PIN]
-    if scan.device.drive.finger.rigid:
-        names.remove("pin.peak_stretch")
-    if scan.gaps:
-        names.append("pin_gap")
-    title = f"Pins, over {scan.scene.title}"
-    found = new_table(title, ">pin", ">place", *(f">{HEADINGS[name]}" for name in names))
-    found.collapse_padding, found.pad_edge = True, False  # all of it in a hundred columns
-    found.add_row("", "mm", *(QUANTITIES[name].display_unit for name in names), style="dim")
-    for pin in scan.pins:
-        if PINS_HEAD <= pin.number < len(scan.pins) - PINS_TAIL:
-            if pin.number == PINS_HEAD:
-                found.add_row("...", f"{len(scan.pins) - PINS_HEAD - PINS_TAIL} more")
-            continue
-        found.add_row(*_row(scan, pin, names))
-    return found
-
-
-def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
-    x, y = scan.device.array.places[pin.number]
-    values = numbers(pin)
-    beside = [gap.size for gap in scan.gaps if pin.number in (gap.behind, gap.ahead)]
-    values["pin_gap"] = min(beside, default=nan)
-    cells = [
-        f"{values[n]:g}" if QUANTITIES[n].unit == "" else QUANTITIES[n].digits(values[n])
-        for n in names
-    ]
-    return [str(pin.number), f"{_MM * x:g}, {_MM * y:g}", *cells]
-
-
-def _words(scan: Scan) -> list[str]:
-    device, path = scan.device, scan.path
-    worst = max(pin.motion.certificate().worst for pin in scan.pins)
-    doubt = "" if worst <= TRUSTED else " Do not trust this scan."
-    return [
-        path_words(path, device.array.axis),
-        *([path.about] if path.about else []),
-        *gap_words(scan),
-        *device_words(device),
-        f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
-    ]
-
-
-def path_words(path: HandPath, axis: float) -> str:
-    """How long the hand moves, how fast, and how far off the drive axis (rad)."""
-    largest, _ = path.angles(axis)
-    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
-    return (
-        f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
-        f"{degrees(largest):.3g} deg off the drive axis."
-    )
-
-
-def device_words(device: Device) -> list[str]:
-    """What follows from a device's numbers."""
-    length, force = QUANTITIES["displacement"], QUANTITIES["hold_force"]
-    drag = f" Off, the plate drags it {length.text(device.drag)}." if device.drag else ""
-    if device.reach:
-        words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
-    else:
-        held = device.drive.plate.static_friction * device.load(device.magnet.hold_force)
-        words = [
-            f"A magnet does not carry its pin: it holds with {force.text(held)} of friction at "
-            f"most, the finger with {force.text(device.drive.finger.kinetic)}.{drag}"
-        ]
-    words.append(f"The plate: {device.friction.words}.")
-    coil = device.magnet.coil
-    if coil is not None:
-        quantities = [
-            QUANTITIES[f"coil.{name}"].text(getattr(coil, name))
-            for name in ("resistance", "inductance", "current", "power")
-        ]
-        words.append(
-            f"Its coil: {', '.join(quantities)}; on for {coil.duty:.0%} of the time at most, to "
-            f"warm by {coil.temperature_rise:g} K."
-        )
-    return words
-
-
-def meeting_words(device: Device, speed: float) -> list[str]:
-    """Whether neighbouring pins can meet, by where they stand and how far they go at most.
-
-    Args:
-        device: the device.
-        speed: of the hand at most, m/s.
-    """
-    array, length = device.array, QUANTITIES["pin_gap"]
-    neighbours = array.neighbours
-    words = [
-        f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
-        for one, other in array.abreast[:1]
-    ]
-    if not neighbours:
-        return words
-    room, reach = min(pair.clearance for pair in neighbours), device.excursion(speed)
-    at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"
-    gone = f"{at} {length.text(reach)} either way"
-    if room < 0.0:
-        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest.")
-    elif room < 2.0 * reach:
-        words.append(
-            f"Neighbouring pins have {length.text(room)} between them at rest, and can meet: "
-            f"{gone}. A scan says whether they do."
-        )
-    else:
-        words.append(
-            f"Neighbouring pins have {length.text(room)} between them at rest, and cannot meet: "
-            f"{gone}."
-        )
-    return words
-
 
 WIDTH = 100
 """Columns where the output is no terminal."""
@@ -186,6 +48,11 @@ def show(report: RenderableType) -> None:
     console().print(report, crop=False)
 
 
+def whole_lines(lines: Iterable[str]) -> Iterator[Text]:
+    """Lines that the terminal may wrap, so that what is copied of them is whole."""
+    return (Text(line, no_wrap=True, overflow="ignore") for line in lines)
+
+
 def device_report(device: DeviceFile) -> RenderableType:
     """What a device file describes, and what follows from it."""
     drive = device.drive
@@ -207,7 +74,7 @@ def device_report(device: DeviceFile) -> RenderableType:
     elif not drive.plate.frictionless:
         lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
     lines += [device.recording_words] if device.recording_words else []
-    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in lines))
+    return Group(table, *whole_lines(lines))
 
 
 def regime(damping_ratio: float) -> str:
@@ -224,7 +91,7 @@ def motion_report(motion: Motion) -> RenderableType:
     words = [ending(motion), trust(motion)]
     if motion.status:
         words.append(f"The simulation {motion.status.explanation}.")
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in words)
+    lines = whole_lines(words)
     return Group(_phases(motion), _numbers(motion), *lines)
 
 
@@ -340,3 +207,72 @@ def trust(motion: Motion) -> str:
     worst = motion.certificate().worst
     doubt = "" if worst <= TRUSTED else " Do not trust this motion."
     return f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}"
+
+
+def path_words(path: HandPath, axis: float) -> str:
+    """How long the hand moves, how fast, and how far off the drive axis (rad)."""
+    largest, _ = path.angles(axis)
+    speed = QUANTITIES["hand_speed"].text(path.peak_speed)
+    return (
+        f"The hand's path takes {path.end - path.begin:.4g} s, at {speed} at the most, up to "
+        f"{degrees(largest):.3g} deg off the drive axis."
+    )
+
+
+def device_words(device: Device) -> list[str]:
+    """What follows from a device's numbers."""
+    length, force = QUANTITIES["displacement"], QUANTITIES["hold_force"]
+    drag = f" Off, the plate drags it {length.text(device.drag)}." if device.drag else ""
+    if device.reach:
+        words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
+    else:
+        held = device.drive.plate.static_friction * device.load(device.magnet.hold_force)
+        words = [
+            f"A magnet does not carry its pin: it holds with {force.text(held)} of friction at "
+            f"most, the finger with {force.text(device.drive.finger.kinetic)}.{drag}"
+        ]
+    words.append(f"The plate: {device.friction.words}.")
+    coil = device.magnet.coil
+    if coil is not None:
+        quantities = [
+            QUANTITIES[f"coil.{name}"].text(getattr(coil, name))
+            for name in ("resistance", "inductance", "current", "power")
+        ]
+        words.append(
+            f"Its coil: {', '.join(quantities)}; on for {coil.duty:.0%} of the time at most, to "
+            f"warm by {coil.temperature_rise:g} K."
+        )
+    return words
+
+
+def meeting_words(device: Device, speed: float) -> list[str]:
+    """Whether neighbouring pins can meet, by where they stand and how far they go at most.
+
+    Args:
+        device: the device.
+        speed: of the hand at most, m/s.
+    """
+    array, length = device.array, QUANTITIES["pin_gap"]
+    neighbours = array.neighbours
+    words = [
+        f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
+        for one, other in array.abreast[:1]
+    ]
+    if not neighbours:
+        return words
+    room, reach = min(pair.clearance for pair in neighbours), device.excursion(speed)
+    at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"
+    gone = f"{at} {length.text(reach)} either way"
+    if room < 0.0:
+        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest.")
+    elif room < 2.0 * reach:
+        words.append(
+            f"Neighbouring pins have {length.text(room)} between them at rest, and can meet: "
+            f"{gone}. A scan says whether they do."
+        )
+    else:
+        words.append(
+            f"Neighbouring pins have {length.text(room)} between them at rest, and cannot meet: "
+            f"{gone}."
+        )
+    return words

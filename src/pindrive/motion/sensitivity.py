@@ -118,7 +118,7 @@ class Sensitivity(lazy.NotebookHtml):
 
     def plot(self) -> Figure:
         """How far a part of each parameter moves the pin, over time, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.motion_sensitivity:plot_motion_sensitivity", self)
+        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_motion_sensitivity", self)
         return figure
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:

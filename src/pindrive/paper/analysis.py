@@ -7,20 +7,32 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
-from pindrive.paper.exhibit import Exhibit, by_case, page, tidy, trend
+from pindrive.paper.exhibit import Exhibit, by_case, page, trend
 from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
-from pindrive.plot.style import GREY, PALETTE, SMALL
+from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-COLOURS: Final = (PALETTE["curve"], PALETTE["stick"], PALETTE["slip"], PALETTE["gripping"])
+FACTORS: Final = (0.04, 0.16, 0.32)
+"""The damping factors of Figure 4."""
+_FACTORS_LABEL: Final = "the paper's damping factors"
+_BOUNDS: Final[dict[str, tuple[Any, str]]] = {
+    "angle": ("-", "exact"),
+    "printed_bound": ((0, (4, 3)), "bound, as printed"),
+    "right_bound": (":", "bound, right"),
+}
+"""The variables of the first reversal's angle: their dashes and what they are."""
+_WIDTHS: Final = (0.6, 1.1, 1.8)
+"""Of their curves for each damping ratio, points, for print in grey."""
 POINTS: Final = 201
 
 
@@ -108,16 +120,16 @@ def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
             row, ("phase", "amplitude"), (r"$\varphi_0$ (°)", "$X_{m,0}/x_0$"), strict=True
         ):
             scale = 180 / np.pi if name == "phase" else 1.0
-            for value, colour in zip(data[which].values, COLOURS, strict=False):
+            for value, look in zip(data[which].values, CURVES, strict=False):
                 y = scale * data[f"{name}_by_{along}"].sel({which: value})
-                axes.plot(data[along], y, color=colour, label=legend.format(value))
+                case = legend.format(value).replace("= 0\\,x_0", "= 0")
+                axes.plot(data[along], y, **look, label=case)
             axes.set_ylabel(unit)
             axes.set_xlabel(label)
-            tidy(axes)
             axes.set_xlim(0.0, float(data[along].max()))
             axes.set_ylim(0.0, None)
         row[0].set_yticks([0, 45, 90, 135])
-        row[1].legend(frameon=False)
+        row[1].legend()
     return figure
 
 
@@ -191,34 +203,38 @@ def first_reversal() -> Exhibit:
 def _draw_first_reversal(data: xr.Dataset) -> Figure:
     figure = page(75)
     left, right = figure.subplots(1, 2)
-    for ratio, colour in zip(data.ratio.values, COLOURS, strict=False):
-        of, scale = data.sel(ratio=ratio), 1 / np.pi
-        left.plot(of.speed, scale * of.angle, color=colour, label=rf"$\zeta = {ratio:g}$")
-        left.plot(of.speed, scale * of.printed_bound, color=colour, lw=0.7, ls=(0, (4, 3)))
-        left.plot(of.speed, scale * of.right_bound, color=colour, lw=0.7, ls=":")
+    handles: list[Artist] = []
+    for ratio, look, width in zip(data.ratio.values, CURVES, _WIDTHS, strict=False):
+        of, style = data.sel(ratio=ratio), {"color": look["color"], "lw": width}
+        handles.append(Line2D([], [], **style, label=rf"$\zeta = {ratio:g}$"))
+        for name, (dashes, _) in _BOUNDS.items():
+            y = of[name] / np.pi
+            left.plot(of.speed, y, **style, ls=dashes, gid=f"{name} {ratio:g}")
     left.set_ylabel(r"$\omega t_1/\pi$")
     left.set_xlim(0.0, 1.0)
     left.set_ylim(1.0, 1.6)
-    left.legend(frameon=False, loc="lower right")
-    reverses = np.where(data.first_reversal.notnull(), 1.0, np.nan)
-    extent = (0.0, float(data.speed_of_map.max()), 0.0, float(data.ratio_of_map.max()))
-    right.imshow(
-        reverses,
-        origin="lower",
-        extent=extent,
-        aspect="auto",
+    handles += [
+        Line2D([], [], color=GREY, lw=0.7, ls=dashes, label=label)
+        for dashes, label in _BOUNDS.values()
+    ]
+    left.legend(handles=handles, loc="lower right", ncols=2)
+    right.pcolormesh(
+        data.speed_of_map,
+        data.ratio_of_map,
+        np.where(data.first_reversal.notnull(), 1.0, np.nan),
         cmap=ListedColormap([PALETTE["carried"]]),
         alpha=0.55,
-        interpolation="nearest",
+        shading="nearest",
+        rasterized=True,
+        gid="reverses",
     )
-    right.plot(data.speed_of_map, data.limit, color="black")
+    right.plot(data.speed_of_map, data.limit, color="black", gid="limit")
     right.annotate("friction reverses", (0.04, 0.1), fontsize=SMALL)
     right.annotate("it never does", (1.1, 0.4), fontsize=SMALL)
     right.annotate("limit case (26)", (0.3, 0.29), fontsize=SMALL)
     right.set_ylabel(r"damping ratio $\zeta$")
     for axes in (left, right):
         axes.set_xlabel(r"mouse speed $v_p/\omega_0(x_0 - x_d)$")
-        tidy(axes)
     return figure
 
 
@@ -285,19 +301,19 @@ def _draw_steady_and_rest(data: xr.Dataset) -> Figure:
     figure = page(75)
     left, right = figure.subplots(1, 2)
     printed_style: dict[str, Any] = {"color": GREY, "lw": 0.9, "ls": (0, (4, 3))}
-    for speed, colour in zip(data.speed.values, COLOURS, strict=False):
+    for speed, look in zip(data.speed.values, CURVES, strict=False):
         label = rf"$v_p = {speed:g}\,\omega_0x_d$"
-        left.plot(data.place, data.steady_after.sel(speed=speed), color=colour, label=label)
-    left.plot(data.place, data.reversals, color="black", lw=0.7, label="reversals")
+        left.plot(data.place, data.steady_after.sel(speed=speed), **look, label=label)
+    left.plot(data.place, data.reversals, color="black", lw=0.7, label="number of reversals")
     left.plot(data.place, data.printed_steady, **printed_style, label="as printed")
     left.set_xlabel("initial deflection $x_0/x_d$")
     left.set_ylabel("periods until steady")
-    right.plot(data.finger, data.rest_after, color=COLOURS[0], label="exact")
+    right.plot(data.finger, data.rest_after, color=PALETTE["curve"], label="exact")
     right.plot(
         data.finger[::8],
         data.simulated_rest[::8],
         "o",
-        color=COLOURS[1],
+        color=PALETTE["stick"],
         ms=2.0,
         label="simulated",
     )
@@ -307,8 +323,7 @@ def _draw_steady_and_rest(data: xr.Dataset) -> Figure:
     for axes, x in ((left, data.place), (right, data.finger)):
         axes.set_xlim(0.0, float(x.max()))
         axes.set_ylim(0.0, None)
-        axes.legend(frameon=False)
-        tidy(axes)
+        axes.legend()
     return figure
 
 
@@ -338,7 +353,7 @@ def printed_forms() -> Exhibit:
         {name: ("ratio", values, {"units": "1"}) for name, values in off.items()},
         coords={"ratio": _plain(ratios, "ratio")},
     )
-    at = data.interp(ratio=[0.04, 0.16, 0.32])
+    at = data.interp(ratio=[*FACTORS])
     worst = [100 * max(float(at[name][i]) for name in SLIPS) for i in range(3)]
     return Exhibit(
         "printed-forms",
@@ -358,16 +373,16 @@ def printed_forms() -> Exhibit:
 def _draw_printed_forms(data: xr.Dataset) -> Figure:
     figure = page(62)
     axes: Axes = figure.subplots()
-    styles = ("-", "-", (0, (4, 3)), "-")
-    for (name, label), colour, style in zip(SLIPS.items(), COLOURS, styles, strict=True):
-        axes.plot(data.ratio[1:], 100 * data[name][1:], color=colour, ls=style, label=label)
-    for factor in (0.04, 0.16, 0.32):
-        axes.axvline(factor, color=GREY, lw=0.5, ls=":", zorder=0)
+    for (name, label), look in zip(SLIPS.items(), CURVES, strict=False):
+        axes.plot(data.ratio[1:], 100 * data[name][1:], **look, label=label)
+    factors: dict[str, Any] = {"color": GREY, "lw": 0.5, "ls": ":"}
+    for factor in FACTORS:
+        axes.axvline(factor, **factors, zorder=0, gid="factor")
     axes.set_xlabel(r"damping ratio $\zeta$")
     axes.set_ylabel("off by (% of the amplitude)")
     axes.set_yscale("log")
     axes.set_ylim(1e-3, 100)
     axes.set_xlim(0.0, float(data.ratio.max()))
-    axes.legend(frameon=False, loc="lower right", ncols=2)
-    tidy(axes)
+    handles = [*axes.get_lines()[: len(SLIPS)], Line2D([], [], **factors, label=_FACTORS_LABEL)]
+    axes.legend(handles=handles, loc="lower center", ncols=2)
     return figure

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper import as_printed, formulas, population
-from pindrive.paper.claim import TINY, Claim, batch, finger_friction, swing
 from pindrive.paper.exhibit import at_most, share
+from pindrive.paper.population import TINY, Claim, finger_friction, swing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +26,7 @@ def steady_state() -> Iterator[Claim]:
     count, period = len(r.mass), 2 * np.pi / formulas.natural_frequency(r)
     draw = np.random.default_rng(population.SEED + 3)
     start = r.mouse_velocity * draw.choice([0.0, 0.5, 1.0], count)
-    found = batch(r, velocity=start)
+    found = r.batch(velocity=start)
     part = found["ending_amplitude"].to_numpy() / formulas.steady_amplitude(r)
     kept = start == r.mouse_velocity
     yield Claim(
@@ -42,7 +42,7 @@ def steady_state() -> Iterator[Claim]:
         "grazing the plate's velocity.",
     )
     taken = formulas.time_to_steady(r) / period
-    simulated = batch(r)
+    simulated = r.batch()
     agree = np.abs(simulated["ending_steady_since"].to_numpy() / period - taken) < TINY
     of_paper = as_printed.periods_to_steady(r)
     beyond = r.displacement > formulas.friction_offset(r)
@@ -59,7 +59,7 @@ def steady_state() -> Iterator[Claim]:
         f"friction in {share(counts)} with x_0 > x_d: two make about a period.",
     )
     finger = draw.uniform(0.0005, 0.01, count)
-    found = batch(r, finger)
+    found = r.batch(finger_kinetic=finger)
     rest = formulas.periods_to_rest(r, finger)
     of_paper = as_printed.periods_to_rest(r, finger)
     from_release = found["transient_rest_time"].to_numpy() / period
@@ -129,7 +129,7 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "Between two reversals it is (4) to (11), in every damping regime; each reversal is a root "
         "that is found with certainty. `simulate` does just that, without steps or tolerances.",
     )
-    solved = batch(r, finger)["status"].to_numpy() == 0
+    solved = r.batch(finger_kinetic=finger)["status"].to_numpy() == 0
     yield Claim(
         place,
         "The model for the pin drive simulation […] has been developed which allow us to "
@@ -245,7 +245,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
     )
 
     more_damped = facts.r.replace(damping=1.5 * r.damping)
-    depth, deeper = (swing(batch(of, finger)) for of in (more_damped, facts.r))
+    depth, deeper = (swing(of.batch(finger_kinetic=finger)) for of in (more_damped, facts.r))
     yield Claim(
         place,
         "The law of damped pin motion and the impact of drive dynamical parameters on it were "
@@ -287,7 +287,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
     )
 
     faster = r.replace(mouse_velocity=1.1 * r.mouse_velocity)
-    slow, fast = batch(r, finger), batch(faster, finger)
+    slow, fast = r.batch(finger_kinetic=finger), faster.batch(finger_kinetic=finger)
     higher = (
         fast["transient_peak_displacement"].to_numpy()
         >= (1 - TINY) * slow["transient_peak_displacement"].to_numpy()
@@ -385,7 +385,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
     ]
     rate_changes = np.abs(shrink[1] / shrink[0] - 1) > TINY
     near_rest, far_rest = (
-        batch(of, finger + 1e-4)["transient_rest_time"].to_numpy() for of in (r, far)
+        of.batch(finger_kinetic=finger + 1e-4)["transient_rest_time"].to_numpy() for of in (r, far)
     )
     longer = np.abs(far_rest / near_rest - 1) > TINY
     yield Claim(

@@ -8,24 +8,24 @@ from dataclasses import dataclass
 from html import escape
 from io import BytesIO
 from math import ceil, log10
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
 import numpy as np
 from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
-from pindrive.plot.style import SMALL, STYLE
+from pindrive.lazy import stats
+from pindrive.plot.style import STYLE, new_figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import xarray as xr
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-WIDTH: Final = 180 / 25.4
-"""Of every figure, inches."""
+WIDTH: Final = 180.0
+"""Of every figure, mm."""
 DPI: Final = 160
 
 
@@ -55,6 +55,8 @@ class Exhibit:
         found = {}
         with matplotlib.style.context(STYLE, after_reset=True):
             figure = self.draw(self.data)
+            for artist in figure.findobj():
+                artist.set_gid(None)  # what several artists share is no id of SVG
             for format, about in metadata.items():
                 file = BytesIO()
                 figure.savefig(file, format=format, metadata=about, dpi=DPI)
@@ -86,16 +88,9 @@ def summary(data: xr.Dataset) -> dict[str, list[float]]:
     return found
 
 
-def page(height: float, **arguments: Any) -> Figure:
+def page(height: float) -> Figure:
     """An empty figure as wide as a page and `height` mm high."""
-    return Figure(figsize=(WIDTH, height / 25.4), layout="constrained", **arguments)
-
-
-def tidy(axes: Axes, title: str = "") -> None:
-    """Small ticks, and a title that stands at the left."""
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
-    if title:
-        axes.set_title(title, loc="left", fontsize=8.0)
+    return new_figure(WIDTH, height)
 
 
 def trend(values: ArrayLike) -> str:
@@ -106,18 +101,12 @@ def trend(values: ArrayLike) -> str:
         return "rises throughout"
     if (steps <= 0.0).all():
         return "falls throughout"
-    rank = rank_correlation(y)
+    rank = float(stats.spearmanr(np.arange(len(y)), y).statistic)
     if abs(rank) < 0.5:
         return "goes up and down"
     return f"{'rises' if rank > 0 else 'falls'} on the whole (rank correlation {rank:.2f})".replace(
         "-", "−"
     )
-
-
-def rank_correlation(values: ArrayLike) -> float:
-    """Spearman's, of values against their order."""
-    ranks = np.argsort(np.argsort(np.asarray(values)))
-    return float(np.corrcoef(ranks, np.arange(len(ranks)))[0, 1])
 
 
 def listed(words: list[str]) -> str:

@@ -7,26 +7,33 @@ numbers, and so every answer is a function of four numbers.
 from __future__ import annotations
 
 from math import sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
-from pindrive.paper.exhibit import Exhibit, at_most, page, tidy, trend
+from pindrive.paper.exhibit import Exhibit, at_most, page, trend
 from pindrive.paper.population import SEED
 from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
-from pindrive.plot.style import GREY, SMALL
+from pindrive.plot.contours import MAP, draw_contours, jump_key
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
+    from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 POINTS: Final = 121
+BASELINE: Final[dict[str, Any]] = {
+    **{"ls": "none", "marker": "o", "color": "white", "mec": "black", "mew": 0.6, "ms": 4.0},
+    **{"label": "the baseline", "gid": "baseline"},
+}
 
 
 class Group(NamedTuple):
@@ -131,7 +138,9 @@ def time_and_displacement() -> tuple[Exhibit, Exhibit]:
         "maps-of-time",
         "The time of the transitional period over two parameters at a time",
         "Settling time in undamped periods 2π/ω_0. The groups not on the axes are at the baseline, "
-        f"the dot: {at}. The steps are half swings more or fewer before rest.",
+        f"the dot: {at}. The thick lines are jumps, "
+        "where the pin makes one half swing more or less before rest; contours end there, where "
+        "they would pile up.",
         _joined({f"{a}_{u}": planes[f"{a}_{u}"] for a, u in TIME_MAPS}, "periods"),
         _draw_time,
         (
@@ -219,58 +228,53 @@ def _checks() -> tuple[float, float]:
 
 
 def _draw_map(
-    axes: Axes, data: xr.Dataset, across: str, up: str, name: str, levels: list[float]
-) -> object:
+    axes: Axes, data: xr.Dataset, across: str, up: str, name: str, levels: Sequence[float]
+) -> None:
+    """One map with its contours."""
     key = f"{across}_{up}"
     values = data[f"{key}_{name}"].values
+    x, y = (data[f"{key}_{n}"].values for n in (across, up))
     low, high = levels[0], levels[-1]
-    x, y = (np.linspace(GROUPS[n].least, GROUPS[n].most, POINTS) for n in (across, up))
-    image = axes.imshow(
-        values,
-        origin="lower",
-        extent=(x[0], x[-1], y[0], y[-1]),
-        aspect="auto",
-        cmap="viridis",
-        norm=LogNorm(low, high) if name == "periods" else Normalize(low, high),
-        interpolation="nearest",
+    norm = LogNorm(low, high) if name == "periods" else Normalize(low, high)
+    axes.pcolormesh(
+        x, y, values, cmap=MAP, norm=norm, shading="nearest", rasterized=True, gid="map"
     )
-    if name == "peak":
-        lines = axes.contour(x, y, values, levels=levels, colors="white", linewidths=0.5)
-        axes.clabel(lines, fontsize=SMALL - 1, fmt="%g")
-    point = GROUPS[across].baseline, GROUPS[up].baseline
-    axes.plot(*point, "o", color="white", mec="black", mew=0.6, ms=4)
-    tidy(axes)
+    draw_contours(axes, x, y, values, levels[1:], norm)
+    axes.plot(GROUPS[across].baseline, GROUPS[up].baseline, **BASELINE)
     axes.set_xlabel(f"{MEANING[across]} ${GROUPS[across].symbol}$")
     axes.set_ylabel(f"{MEANING[up]} ${GROUPS[up].symbol}$")
-    return image
+
+
+def _draw_scale(figure: Figure, panels: NDArray[Any], label: str, extend: str) -> Colorbar:
+    """The scale of colours of all panels, and what the dot and the lines mean."""
+    mesh: Any = panels.flat[0].collections[0]
+    bar = figure.colorbar(mesh, ax=panels, extend=extend, shrink=0.8, pad=0.02)
+    bar.set_label(label)
+    bar.outline.set_linewidth(0.6)
+    return bar
 
 
 def _draw_time(data: xr.Dataset) -> Figure:
-    figure = page(125)
+    figure = page(130)
     panels = figure.subplots(2, 2)
-    images = [
-        _draw_map(axes, data, across, up, "periods", [0.25, 8.0])
-        for axes, (across, up) in zip(panels.flat, TIME_MAPS, strict=True)
-    ]
-    bar = figure.colorbar(images[0], ax=panels, extend="both", shrink=0.6, pad=0.02)  # type: ignore[arg-type]
-    bar.set_label(r"settling time $\omega_0 t_s/2\pi$ (periods)")
+    for axes, (across, up) in zip(panels.flat, TIME_MAPS, strict=True):
+        _draw_map(axes, data, across, up, "periods", [0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 8.0])
+    label = r"settling time $\omega_0 t_s/2\pi$ (periods)"
+    bar = _draw_scale(figure, panels, label, "both")
     bar.set_ticks([0.25, 0.5, 1, 2, 4, 8], labels=["¼", "½", "1", "2", "4", "8"])
     bar.ax.minorticks_off()
-    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
-    bar.outline.set_linewidth(0.6)
+    handles = [Line2D([], [], **BASELINE), *jump_key(figure)]
+    figure.legend(handles=handles, loc="outside upper right", ncols=2)
     return figure
 
 
 def _draw_displacement(data: xr.Dataset) -> Figure:
-    figure = page(65)
+    figure = page(70)
     panels = figure.subplots(1, 3)
-    levels = [1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2]
-    images = [
+    levels = [1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4]
+    for axes, (across, up) in zip(panels, DISPLACEMENT_MAPS, strict=True):
         _draw_map(axes, data, across, up, "peak", levels)
-        for axes, (across, up) in zip(panels, DISPLACEMENT_MAPS, strict=True)
-    ]
-    bar = figure.colorbar(images[0], ax=panels, shrink=0.8, pad=0.02)  # type: ignore[arg-type]
-    bar.set_label(r"$x_{m,a}/x_0$")
-    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5, color=GREY)
-    bar.outline.set_linewidth(0.6)
+    _draw_scale(figure, panels, "$x_{m,a}/x_0$", "neither")
+    handles = [Line2D([], [], **BASELINE)]
+    figure.legend(handles=handles, loc="outside upper right")
     return figure

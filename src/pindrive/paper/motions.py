@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch
 
 from pindrive import Profile, simulate
 from pindrive.paper import baseline
-from pindrive.paper.exhibit import Exhibit, page, tidy
-from pindrive.plot.style import GREY, PALETTE, SMALL
+from pindrive.paper.exhibit import Exhibit, page
+from pindrive.plot.style import GREY, HALO, PALETTE, SMALL
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -48,7 +50,13 @@ def _shade(axes: Axes, t: NDArray[np.float64], mode: NDArray[np.int8]) -> None:
         if mode[first]:
             name = _STUCK[mode[first]]
             axes.axvspan(
-                t[first], t[last], color=PALETTE[name], alpha=_TINT[name], lw=0.0, zorder=0.5
+                t[first],
+                t[last],
+                color=PALETTE[name],
+                alpha=_TINT[name],
+                lw=0.0,
+                zorder=0.5,
+                gid=name,
             )
 
 
@@ -140,12 +148,16 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         for axes, factor, letter in zip(column, data.factor.values, "abc", strict=True):
             of = data.sel(reading=reading, factor=factor)
             unit = "ζ = {:g}" if reading == "ratio" else "b = {:g} N·s/m, ζ = {:.2g}"
-            tidy(axes, f"({letter})  {unit.format(factor, float(of.damping_ratio))}")
+            axes.set_title(
+                f"({letter})  {unit.format(factor, float(of.damping_ratio))}",
+                loc="left",
+                fontsize=8.0,
+            )
             axes.axhline(0.0, color="0.8", lw=0.5, zorder=0)
             _shade(axes, t, of["mode"].values)
-            axes.plot(t, 1e3 * of.displacement, color=PALETTE["curve"])
+            axes.plot(t, 1e3 * of.displacement, color=PALETTE["curve"], gid="curve")
             settled = 1e3 * float(of.settling_time)
-            axes.axvline(settled, color=GREY, lw=0.7, zorder=1)
+            axes.axvline(settled, color=GREY, lw=0.7, zorder=1, gid="settled")
             axes.annotate(
                 f"{settled:.0f} ms",
                 (settled, 1.0),
@@ -154,20 +166,22 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
                 textcoords="offset points",
                 va="top",
                 fontsize=SMALL,
+                path_effects=HALO,
             )
         column[-1].set_xlabel("time after release (ms)")
     panels[0, 0].set_xlim(t[0], t[-1])
     figure.supylabel("displacement $x$ (mm)", fontsize=8.0)
-    _key(figure)
+    _key(figure, Line2D([], [], color=GREY, lw=0.7, label="settled: within 5 % from then on"))
     return figure
 
 
-def _key(figure: Figure) -> None:
+def _key(figure: Figure, *more: Artist) -> None:
     handles = [
+        *more,
         Patch(color=PALETTE["carried"], alpha=0.55, lw=0.0, label="carried by the plate"),
         Patch(color=PALETTE["resting"], alpha=0.22, lw=0.0, label="at rest on the finger"),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=2, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
 
 
 # ---- Figure 2 ------------------------------------------------------------------------------------
@@ -226,15 +240,14 @@ def velocity() -> Exhibit:
 def _draw_velocity(data: xr.Dataset) -> Figure:
     figure = page(70)
     axes = figure.subplots()
-    tidy(axes)
     t, v = 1e3 * data.time.values, 1e3 * data.velocity.values
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0)
     level, released = 1e3 * float(data.plate_velocity), 1e3 * float(data.released)
-    axes.axhline(level, color="black", lw=0.8, ls=(0, (5, 3)), zorder=1)
+    axes.axhline(level, color="black", lw=0.8, ls=(0, (5, 3)), zorder=1, gid="plate")
     _shade(axes, t, data["mode"].values)
-    axes.plot(t, v, color=PALETTE["curve"])
+    axes.plot(t, v, color=PALETTE["curve"], gid="curve")
     lowest = int(np.argmin(v))
-    axes.plot(t[lowest], v[lowest], "o", color="black", ms=3.5)
+    axes.plot(t[lowest], v[lowest], "o", color="black", ms=3.5, gid="lowest")
     small: dict[str, Any] = {"textcoords": "offset points", "fontsize": SMALL}
     axes.annotate("$v_{m,b}$", (t[lowest], v[lowest]), (6, -1), va="center", **small)
     axes.annotate(
@@ -246,7 +259,7 @@ def _draw_velocity(data: xr.Dataset) -> Figure:
         **small,
     )
     axes.annotate("released", (released, level), (4, 4), **small)
-    axes.plot(released, level, "^", color=PALETTE["slip"], mfc="white", mew=0.9)
+    axes.plot(released, level, "^", color=PALETTE["slip"], mfc="white", mew=0.9, gid="released")
     axes.set_xlim(t[0], t[-1])
     axes.set_ylim(1.15 * v.min(), 1.6 * v.max())
     axes.set_xlabel("time since the magnet holds (ms)")

@@ -17,17 +17,16 @@ import numpy as np
 import xarray as xr
 
 from pindrive.paper import analysis, baseline, equations, maps, motions, population, sensitivity
-from pindrive.paper.claim import Claim
 from pindrive.paper.claims import claims
 from pindrive.paper.exhibit import at_most, html, listed, markdown
-from pindrive.paper.population import Facts
+from pindrive.paper.population import Claim, Facts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from pindrive.paper.claim import Claim
     from pindrive.paper.equations import Row
     from pindrive.paper.exhibit import Exhibit
+    from pindrive.paper.population import Claim
 
 
 T = TypeVar("T")

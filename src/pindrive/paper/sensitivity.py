@@ -5,7 +5,7 @@ One parameter at a time, about the baseline: six curves each.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline
-from pindrive.paper.exhibit import Exhibit, listed, page, tidy, trend
-from pindrive.plot.style import GREY, PALETTE, SMALL
+from pindrive.paper.exhibit import Exhibit, listed, page, trend
+from pindrive.plot.style import GREY, PALETTE
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
 
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 POINTS: Final = 801
+BASELINE: Final[dict[str, Any]] = {
+    **{"ls": "none", "marker": "o", "color": "black", "ms": 3.0},
+    **{"label": "the baseline", "gid": "baseline"},
+}
 
 
 class Parameter(NamedTuple):
@@ -150,7 +154,6 @@ def _panels(height: float, draw: Callable[[Axes, Parameter], None], label: str) 
     figure = page(height)
     panels = figure.subplots(2, 3).flat
     for i, (axes, p) in enumerate(zip(panels, PARAMETERS, strict=True)):
-        tidy(axes)
         draw(axes, p)
         axes.set_xlabel(f"{p.name} ${p.symbol}$ ({p.unit})")
         axes.set_xlim(min(0.0, p.scale * p.least), p.scale * p.most)
@@ -163,8 +166,8 @@ def _draw_settling(data: xr.Dataset) -> Figure:
     def draw(axes: Axes, p: Parameter) -> None:
         of = data.sel(parameter=p.argument)
         x = p.scale * of.value.values
-        _jumping(axes, x, 1e3 * of.rest_time.values, PALETTE["resting"])
-        _jumping(axes, x, 1e3 * of.settling_time.values, PALETTE["curve"])
+        _jumping(axes, x, 1e3 * of.rest_time.values, PALETTE["resting"], "rest")
+        _jumping(axes, x, 1e3 * of.settling_time.values, PALETTE["curve"], "settled")
         _mark_baseline(axes, p, of.value.values, 1e3 * of.settling_time.values)
 
     figure = _panels(95, draw, "time (ms)")
@@ -173,8 +176,9 @@ def _draw_settling(data: xr.Dataset) -> Figure:
     handles = [
         Line2D([], [], color=PALETTE["curve"], label="settled within 5 %"),
         Line2D([], [], color=PALETTE["resting"], label="at rest"),
+        Line2D([], [], **BASELINE),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=2, frameon=False)
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
     return figure
 
 
@@ -185,27 +189,33 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         of = data.sel(parameter=p.argument)
         x, y = p.scale * of.value.values, 1e3 * of.peak_displacement.values
         start = x if p.argument == "displacement" else np.full_like(x, 1e3 * _X0)
-        axes.plot(x, start, color=GREY, lw=0.7, ls=":")
-        axes.plot(x, y, color=PALETTE["curve"])
+        axes.plot(x, start, **_START, gid="start")
+        axes.plot(x, y, color=PALETTE["curve"], gid="peak")
         _mark_baseline(axes, p, of.value.values, y)
         if p.argument not in ("mouse_velocity", "displacement"):
             axes.set_ylim(low, high)
 
     figure = _panels(90, draw, "$x_{m,a}$ (mm)")
-    figure.axes[0].annotate(
-        "$x_0$", (100.0, 2.0), (-2, 2), textcoords="offset points", ha="right", fontsize=SMALL
-    )
+    handles = [
+        Line2D([], [], color=PALETTE["curve"], label="$x_{m,a}$"),
+        Line2D([], [], **_START, label="initial deflection $x_0$"),
+        Line2D([], [], **BASELINE),
+    ]
+    figure.legend(handles=handles, loc="outside upper right", ncols=3)
     return figure
 
 
 _X0: Final = baseline.VALUES["displacement"]
+_START: Final[dict[str, Any]] = {"color": GREY, "lw": 0.7, "ls": ":"}
 
 
-def _jumping(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+def _jumping(
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str, gid: str
+) -> None:
     """A curve with jumps: thin where it jumps, at full width between."""
     jumps = np.flatnonzero(np.abs(np.diff(y)) > 0.02 * y.max())
     broken = np.insert(y, jumps + 1, np.nan)
-    axes.plot(np.insert(x, jumps + 1, np.nan), broken, color=colour)
+    axes.plot(np.insert(x, jumps + 1, np.nan), broken, color=colour, gid=gid)
     for i in jumps:
         axes.plot(x[i : i + 2], y[i : i + 2], color=colour, lw=0.4)
 
@@ -215,4 +225,4 @@ def _mark_baseline(
 ) -> None:
     at = baseline.value(p.argument)
     height = float(np.interp(at, values, y))
-    axes.plot(p.scale * at, height, "o", color="black", ms=3.0, zorder=4)
+    axes.plot(p.scale * at, height, **BASELINE, zorder=4)

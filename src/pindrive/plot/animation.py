@@ -354,7 +354,6 @@ def _strip(judgement: Judgement, axes: Axes, times: NDArray[np.float64], slow: f
     axes.margins(y=0.1)
     axes.set_xlabel("time (s)", fontsize=SMALL)
     axes.set_ylabel(f"pin {pin.number} (mm)", fontsize=SMALL)
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     axes.set_title(
         f"shaded: magnet on; {slow:g} times slower than the hand",
         loc="right",

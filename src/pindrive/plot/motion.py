@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from io import BytesIO
 from itertools import groupby, product
 from math import inf, isfinite, isnan
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -24,13 +22,14 @@ from pindrive.plot.style import (
     CONTACTS,
     EVENT_SHAPE,
     GREY,
+    HALO,
     PALETTE,
     SMALL,
     STYLE,
     Figure,
     event_marker,
     event_name,
-    save,
+    new_figure,
 )
 from pindrive.plot.trace import MM, Trace
 from pindrive.quantities.table import QUANTITIES, digits, duration, short
@@ -41,13 +40,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.motion.motion import Motion
-
-
-def write_figure(motion: Motion, path: Path, format: str) -> None:
-    """Draw the motion as "png", "svg" or "pdf"."""
-    file = BytesIO()
-    save(plot_motion(motion), file, format)
-    path.write_bytes(file.getvalue())
 
 
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
@@ -72,7 +64,7 @@ def plot_motion(motion: Motion) -> Figure:
         trace = Trace.of(motion)
         skin = not motion.drive.finger.rigid
         height = 150 if skin else 125
-        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(180, height)
         columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
         rows = columns[0].subgridspec(3 + skin, 1)
         x = figure.add_subplot(rows[0], label="x")
@@ -88,9 +80,7 @@ def plot_motion(motion: Motion) -> Figure:
         _draw_portrait(motion, trace, portrait)
         _draw_key(motion, trace, key)
         figure.align_ylabels((x, v, a, s) if s else (x, v, a))
-        figure.suptitle(
-            f"{outcome(motion)}\n{parameters(motion)}", x=0.008, ha="left", fontsize=8.0
-        )
+        figure.head(f"{outcome(motion)}\n{parameters(motion)}")
     return figure
 
 
@@ -104,7 +94,7 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
         for mode in ("carried", "resting"):
             _shade(axes, trace.stuck(mode), mode, _TINT[mode])
         axes.set_ylabel(label)
-        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is a)
+        axes.tick_params(labelbottom=axes is a)
     x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
     v.plot(trace.t, trace.v, color=PALETTE["curve"], gid="curve")
     a.plot(trace.broken(trace.t), trace.broken(trace.a), color=PALETTE["curve"], gid="curve")
@@ -135,7 +125,6 @@ def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
     axes.set_xlabel(above.get_xlabel())
     above.set_xlabel("")
     above.tick_params(labelbottom=False)
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
@@ -174,7 +163,6 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
     axes.set_ylabel("velocity $v$ (mm/s)")
     axes.set_xlim(_room(trace.x, margin=0.1))
     axes.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -210,7 +198,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
         label = r"$x_\mathrm{end}$, about which it oscillates"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
-    axes.legend(handles=handles, loc="upper left", frameon=False, borderaxespad=0.0)
+    axes.legend(handles=handles, loc="upper left", borderaxespad=0.0)
 
 
 # ---- the signs -----------------------------------------------------------------------------------
@@ -294,6 +282,7 @@ def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
             textcoords="offset points",
             ha="right" if right else "left",
             fontsize=SMALL,
+            path_effects=HALO,
         )
 
 
@@ -344,6 +333,7 @@ def _mark_extremes(motion: Motion, trace: Trace, axes: Axes) -> None:
             ha="right" if late else "left",
             va="bottom" if up else "top",
             fontsize=SMALL,
+            path_effects=HALO,
         )
 
 

@@ -17,6 +17,7 @@ from pindrive.plot.style import (
     EVENT_SHAPE,
     GREY,
     PALETTE,
+    PRINTED,
     SMALL,
     event_marker,
     event_name,
@@ -112,7 +113,7 @@ def draw_history(
     ms = MS * (t - chosen.begin)
     for axes in (seen, pull, x, force):
         _draw_bands(judgement, chosen, axes)
-        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, labelbottom=axes is force)
+        axes.tick_params(labelbottom=axes is force)
     _draw_seen(judgement, chosen, seen, t, ms)
     pull.plot(ms, scan.device.magnet.pull(pin.current(t)), color=PALETTE["curve"], gid="pull")
     pull.set_ylabel("pull (N)")
@@ -152,8 +153,7 @@ def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
         spans,
         (0.0, 1.0),
         transform=axes.get_xaxis_transform(),
-        color="0.86",
-        lw=0.0,
+        **PRINTED,
         zorder=0,
         gid="printed",
     )
@@ -195,7 +195,7 @@ def _draw_motion(
         (0.0, 1.0),
         transform=axes.get_xaxis_transform(),
         color=PALETTE["carried"],
-        alpha=0.4,
+        alpha=0.6,
         lw=0.0,
         zorder=0.1,
         gid="carried",
@@ -234,15 +234,14 @@ def _draw_force(
         other = axes.twinx()
         other.set_ylim(*(1e3 / finger.stiffness * force for force in axes.get_ylim()))
         other.set_ylabel("stretch (µm)")
-        other.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         other.spines["right"].set_visible(True)
 
 
 def _key(signs: list[tuple[str, str]]) -> list[Artist]:
     return [
-        Patch(color="0.86", lw=0.0, label="printed line under the spot"),
+        Patch(**PRINTED, label="printed line under the spot"),
         Line2D([], [], color=GREY, lw=0.6, ls=":", label="threshold of the control block"),
         Patch(color=PALETTE["stick"], lw=0.0, label="magnet switched on"),
-        Patch(color=PALETTE["carried"], alpha=0.4, lw=0.0, label="carried by the plate"),
+        Patch(color=PALETTE["carried"], alpha=0.6, lw=0.0, label="carried by the plate"),
         *(Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs),
     ]

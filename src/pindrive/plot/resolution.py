@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from pindrive.evaluation.resolution import criterion
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import GREY, HANDS, PALETTE, STYLE, Figure, new_figure, plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 MM: Final = 1e3
 CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}
-HANDS: Final = (20.0, 100.0)
+STUDIED: Final = (20.0, 100.0)
 """Hand speeds in finger studies, mm/s (arXiv 2505.11162)."""
 
 
@@ -40,17 +40,16 @@ def plot_speeds(
         device: its name, for the title.
     """
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure = Figure(figsize=(120 / 25.4, 105 / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(120, 105)
         axes = figure.add_subplot(label="speed")
         ordered = sorted(limits, key=lambda limit: limit.pitch)
         pitch = np.array([limit.pitch for limit in ordered]) * MM
         apart = np.array([limit.speed for limit in ordered]) * MM
         settled = np.array([limit.settled_speed for limit in ordered]) * MM
-        top = 1.12 * float(np.nanmax([*apart, HANDS[1]]))
+        top = 1.12 * float(np.nanmax([*apart, STUDIED[1]]))
         blue = PALETTE["curve"]
         slowest = np.array([_from(limit) for limit in ordered]) * MM
-        hands: dict[str, Any] = {"color": PALETTE["resting"], "alpha": 0.2, "lw": 0.0}
-        axes.axhspan(*HANDS, **hands, zorder=0, gid="hands")
+        axes.axhspan(*STUDIED, **HANDS, zorder=0, gid="hands")
         axes.fill_between(pitch, slowest, apart, alpha=0.12, color=blue, lw=0.0, gid="distinct")
         axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0, gid="settled")
         handles: list[Artist] = []
@@ -68,16 +67,15 @@ def plot_speeds(
             style: dict[str, Any] = {"color": blue, "lw": 0.7, "ls": ":"}
             handles += axes.plot(pitch, slowest, **style, label=said, gid="slowest")
         handles += _bands(axes, ordered)[:1]
-        handles.append(Patch(**hands, label="hands in finger studies"))
-        figure.legend(handles=handles, loc="outside lower left", ncols=2, frameon=False)
+        handles.append(Patch(**HANDS, label="hands in finger studies"))
+        figure.legend(handles=handles, loc="outside lower left", ncols=2)
         axes.set_xlim(0.0, 1.04 * pitch.max())
         axes.set_ylim(0.0, top)
         axes.set_xlabel("pitch of the lines (mm)")
         axes.set_ylabel("hand speed (mm/s)")
-        axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         title = f"How fast the hand may move{f': {device}' if device else ''}"
         words = fill(criterion(part, criteria.direction), 78)
-        figure.suptitle(f"{plain(title, 66)}\n{words}", x=0.012, ha="left", fontsize=8.0)
+        figure.head(f"{plain(title, 66)}\n{words}")
     return figure
 
 

@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.quantities.quantity import counted
-from pindrive.study.design import variable
-from pindrive.study.slices import QUANTITY, axis_label, symbol
+from pindrive.study.slices import QUANTITY, axis_label, ranges
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,8 +37,7 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
         count = len(found.values)
         columns = min(count, 2)
         rows = -(-count // columns)
-        size = (180 / 25.4, (30 + 58 * rows) / 25.4)
-        figure = Figure(figsize=size, dpi=250, layout="constrained")
+        figure = new_figure(180, 30 + 58 * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         for axes, number in zip(grid.flat, found.values, strict=False):
             _draw(axes, found, number)
@@ -47,10 +45,10 @@ def plot_robustness(found: Robustness, name: str) -> Figure:
             axes.set_axis_off()
         for axes in grid[:, 0]:
             axes.set_ylabel(f"designs of {found.designs:,}".replace(",", " "))
-        figure.legend(handles=_key(found), loc="outside lower left", ncols=4, frameon=False)
+        figure.legend(handles=_key(found), loc="outside lower left", ncols=4)
         title = plain(f"{name}: {_outcome(found)}", _WIDTH)
-        lines = filter(None, (title, _left_out(found), _scatter(found)))
-        figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=8.0)
+        lines = filter(None, (title, _left_out(found), ranges(found.ranges.scatter)))
+        figure.head("\n".join(lines))
     return figure
 
 
@@ -117,7 +115,6 @@ def _draw(axes: Axes, found: Robustness, number: str) -> None:
         )
     axes.set_ylim(0.0, top)
     axes.set_xlabel(axis_label(number))
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _outcome(found: Robustness) -> str:
@@ -138,20 +135,6 @@ def _left_out(found: Robustness) -> str:
         return ""
     drawn = counted(found.draws, "draw")
     return f"left out, as contradictory: {100.0 * found.refused / found.draws:.2g} % of {drawn}"
-
-
-def _scatter(found: Robustness) -> str:
-    """What scatters, and how."""
-    said = []
-    for key, scatter in found.ranges.scatter.items():
-        quantity = QUANTITY[variable(key)]
-        low, high = (f"{quantity.display_scale * x:.3g}" for x in scatter.span)
-        around = "" if scatter.kind in ("uniform", "loguniform") else " (3σ)"
-        said.append(
-            f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip() + around
-        )
-    lines = [", ".join(said[i : i + 5]) for i in range(0, len(said), 5)]
-    return ",\n".join(lines)
 
 
 def _key(found: Robustness) -> list[Line2D | Patch]:

@@ -14,7 +14,7 @@ from pindrive.device.dataset import gap_words
 from pindrive.evaluation.line_crossings import turnings
 from pindrive.evaluation.tactile_image import Painting, paint, view
 from pindrive.plot.pin import Moment, draw_history, moment
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import QUANTITIES
 
@@ -82,7 +82,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         scale = min(scale, TALLEST / (bottom - top))
         page = scale * (bottom - top) + 9.0
         pages = (2.0 * page if wide else page) + 6.0
-        figure = Figure(figsize=(WIDTH / 25.4, pages / 25.4), dpi=250)
+        figure = new_figure(WIDTH, pages)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
@@ -111,7 +111,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         lines = -(-len(handles) // KEY_COLUMNS)
         figure.set_figheight((pages + 106.0 + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
-        figure.suptitle(_title(judgement), x=0.008, ha="left", fontsize=8.0)
+        figure.head(_title(judgement))
     return figure
 
 
@@ -129,7 +129,7 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
     with matplotlib.style.context(STYLE, after_reset=True):
         side = (WIDTH - 26.0) / (len(judgements) + 1)
         height = min(side * (bottom - top) / (right - left), TALLEST) + 33.0
-        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4), dpi=250)
+        figure = new_figure(WIDTH, height)
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
@@ -169,7 +169,6 @@ def _draw_key(figure: Figure, handles: list[Artist], columns: int) -> None:
         handles=handles,
         loc="outside lower center",
         ncols=columns,
-        frameon=False,
         handlelength=1.4,
         columnspacing=1.4,
     )
@@ -274,7 +273,6 @@ def _size(painting: Painting) -> float:
 def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
     bar = figure.colorbar(image, cax=place, extend="both")
     bar.set_label("deflection, forward (mm)", fontsize=SMALL)
-    bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
 
 
 def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
@@ -290,7 +288,6 @@ def _frame(axes: Axes, title: str) -> None:
     axes.set_xlabel("across the page (mm)")
     axes.set_ylabel("down (mm)")
     axes.set_aspect("equal")
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     for spine in axes.spines.values():
         spine.set_visible(True)
         spine.set_linewidth(0.4)

@@ -1,7 +1,8 @@
-"""Which parameter matters, as a chart: numbers down, keys across, near and over the ranges."""
+"""Which parameter matters, near and over the ranges; the derivatives of a motion over time."""
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -10,18 +11,20 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.lazy import matplotlib
+from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.design import variable
-from pindrive.study.distributions import as_distribution
-from pindrive.study.slices import QUANTITY, elasticity, symbol, words
+from pindrive.study.slices import elasticity, ranges, symbol, words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
 
+    from pindrive.motion.sensitivity import Sensitivity
     from pindrive.study.local_sensitivity import Elasticities
     from pindrive.study.sensitivity import Influence
+
 
 _SIGNED: Final = LinearSegmentedColormap.from_list(
     "signed", [PALETTE["stick"], "#F6C6A8", "white", "#A9CFE8", PALETTE["curve"]]
@@ -45,7 +48,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
     """Draw elasticities as a table of colours, and Sobol' indices as bars beside them.
 
     Args:
-        found: what `influence` found.
+        found: what `sobol` found.
         name: of the study, for the title.
     """
     numbers = [
@@ -55,7 +58,7 @@ def plot_influence(found: Influence, name: str) -> Figure:
     ]
     with matplotlib.style.context(STYLE, after_reset=True):
         height = 38 + 5.6 * len(numbers)
-        figure = Figure(figsize=(180 / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(180, height)
         if found.near:
             near, over = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.25))
             draw_elasticities(near, found.near, numbers)
@@ -75,12 +78,9 @@ def plot_influence(found: Influence, name: str) -> Figure:
             Patch(color=_TOTAL, label="with interactions"),
             Line2D([], [], color="black", lw=0.6, label="95 % interval of the latter"),
         ]
-        figure.legend(handles=bars, loc="outside lower right", ncols=3, frameon=False)
-        figure.suptitle(
-            f"{plain(f'{name}: which parameter matters', _WIDTH)}\n{_ranges(found)}",
-            x=0.008,
-            ha="left",
-            fontsize=8.0,
+        figure.legend(handles=bars, loc="outside lower right", ncols=3)
+        figure.head(
+            f"{plain(f'{name}: which parameter matters', _WIDTH)}\n{ranges(found.ranges.scatter)}"
         )
     return figure
 
@@ -88,17 +88,6 @@ def plot_influence(found: Influence, name: str) -> Figure:
 def _known(found: Influence, number: str) -> bool:
     near = found.near.table[number] if found.near else {}
     return any(not np.isnan(x) for x in near.values())
-
-
-def _ranges(found: Influence) -> str:
-    """What varied: "m 9.4 … 10.6 g, k …"."""
-    said = []
-    for key, axis in found.ranges.scatter.items():
-        quantity = QUANTITY[variable(key)]
-        low, high = (f"{quantity.display_scale * x:.3g}" for x in as_distribution(axis).span)
-        said.append(f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip())
-    lines = [", ".join(said[i : i + 5]) for i in range(0, len(said), 5)]
-    return ",\n".join(lines)
 
 
 def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) -> None:
@@ -121,8 +110,8 @@ def draw_elasticities(axes: Axes, near: Elasticities, numbers: Sequence[str]) ->
             fontsize=5.8,
             color="white" if dark else "0.55" if text in ("-", "·") else "black",
         )
-    axes.set_title("near: % of change for 1 % more of", fontsize=8.0)
-    signs = f"blue: it grows, orange: it falls; ·: below 0.005, {MINUS}: none"
+    axes.set_title("near: % of change for 1 % more of")
+    signs = f"blue: it grows, orange: it falls\n·: below 0.005, {MINUS}: none"
     axes.set_xlabel(signs, fontsize=SMALL, color=GREY)
 
 
@@ -146,7 +135,7 @@ def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
         if not found.over[number].spread > 0.0:
             words_for = "constant" if found.over[number].spread == 0.0 else "does not exist"
             axes.text(-0.4, row, words_for, va="center", fontsize=5.8, color="0.55")
-    axes.set_title("over the ranges: part of the variance due to", fontsize=8.0)
+    axes.set_title("over the ranges: part of the variance due to")
     parts = {0.0: "0", 0.5: "½", 1.0: "1"} if len(found.keys) <= _FEW else {0.0: "0", 1.0: "1"}
     scale = axes.secondary_xaxis("bottom")
     scale.set_label("scale")
@@ -157,3 +146,59 @@ def _draw_over(axes: Axes, found: Influence, numbers: Sequence[str]) -> None:
     )
     scale.tick_params(labelsize=5.8, length=2.0, width=0.5)
     scale.spines["bottom"].set_visible(False)
+
+
+def plot_elasticities(found: Elasticities) -> Figure:
+    """Draw the elasticity of each number that has one, to each key.
+
+    Args:
+        found: what `local_sensitivity` found.
+
+    Returns:
+        A figure that belongs to nobody else.
+    """
+    numbers = [n for n, row in found.table.items() if not np.isnan([*row.values()]).all()]
+    with matplotlib.style.context(STYLE, after_reset=True):
+        figure = new_figure(45 + 14 * len(found.keys), 26 + 5.6 * max(1, len(numbers)))
+        axes = figure.subplots()
+        axes.tick_params(labelsize=SMALL, length=0.0, labeltop=True, labelbottom=False)
+        axes.spines[["left", "bottom"]].set_visible(False)
+        if numbers:
+            draw_elasticities(axes, found, numbers)
+        axes.set_title("% of change for 1 % more of")
+        axes.set_xlim(-0.5, len(found.keys) - 0.5)
+        axes.set_ylim(len(numbers) - 0.5, -0.5)
+        axes.set_yticks(range(len(numbers)), [words(n) for n in numbers])
+        axes.set_xticks(range(len(found.keys)), [symbol(variable(key)) for key in found.keys])
+        title = f"{found.name}: elasticities" if found.name else "Elasticities"
+        figure.head(title)
+    return figure
+
+
+_SAMPLES = 2000
+
+
+def plot_motion_sensitivity(found: Sensitivity) -> Figure:
+    """Each parameter's size times the derivative of the position, mm, over time, ms.
+
+    A curve is how far the pin would move at a time if the parameter grew by its own size, to first
+    order; it ends where the derivative does.
+    """
+    times = np.linspace(0.0, found.duration, _SAMPLES)
+    slopes = found.position(times)
+    with matplotlib.style.context(STYLE, after_reset=True):
+        figure = new_figure(180, 85)
+        axes = figure.add_subplot()
+        axes.axhline(0.0, color=GREY, lw=0.6)
+        named = zip(found.parameters, found.sizes, slopes, strict=True)
+        for (name, size, slope), look in zip(named, cycle(CURVES), strict=False):
+            axes.plot(1e3 * times, 1e3 * size * slope, label=name, **look)
+        axes.set_xlabel("time after release (ms)")
+        axes.set_ylabel(r"$p\,\partial x/\partial p$ (mm)")
+        axes.set_title(
+            "How far each parameter $p$ moves the pin, for a change by its own size",
+            loc="left",
+        )
+        axes.margins(x=0.0)
+        axes.legend(ncols=2)
+    return figure

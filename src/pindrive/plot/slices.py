@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 import numpy as np
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from pindrive._core import settling_band
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, plain
+from pindrive.plot.contours import MAP, draw_contours, jump_key, line_colours
+from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
 from pindrive.study.slices import QUANTITY, axis_label, value, values
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from pindrive.study.slices import Panel, View
 
-_MAP: Final = "viridis"
 _HATCH: Final[dict[str, Any]] = {
     "facecolor": "0.93",
     "edgecolor": "0.55",
@@ -33,19 +33,9 @@ _HATCH: Final[dict[str, Any]] = {
     "lw": 0.0,
 }
 _REFUSED: Final = "0.72"
-_ORDER: Final[tuple[dict[str, Any], ...]] = (
-    {"color": "#0072B2", "ls": "-"},
-    {"color": "#D55E00", "ls": (0, (6, 2))},
-    {"color": "#009E73", "ls": (0, (6, 2, 1.5, 2))},
-    {"color": "#CC79A7", "ls": (0, (3, 1.5))},
-    {"color": "#E69F00", "ls": "-", "lw": 2.0},
-)
-"""Curves side by side: Okabe and Ito's colours, and dashes for print in grey."""
 _LEVELS: Final = 8
 _FLAT: Final = 0.25
 """Of a common scale of colours: a panel that takes less has its own."""
-_BRIGHT: Final = 0.5
-"""From this luminance of a colour on, lines on it are black."""
 
 
 def plot_study(
@@ -64,14 +54,12 @@ def plot_study(
         A figure 180 mm wide, or 90 mm with a single panel.
     """
     rows = [list(view.panels(number, x, y, held)) for number in numbers]
-    with matplotlib.style.context(
-        {**STYLE, "hatch.linewidth": 0.5, "hatch.color": "0.55"}, after_reset=True
-    ):
+    with matplotlib.style.context({**STYLE, "hatch.color": "0.55"}, after_reset=True):
         columns = len(rows[0]) if y else 1
         width = 110 if columns == 1 else 180
         each = 58 if not y else 78 if columns == 1 else 62 if columns == 2 else 52
         height = 24 + len(rows) * each
-        figure = Figure(figsize=(width / 25.4, height / 25.4), dpi=250, layout="constrained")
+        figure = new_figure(width, height)
         grid = figure.subplots(len(rows), columns, squeeze=False, sharex=True, sharey="row")
         for panels, axes in zip(rows, grid, strict=True):
             if y:
@@ -82,12 +70,10 @@ def plot_study(
             axes.set_xlabel(axis_label(x))
         for axes in grid.flat:
             _scale(axes, view, x, y)
-            axes.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         handles = _key([panel for row in rows for panel in row])
+        handles += jump_key(figure)
         if handles:
-            figure.legend(
-                handles=handles, loc="outside lower left", ncols=len(handles), frameon=False
-            )
+            figure.legend(handles=handles, loc="outside lower left", ncols=len(handles))
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
         _title(figure, view, {**view.told, **still}, int(width * 0.66))
     return figure
@@ -107,7 +93,7 @@ def _title(figure: Figure, view: View, fixed: Mapping[str, float], width: int) -
     }
     name = ": ".join(filter(None, (str(view.data.attrs.get("title", "")), view.page)))
     said = [plain(name, width), values(shown, width), *view.links]
-    figure.suptitle("\n".join(filter(None, said)), x=0.008, ha="left", fontsize=8.0)
+    figure.head("\n".join(filter(None, said)))
 
 
 def _scale(axes: Axes, view: View, x: str, y: str) -> None:
@@ -136,19 +122,19 @@ def _draw_maps(figure: Figure, panels: Sequence[Panel], row: Sequence[Axes]) -> 
         levels = ticks[(ticks > low) & (ticks < high) & contoured]
         if low == high:  # one colour, the middle one
             low, high = low - 0.1 * (abs(low) or 1.0), high + 0.1 * (abs(high) or 1.0)
+        norm = Normalize(low, high)
         for panel, values_shown, axes in group:
-            drawn = _draw_map(axes, panel, values_shown, (low, high), levels)
+            drawn = _draw_map(axes, panel, values_shown, norm, levels)
             differs = {k: v for k, v in panel.at.items() if k not in common}
             if differs:
                 axes.set_title(", ".join(value(k, v) for k, v in differs.items()), fontsize=SMALL)
         bar = figure.colorbar(
             drawn, ax=[axes for *_, axes in group], pad=0.015, fraction=0.05, aspect=24
         )
-        for level, colour in zip(levels, _line_colours(levels, low, high), strict=True):
+        for level, colour in zip(levels, line_colours(levels, norm), strict=True):
             bar.ax.axhline(level, color=colour, lw=0.5)
         if len(levels) > 1:
             bar.set_ticks(levels)
-        bar.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         bar.outline.set_linewidth(0.0)
     said = "median " if name in MEASURED else "median of draws:\n"
     bar.set_label((said if panels[0].low is not None else "") + axis_label(name))
@@ -168,18 +154,11 @@ def _flattened(shown: Sequence[Any]) -> bool:
     return any(0.0 < span < _FLAT * (high - low) for span in spans)
 
 
-def _line_colours(levels: Any, low: float, high: float) -> list[str]:
-    """For each level black or white, whichever is seen on the colour of its value."""
-    colours = matplotlib.colormaps[_MAP]((np.asarray(levels) - low) / (high - low))
-    bright = colours[..., :3] @ (0.2126, 0.7152, 0.0722) > _BRIGHT
-    return ["black" if one else "white" for one in bright.tolist()]
-
-
 def _draw_map(
     axes: Axes,
     panel: Panel,
     shown: Any,
-    ends: tuple[float, float],
+    norm: Normalize,
     levels: Any,
 ) -> QuadMesh:
     (y, x) = (
@@ -187,14 +166,9 @@ def _draw_map(
         for key, along in zip(panel.keys, panel.along, strict=True)
     )
     missing = np.isnan(shown)
-    drawn = axes.pcolormesh(
-        x, y, shown, cmap=_MAP, vmin=ends[0], vmax=ends[1], shading="nearest", rasterized=True
-    )
+    drawn = axes.pcolormesh(x, y, shown, cmap=MAP, norm=norm, shading="nearest", rasterized=True)
     if min(shown.shape) > 1 and (~missing).any() and len(levels):
-        colours = _line_colours(levels, *ends)
-        lines = axes.contour(x, y, shown, levels=levels, colors=colours, linewidths=0.5)
-        lines.set_gid("contours")
-        axes.clabel(lines, fontsize=SMALL - 1.0, fmt="%.6g", inline_spacing=2)
+        draw_contours(axes, x, y, shown, levels, norm)
     axes.patch.set(**_HATCH)
     refused = np.where(panel.refused, 1.0, np.nan)
     if panel.refused.any():
@@ -223,7 +197,7 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
     quantity = QUANTITY[panels[0].number]
     scale = quantity.display_scale
     common = _common(panels)
-    for panel, look in zip(panels, _ORDER, strict=False):
+    for panel, look in zip(panels, CURVES, strict=False):
         colour = look["color"]
         x = QUANTITY[panel.keys[0]].display_scale * panel.along[0]
         differs = {k: v for k, v in panel.at.items() if k not in common}
@@ -244,7 +218,7 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
     axes.margins(x=0.0)
     axes.set_ylabel(axis_label(panels[0].number))
     if named and len(panels) > 1:
-        axes.legend(frameon=False, loc="best")
+        axes.legend(loc="best")
 
 
 def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:

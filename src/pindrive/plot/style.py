@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from io import BytesIO
+from pathlib import Path
 from textwrap import fill
-from typing import IO, TYPE_CHECKING, Any, Final
+from typing import IO, Any, Final
 
 import matplotlib.style
 from matplotlib.figure import Figure as _Figure
-
-if TYPE_CHECKING:
-    import os
+from matplotlib.patheffects import withStroke
 
 PALETTE: Final = {
     "curve": "#0072B2",  # blue
@@ -28,6 +28,23 @@ EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D"}
 CONTACTS: Final = {"plate": ("full", 3.2), "finger": ("none", 6.0), "both": ("left", 6.0)}
 """How a marker is filled, and its size, by the contact that changes."""
 
+CURVES: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#0072B2", "ls": "-"},
+    {"color": "#D55E00", "ls": (0, (6, 2))},
+    {"color": "#009E73", "ls": (0, (6, 2, 1.5, 2))},
+    {"color": "#CC79A7", "ls": (0, (3, 1.5))},
+    {"color": "#E69F00", "ls": "-", "lw": 2.0},
+    {"color": "#56B4E9", "ls": (0, (1.5, 1.5)), "lw": 1.6},
+)
+"""Curves side by side: the same colours, and dashes for print in grey."""
+
+PRINTED: Final[dict[str, Any]] = {"fc": "0.96", "ec": "0.72", "hatch": "/////", "lw": 0.0}
+"""Where a printed line passes: hatched, so that what the plate carries is told from it in grey."""
+HANDS: Final[dict[str, Any]] = {"fc": "#FBF0D8", "ec": "#E69F00", "hatch": "\\\\\\\\", "lw": 0.0}
+"""A band that other areas cover."""
+HALO: Final = [withStroke(linewidth=2.0, foreground="white")]
+"""Of a text that a line may cross."""
+
 GREY: Final = "0.45"
 SMALL: Final = 7.0
 
@@ -37,12 +54,21 @@ STYLE: Final[dict[str, Any]] = {
     "axes.linewidth": 0.6,
     "axes.spines.top": False,
     "axes.spines.right": False,
+    **{f"{axis}tick.labelsize": SMALL for axis in "xy"},
+    **{f"{axis}tick.major.width": 0.6 for axis in "xy"},
+    **{f"{axis}tick.major.size": 2.5 for axis in "xy"},
     "axes.formatter.useoffset": False,
     "axes.formatter.use_mathtext": True,
     "axes.formatter.limits": (-2, 5),
     "lines.linewidth": 1.1,
     "lines.markersize": 4.0,
+    "axes.titlesize": 8.0,
+    "figure.titlesize": 8.0,
+    "figure.dpi": 250,
+    "figure.constrained_layout.use": True,
     "legend.fontsize": SMALL,
+    "legend.frameon": False,
+    "hatch.linewidth": 0.5,
     "agg.path.chunksize": 5000,  # a third faster with a hundred thousand points
     "svg.fonttype": "none",  # text as text
     "svg.hashsalt": "pindrive",  # the same motion is the same file
@@ -82,12 +108,21 @@ class Figure(_Figure):
     Matplotlib leaves that to pyplot, which this package does without: it would open windows.
     """
 
+    def head(self, text: str) -> None:
+        """Write lines of text at its top, on the left."""
+        self.suptitle(text, x=0.008, ha="left")
+
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         """The picture, and its size on the screen, at which it is as large as on paper."""
         file = BytesIO()
         save(self, file, "png")
         width, height = (round(96 * inches) for inches in self.get_size_inches())
         return file.getvalue(), {"width": width, "height": height}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of so many millimetres; made, and drawn in, within `STYLE`."""
+    return Figure(figsize=(width / 25.4, height / 25.4))
 
 
 def save(
@@ -101,5 +136,10 @@ def save(
         format: "png" (250 dpi), "svg" or "pdf"; the ending of the path unless given.
     """
     kind = format or str(target).rpartition(".")[2].lower()
+    file = BytesIO()  # a disk that is full then fails here, not in Matplotlib, which leaves it open
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure.savefig(target, format=kind, **_SAVING.get(kind, {}))
+        figure.savefig(file, format=kind, **_SAVING.get(kind, {}))
+    if isinstance(target, (str, os.PathLike)):
+        Path(target).write_bytes(file.getvalue())
+    else:
+        target.write(file.getvalue())

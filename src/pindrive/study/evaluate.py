@@ -1,31 +1,102 @@
-"""The numbers of many points of one device, each with other values of its swept keys."""
+"""The numbers of many points of one device, releases or scans; which cannot exist, and why."""
 
 from __future__ import annotations
 
-from dataclasses import fields
+import re
+from dataclasses import dataclass, fields
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.device.scanning import scan
+from pindrive.evaluation.perception import judge
+from pindrive.files.device import motion_of
 from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
-from pindrive.quantities.status import End, Status
-from pindrive.quantities.table import refused_by
-from pindrive.study.design import variable
-from pindrive.study.outputs import MEASURED
+from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.status import End, SimulationError, Status
+from pindrive.quantities.table import Refusal, refused_by, told_by
+from pindrive.study.design import device_at, variable
+from pindrive.study.outputs import MEASURED, SCANNED, scan_numbers, variables
+from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from pindrive.evaluation.results import Judgement
     from pindrive.files.device import DeviceFile
     from pindrive.study.design import Columns, Plan
+
+
+Row = dict[str, Any]
+
+_PORTION: Final = 8
+"""Points that a process takes at a time, at most."""
+
+
+def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
+    """The scan at one point of a study with a page, which the keys' values (SI) say, judged.
+
+    Raises:
+        ValueError: there is none: the values do not go together, or a spot leaves the page.
+    """
+    if plan.page is None:
+        raise ValueError(f"{plan.path}: has no page to scan; write what is on it in [page]")
+    file = device_at(plan, at)
+    assert file.whole
+    device, reading = file.whole.device(file.drive), file.whole.reading()
+    scene = plan.page.scene(reading, device.array)
+    path = plan.page.hand(reading, scene, device.array)
+    done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
+    return judge(done, file.whole.criteria())
+
+
+def evaluate_scans(
+    plan: Plan, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
+) -> dict[str, Any]:
+    """The outputs at `count` points; arguments as for `evaluate`.
+
+    Raises:
+        ValueError: a file of the page has changed since the study was read.
+    """
+    assert plan.page
+    plan.page.check()
+    every = {key: np.broadcast_to(values, (count,)) for key, values in columns.items()}
+    points = [{key: float(values[i]) for key, values in every.items()} for i in range(count)]
+    processes = worker_count(processes)
+    portion = min(_PORTION, -(-count // (2 * processes)))
+    portions = [points[i : i + portion] for i in range(0, count, portion)]
+    if processes == 1 or len(portions) == 1:
+        done = [_rows(plan, portion) for portion in portions]
+    else:
+        done = standing(processes).spread(_rows, plan, portions)
+    rows = [row for portion in done for row in portion]
+    kinds = {"reason": object}
+    return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
+
+
+def _rows(plan: Plan, points: Sequence[Mapping[str, float]]) -> list[Row]:
+    return [_row(plan, point) for point in points]
+
+
+def _row(plan: Plan, point: Mapping[str, float]) -> Row:
+    """The numbers at a point; one without a scan has a status and no numbers."""
+    names = variables(SCANNED)
+    try:
+        found = scan_numbers(judged_at(plan, point))
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        status = error.status if isinstance(error, SimulationError) else Status.refused
+        return dict.fromkeys(names, nan) | {"status": status, "reason": refused_by(error)}
+    given = {name: found[quantity.name] for name, quantity in names.items()}
+    return given | {"status": Status.ok, "reason": ""}
+
 
 _WHOLE: Final = {
     **dict.fromkeys(("status", "ending", "events"), np.int64),
@@ -56,7 +127,7 @@ def evaluate(
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
-        from pindrive.study.scans import evaluate_scans
+        from pindrive.study.evaluate import evaluate_scans
 
         return evaluate_scans(plan, columns, count, outputs, threads)
     device = plan.device
@@ -172,3 +243,53 @@ def _motion(given: Mapping[str, Any]) -> Motion:
         Release(**{name: given[name] for name in _RELEASE}),
         **{name: given[name] for name in _NOT_OF_THE_DRIVE},
     )
+
+
+_LONG_NUMBER: Final = re.compile(r"\d+\.\d{6,}(e[-+]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedPoints:
+    """Points that cannot exist for one reason."""
+
+    count: int
+    reason: str
+    """In the words, and with the values, of the first of them."""
+
+
+def exist(status: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which points have a motion or a scan, by their `status`; it may have been stopped early."""
+    return np.asarray(status < Status.refused)
+
+
+def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[RefusedPoints, ...]:
+    """The points that cannot exist, by reason, most first.
+
+    Args:
+        plan: the study.
+        columns: the values of the varied keys at the points, SI.
+        reasons: of each point what is refused, as `evaluate` gives it; empty where it exists.
+    """
+    alike: dict[str, list[int]] = {}
+    for i in np.flatnonzero(reasons != ""):
+        alike.setdefault(str(reasons[i]), []).append(int(i))
+    found = []
+    for reason, points in alike.items():
+        first = points[0]
+        at = {key: float(np.broadcast_to(x, reasons.shape)[first]) for key, x in columns.items()}
+        found.append(RefusedPoints(len(points), why(plan, at) or reason))
+    return tuple(sorted(found, key=lambda refusal: -refusal.count))
+
+
+def why(plan: Plan, at: Mapping[str, float]) -> str:
+    """Why there is no motion or scan at a point, which the keys' values (SI) say; empty: it is."""
+    try:
+        if plan.page:
+            judged_at(plan, at)
+        else:
+            motion_of(device_at(plan, at))
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        told = told_by(error)
+        said = told.said if isinstance(told, Refusal) else told
+        return _LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", said)
+    return ""

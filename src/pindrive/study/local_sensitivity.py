@@ -56,7 +56,7 @@ class Elasticities(lazy.NotebookHtml):
 
     def plot(self) -> Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
-        figure: Figure = lazy.call("pindrive.plot.local_sensitivity:plot_elasticities", self)
+        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_elasticities", self)
         return figure
 
     def to_dataset(self) -> xr.Dataset:

@@ -14,9 +14,8 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import Sample
-from pindrive.study.evaluate import evaluate, follow
+from pindrive.study.evaluate import RefusedPoints, evaluate, exist, follow, refusals
 from pindrive.study.outputs import attributes
-from pindrive.study.refusals import RefusedPoints, exist, refusals
 from pindrive.study.sensitivity import Ranges, ranges_of
 
 if TYPE_CHECKING:

@@ -28,8 +28,17 @@ from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import refusal
-from pindrive.study.checkpoint import Journal, Tally, difference
-from pindrive.study.store import Piece, Store, bytes_of, checksum, lay_out, work_out
+from pindrive.study.store import (
+    Journal,
+    Piece,
+    Store,
+    Tally,
+    bytes_of,
+    checksum,
+    difference,
+    lay_out,
+    work_out,
+)
 from pindrive.study.workers import DIED, workers
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import product
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.quantities.quantity import Quantity
+    from pindrive.study.distributions import Distribution
 
 
 QUANTITY: Final[dict[str, Quantity]] = {
@@ -112,6 +113,17 @@ def values(given: Mapping[str, float], width: int) -> str:
         else:
             lines[-1] = f"{lines[-1]}, {said}" if lines[-1] else said
     return ",\n".join(lines)
+
+
+def ranges(scatter: Mapping[str, Distribution]) -> str:
+    """What varies, five in a line: "m 9.4 … 10.6 g (3σ), k …"."""
+    said = []
+    for key, axis in scatter.items():
+        quantity = QUANTITY[variable(key)]
+        low, high = (f"{quantity.display_scale * x:.3g}" for x in axis.span)
+        ends = f"{symbol(variable(key))} {low} … {high} {quantity.display_unit}".rstrip()
+        said.append(ends + ("" if axis.kind in ("uniform", "loguniform") else " (3σ)"))
+    return ",\n".join(", ".join(said[i : i + 5]) for i in range(0, len(said), 5))
 
 
 _MOST_SLICES: Final = 3
@@ -329,13 +341,14 @@ class View:
         along = [part[key] for key in keys]
         if any(key in self.sampled for key in keys):
             spread = [np.broadcast_to(_beside(c, dims), values.shape).ravel() for c in along]
-            return _binned(
-                number, keys, at, spread, values.ravel(), unsettled.ravel(), refused.ravel()
+            found: tuple[Any, ...] = _binned(
+                spread, values.ravel(), unsettled.ravel(), refused.ravel()
             )
-        places = [c.values for c in along]
-        if "sample" in dims:
-            return _summed_up(number, keys, at, places, values, unsettled, refused)
-        return Panel(number, keys, at, places, values, unsettled, refused)
+        elif "sample" in dims:
+            found = _summed_up([c.values for c in along], values, unsettled, refused)
+        else:
+            found = ([c.values for c in along], values, unsettled, refused)
+        return Panel(number, keys, at, *found)
 
 
 def _unsettled(part: xr.Dataset, number: str) -> NDArray[np.bool_]:
@@ -356,33 +369,27 @@ def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> NDArray[np.float64
 
 
 def _summed_up(
-    number: str,
-    keys: Sequence[str],
-    at: Mapping[str, float],
     places: Sequence[NDArray[np.float64]],
     values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
-) -> Panel:
-    """Quantiles over the draws, which are the last axis."""
+) -> tuple[Any, ...]:
+    """Of a panel, from its places on: quantiles over the draws, which are the last axis."""
     shape = values.shape[:-1]
     group = np.repeat(np.arange(values[..., 0].size), values.shape[-1])
     low, middle, high = quantiles(group, values.ravel(), values[..., 0].size).reshape(3, *shape)
     draws = (unsettled.mean(axis=-1) > 0.5, refused.mean(axis=-1) > 0.5)
-    return Panel(number, keys, at, places, middle, *draws, low, high)
+    return places, middle, *draws, low, high
 
 
 def _binned(
-    number: str,
-    keys: Sequence[str],
-    at: Mapping[str, float],
     along: Sequence[NDArray[np.float64]],
     values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
-) -> Panel:
-    """Quantiles over the draws that fall into each of many bins."""
-    most = _BINS if len(keys) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
+) -> tuple[Any, ...]:
+    """Of a panel, from its places on: quantiles over the draws that fall into each of many bins."""
+    most = _BINS if len(along) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
     group, middles, shape = np.zeros(len(values), np.int64), [], []
     for places in along:
         different = np.unique(places[: 10 * most])
@@ -402,7 +409,7 @@ def _binned(
         (np.bincount(group, weights=flag, minlength=count) / drawn > 0.5).reshape(shape)
         for flag in (unsettled, refused)
     ]
-    return Panel(number, keys, at, middles, middle, parts[0], parts[1], low, high)
+    return middles, middle, *parts, low, high
 
 
 def quantiles(

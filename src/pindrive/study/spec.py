@@ -24,7 +24,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import AxisReader, sweepable, written_axes
-from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, variable
+from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page, variable
 from pindrive.study.distributions import (
     MOST_SOBOL,
     Axis,
@@ -36,7 +36,6 @@ from pindrive.study.distributions import (
     implied_links,
 )
 from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, demands, known_output, usual_outputs
-from pindrive.study.page import StudyPage, read_page
 from pindrive.study.validation import conflicts
 
 if TYPE_CHECKING:

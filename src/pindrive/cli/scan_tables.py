@@ -1,17 +1,18 @@
-"""A judgement as text, and its lines as CSV; how fast a hand may move, likewise."""
+"""Scans, what the finger was shown of them, and how fast a hand may move, in a terminal."""
 
 from __future__ import annotations
 
 import csv
-from math import isnan
+from math import isnan, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Group, RenderableType
-from rich.text import Text
 
-from pindrive.cli.tables import new_table
+from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words, whole_lines
+from pindrive.device.dataset import gap_words, numbers
 from pindrive.evaluation.resolution import criterion
+from pindrive.quantities.device import PIN
 from pindrive.quantities.results import LINE
 from pindrive.quantities.table import QUANTITIES
 
@@ -21,10 +22,24 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pindrive.device.device import Criteria
+    from pindrive.device.scanning import PinScan, Scan
     from pindrive.evaluation.resolution import Band, SpeedLimit
     from pindrive.evaluation.results import Judgement
 
 _MM: Final = 1e3
+PINS_HEAD, PINS_TAIL = 24, 8
+"""How many pins of a large array are shown, from its first and from its last."""
+HEADINGS: Final = {
+    "pin.energised": "magnet\non",
+    "pin.switchings": "times\non",
+    "pin.slips": "slips\nwhile on",
+    "pin.captures": "times\ncaught",
+    "pin.carried": "time\nheld",
+    "pin.peak_displacement": "peak\n|x|",
+    "pin.peak_skin_force": "peak\nforce",
+    "pin.peak_stretch": "peak\nstretch",
+    "pin_gap": "least\ngap",
+}
 COUNTED: Final = (
     *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
 )
@@ -32,9 +47,59 @@ COUNTED: Final = (
 PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y")
 
 
+def scan_report(scan: Scan) -> RenderableType:
+    """Its pins in a table, then its hand, its device and how far it can be trusted, in words."""
+    lines = whole_lines(_words(scan))
+    return Group(_pins(scan), *lines)
+
+
+def _pins(scan: Scan) -> Table:
+    names = [q.name for q in PIN]
+    if scan.device.drive.finger.rigid:
+        names.remove("pin.peak_stretch")
+    if scan.gaps:
+        names.append("pin_gap")
+    title = f"Pins, over {scan.scene.title}"
+    found = new_table(title, ">pin", ">place", *(f">{HEADINGS[name]}" for name in names))
+    found.collapse_padding, found.pad_edge = True, False  # all of it in a hundred columns
+    found.add_row("", "mm", *(QUANTITIES[name].display_unit for name in names), style="dim")
+    for pin in scan.pins:
+        if PINS_HEAD <= pin.number < len(scan.pins) - PINS_TAIL:
+            if pin.number == PINS_HEAD:
+                found.add_row("...", f"{len(scan.pins) - PINS_HEAD - PINS_TAIL} more")
+            continue
+        found.add_row(*_row(scan, pin, names))
+    return found
+
+
+def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
+    x, y = scan.device.array.places[pin.number]
+    values = numbers(pin)
+    beside = [gap.size for gap in scan.gaps if pin.number in (gap.behind, gap.ahead)]
+    values["pin_gap"] = min(beside, default=nan)
+    cells = [
+        f"{values[n]:g}" if QUANTITIES[n].unit == "" else QUANTITIES[n].digits(values[n])
+        for n in names
+    ]
+    return [str(pin.number), f"{_MM * x:g}, {_MM * y:g}", *cells]
+
+
+def _words(scan: Scan) -> list[str]:
+    device, path = scan.device, scan.path
+    worst = max(pin.motion.certificate().worst for pin in scan.pins)
+    doubt = "" if worst <= TRUSTED else " Do not trust this scan."
+    return [
+        path_words(path, device.array.axis),
+        *([path.about] if path.about else []),
+        *gap_words(scan),
+        *device_words(device),
+        f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
+    ]
+
+
 def judgement_report(judgement: Judgement) -> RenderableType:
     """What became of the lines, in words, and the numbers of those shown."""
-    lines = (Text(line, no_wrap=True, overflow="ignore") for line in verdict_words(judgement))
+    lines = whole_lines(verdict_words(judgement))
     tables = [_counts(judgement)] if judgement.lines else []
     if judgement.shown:
         tables.append(_spreads(judgement))
@@ -152,7 +217,7 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
         "Settled: besides, what the first line alone leaves swinging is over before the second.",
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
-    return Group(table, *(Text(line, no_wrap=True, overflow="ignore") for line in words))
+    return Group(table, *whole_lines(words))
 
 
 def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:

@@ -1,0 +1,51 @@
+"""The command `pindrive check`: what a device file describes, or a CSV that it names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import command
+
+
+@command("Device and study files", "pindrive check device.toml")
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Device file (TOML), or an input of one (CSV).")
+    ],
+) -> None:
+    """Say what is wrong with a device file and the CSVs it names, or what it describes.
+
+    Of a CSV of mouse_velocity or plate_load it says how many rows it has, and from where to where.
+
+    Of a recording of the hand: its rate and resolution, and its peak speed before and after
+    smoothing.
+    """
+    if file.suffix.lower() == ".csv":
+        from pindrive.cli.tables import path_words
+        from pindrive.device.recording import read_csv
+        from pindrive.files.recording import profile_words
+
+        with refusing():
+            said = [profile_words(file)]
+            if not said[0]:
+                path = read_csv(file)
+                said = [path.about, path_words(path, 0.0)]
+        for line in said:
+            typer.echo(line)
+        return
+    from pindrive.files.device import load_device
+
+    with refusing():
+        device = load_device(file)
+        pressing = device.whole.magnet().pressing if device.whole else None
+    from pindrive.cli.tables import device_report, show
+    from pindrive.motion.friction import Coefficients
+
+    doubt = Coefficients.of(device.drive.plate, device.drive.mass, pressing).doubt
+    if doubt:
+        typer.echo(f"warning: {doubt}", err=True)
+    show(device_report(device))

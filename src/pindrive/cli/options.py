@@ -1,0 +1,137 @@
+"""Options that several commands have, and how what they are given is read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pindrive.cli.help import ASKED, COMPUTED, FILES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from pindrive.files.output import Output
+
+
+def count_option(
+    option: str,
+    help: str,
+    metavar: str = "COUNT",
+    *,
+    least: int = 1,
+    most: int = 10**18,
+    power_of_2: bool = False,
+    panel: str = COMPUTED,
+) -> Any:
+    """An option that is a whole number from `least` to `most`, or such a power of 2."""
+    required = f"{'a power of 2' if power_of_2 else 'a whole number'} of at least {least}"
+    bounded = f"{required} and at most {most}"
+
+    def count(text: str) -> int:
+        number = int(text) if re.fullmatch(r"[0-9]{1,1000}", str(text)) else -1
+        if least <= number <= most and not (power_of_2 and number & (number - 1)):
+            return number
+        stated = bounded if number > most or most < 10**18 else required
+        typer.echo(f"{option} must be {stated}, got {text}", err=True)
+        raise typer.Exit(2)
+
+    return typer.Option(option, metavar=metavar, help=help, parser=count, rich_help_panel=panel)
+
+
+def file_option(help: str, *names: str, metavar: str = "FILE") -> Any:
+    """An option that names a file to write."""
+    return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=FILES)
+
+
+DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
+StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+OverridesOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help='Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
+        rich_help_panel=ASKED,
+    ),
+]
+PlotOption = Annotated[Path | None, file_option("Draw it: .png, .svg or .pdf.")]
+CsvOption = Annotated[
+    Path | None, file_option("Even samples; events go beside it, to FILE-events.csv.")
+]
+ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
+
+
+def measures(text: str, name: str, example: str, option: str) -> list[float]:
+    """Values of a quantity, apart by commas, as an option of the command line gives them, in SI."""
+    return [measure(part.strip(), name, example, option) for part in text.split(",")]
+
+
+def measure(text: str, name: str, example: str, option: str) -> float:
+    """One value of the quantity called `name`, as an option gives it, in SI and within bounds."""
+    from pindrive.quantities.table import QUANTITIES, check, refusal
+    from pindrive.quantities.units import UnitError, quoted, to_si
+
+    label = name.rpartition(".")[2]
+    try:
+        value = to_si(text, QUANTITIES[name].unit, example)
+    except UnitError as error:
+        raise ValueError(refusal(label, str(error), quoted(text), option)) from None
+    return check(name, value, where=option, label=label, given=quoted(text))
+
+
+def csv_rate(rate: str | None, csv: Path | None) -> float | None:
+    """The frequency of a CSV's samples, Hz; None where none is given.
+
+    Raises:
+        ValueError: it is no frequency, or there is no CSV.
+    """
+    if rate is not None and not csv:
+        raise ValueError("--rate goes with --csv")
+    return None if rate is None else measure(rate, "rate", "1 kHz", "--rate")
+
+
+def picture(path: Path, option: str = "--plot") -> Output:
+    """A picture that is to be written, in the format that its name asks for.
+
+    Raises:
+        ValueError: it asks for none.
+    """
+    from pindrive.files.output import PICTURES, Output
+
+    suffix = path.suffix.lower()
+    if suffix not in PICTURES:
+        raise ValueError(f"{option} {path}: must end in {', '.join(PICTURES)}")
+    return Output(path, PICTURES[suffix], option)
+
+
+def save_picture(figure: Figure, path: Path, part: Path) -> None:
+    """Write a figure to `part`, a file that will be called `path`."""
+    from pindrive.plot.style import save
+
+    save(figure, part, path.suffix.lower().removeprefix("."))
+
+
+@contextmanager
+def picturing(
+    path: Path | None, inputs: Sequence[Path]
+) -> Iterator[Callable[[Callable[[], Figure]], None]]:
+    """Begin a picture, if one is wanted, and give what writes the figure that a function makes.
+
+    Raises:
+        ValueError: it cannot be written, or is one of the inputs.
+    """
+    from pindrive.files.output import naming, writing
+
+    with writing([picture(path)] if path else [], inputs) as parts:
+
+        def write(make: Callable[[], Figure]) -> None:
+            if path:
+                with naming(path):
+                    save_picture(make(), path, parts[path])
+
+        yield write

@@ -1,0 +1,54 @@
+"""The command `pindrive robustness`: how designs within their tolerances meet a specification."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import command
+from pindrive.cli.options import (
+    OverridesOption,
+    PlotOption,
+    StudyArgument,
+    ThreadsOption,
+    count_option,
+    picturing,
+)
+from pindrive.cli.progress import points_bar
+
+
+@command("Studies", "pindrive robustness study.toml --plot yield.png")
+def robustness(
+    study: StudyArgument,
+    plot: PlotOption = None,
+    draws: Annotated[
+        int | None, count_option("--draws", "Random draws; 100 000 unless given, of scans 1000.")
+    ] = None,
+    seed: Annotated[int, count_option("--seed", "Of the draws and the search.", least=0)] = 1,
+    threads: ThreadsOption = None,
+    overrides: OverridesOption = None,
+) -> None:
+    """Analyse a design within its tolerances: spread, yield, worst case.
+
+    Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch
+    to the largest that it can have, unless they have a tolerance of their own. Draws that cannot
+    exist all the same are counted apart, with the reason.
+    """
+    from pindrive.study.robustness import robustness as analyse
+    from pindrive.study.study import load_study
+
+    with refusing():
+        plan = load_study(study, overrides or ())
+        with picturing(plot, plan.inputs) as draw:
+            with points_bar() as tell:
+                found = analyse(plan, count=draws, seed=seed, threads=threads, progress=tell)
+            draw(found.plot)
+    from pindrive.cli.study_tables import robustness_report, say_coefficient
+    from pindrive.cli.tables import show
+
+    show(robustness_report(plan, found))
+    say_coefficient(plan, tolerances=True)
+    if plot:
+        typer.echo(f"Wrote {plot}")

@@ -1,0 +1,89 @@
+"""The command `pindrive sweep`: all points of a study, in one file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import COMPUTED, command
+from pindrive.cli.options import (
+    OverridesOption,
+    StudyArgument,
+    ThreadsOption,
+    count_option,
+    file_option,
+)
+from pindrive.cli.progress import points_bar
+
+
+@command("Studies", "pindrive sweep study.toml -o study.nc")
+def sweep(
+    study: StudyArgument,
+    output: Annotated[
+        Path | None, file_option("NetCDF; STUDY.nc unless given.", "--output", "-o")
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with a run cut short.", rich_help_panel=COMPUTED),
+    ] = False,
+    restart: Annotated[
+        bool,
+        typer.Option(
+            "--restart",
+            help="Replace an earlier study, or a run cut short.",
+            rich_help_panel=COMPUTED,
+        ),
+    ] = False,
+    stop_after: Annotated[
+        int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
+    ] = None,
+    threads: ThreadsOption = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Work on a Dask cluster instead.", rich_help_panel=COMPUTED
+        ),
+    ] = None,
+    overrides: OverridesOption = None,
+) -> None:
+    """Compute all points of a study and write them into one NetCDF file.
+
+    What keeps its ratio to a varied value changes with it, as for `robustness`.
+    """
+    from pindrive.study.runner import on_cluster, on_threads
+    from pindrive.study.runner import sweep as compute
+    from pindrive.study.study import load_study
+
+    target = output or study.with_suffix(".nc")
+
+    def stopped() -> str:
+        kept = target.with_name(f"{target.name}.journal").exists()
+        words = "finished chunks are kept, --resume continues with them"
+        return f"stopped; {words if kept else 'no chunk was finished yet'}"
+
+    with refusing(stopped):
+        if resume and restart:
+            raise ValueError("give --resume or --restart, not both")
+        if threads and cluster:
+            raise ValueError("give --threads or --cluster, not both: workers have their own")
+        plan = load_study(study, overrides or ())
+        if not plan.dimensions:
+            raise ValueError(f"{study}: has no axes; write what to vary in [axes]")
+        with points_bar() as tell:
+            done = compute(
+                plan,
+                target,
+                resume=resume,
+                restart=restart,
+                stop_after=stop_after,
+                work=on_cluster(cluster) if cluster else on_threads(threads),
+                tell=tell,
+            )
+    from pindrive.cli.study_tables import say_coefficient, sweep_report
+
+    for line in sweep_report(plan, done):
+        typer.echo(line)
+    say_coefficient(plan)
