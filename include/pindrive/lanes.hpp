@@ -44,6 +44,7 @@ struct ScalarLanes {
 
   static Number all(double a) { return a; }
   static Integer all(std::uint64_t a) { return a; }
+  static Number gather(const double* from, const int* places) { return from[places[0]]; }
   static Number add(Number a, Number b) { return a + b; }
   static Number subtract(Number a, Number b) { return a - b; }
   static Number multiply(Number a, Number b) { return a * b; }
@@ -87,6 +88,9 @@ struct PairLanes {
 
   static Number all(double a) { return {Half::all(a), Half::all(a)}; }
   static Integer all(std::uint64_t a) { return {Half::all(a), Half::all(a)}; }
+  static Number gather(const double* from, const int* places) {
+    return {Half::gather(from, places), Half::gather(from, places + N / 2)};
+  }
   static Number add(const Number& a, const Number& b) {
     return {Half::add(a.low, b.low), Half::add(a.high, b.high)};
   }
@@ -185,6 +189,11 @@ struct VectorLanes {
   static Integer all(std::uint64_t a) {
     Integer result{};
     for (int i = 0; i < N; ++i) result[i] = a;
+    return result;
+  }
+  static Number gather(const double* from, const int* places) {
+    Number result{};
+    for (int i = 0; i < N; ++i) result[i] = from[places[i]];
     return result;
   }
   static Number add(Number a, Number b) { return a + b; }

@@ -304,6 +304,7 @@ class Batch {
   struct Space {
     signed char broken[Block::capacity];
     Block block;
+    double rest_time[Block::capacity], events[Block::capacity];  // where no row is asked for
     std::vector<pd::Segment<double>> segments;
   };
 
@@ -325,7 +326,7 @@ class Batch {
       points(inputs_, first, count, block.input);
       const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
       press(block, count);
-      const bool followed = by_kernel(first, count, block);
+      const bool followed = by_kernel(first, count, *space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (space->broken[i] != 0) {
@@ -357,40 +358,47 @@ class Batch {
     return block.unsure[i] ? Left::settling_time : Left::nothing;
   }
 
-  /// All points of a share; what the kernel leaves to the general core is overwritten. Whether there is
-  /// nothing.
-  bool by_kernel(std::size_t first, std::size_t count, Block& block) {
+  /// All points of a share, their numbers straight into the rows; what the kernel leaves to the general
+  /// core is overwritten. Whether there is nothing.
+  bool by_kernel(std::size_t first, std::size_t count, Space& space) {
+    Block& block = space.block;
+    std::fill_n(block.output, Block::columns, nullptr);
+    block.output[Block::rest_time] = space.rest_time;
+    if (events_.size() > 0) block.output[PlainNumber::events] = space.events;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (rows_[k].number && rows_[k].number->column != no_column)
+        block.output[rows_[k].number->column] = row(k) + first;
     kernel_.follow(block, static_cast<int>(count), asked_);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].number) continue;
       const int column = rows_[k].number->column;
-      double* row = numbers_ + k * size() + first;
       if (column == no_column)
-        std::fill_n(row, count, std::numeric_limits<double>::quiet_NaN());
-      else
-        std::copy_n(block.output[column], count, row);
+        std::fill_n(row(k) + first, count, std::numeric_limits<double>::quiet_NaN());
+      else if (block.output[column] != row(k) + first)  // two rows of one column
+        std::copy_n(block.output[column], count, row(k) + first);
     }
     constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
     constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
+    const double* since = block.output[Block::rest_time];
     bool followed = true;
     for (std::size_t i = 0; i < count; ++i) {
-      const double since = block.output[Block::rest_time][i];
       status_[first + i] = static_cast<std::int8_t>(pd::Status::ok);
-      ending_[first + i] = since == since ? resting : moving;
+      ending_[first + i] = since[i] == since[i] ? resting : moving;
       followed = followed & !block.given_up[i] & !block.unsure[i];
     }
     if (events_.size() > 0)
       for (std::size_t i = 0; i < count; ++i)
-        events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
+        events_[first + i] = static_cast<std::int32_t>(space.events[i]);
     return followed;
   }
+  double* row(std::size_t k) { return numbers_ + k * size(); }
 
   void leave_out(std::size_t i, std::int8_t status) {
     status_[i] = status;
     ending_[i] = -1;
     if (events_.size() > 0) events_[i] = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
+      row(k)[i] = std::numeric_limits<double>::quiet_NaN();
   }
 
   /// One point, or what is left of it, and its energies.
@@ -414,7 +422,7 @@ class Batch {
         const Number<Summary>* number = rows_[k].number;
         if (!number) continue;
         if (left == Left::all || number->column == PlainNumber::settling_time)
-          numbers_[k * size() + i] = number->of(summary);
+          row(k)[i] = number->of(summary);
       }
     }
     if (left == Left::all) {
@@ -425,7 +433,7 @@ class Batch {
     if (!energy_) return;
     const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].energy) numbers_[k * size() + i] = rows_[k].energy->of(ledger);
+      if (rows_[k].energy) row(k)[i] = rows_[k].energy->of(ledger);
   }
 
   const Inputs& inputs_;
