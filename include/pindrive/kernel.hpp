@@ -119,28 +119,14 @@ class Round {
     const Mask plain = !given_up_;
     const V carrying = r_.carrying(x_);
     const Mask at_plate = plain & (v_ == vp), at_finger = plain & (v_ == zero);
-    const Mask faster = plain & (vp < v_), backward = plain & (v_ < zero);
-    const Mask between = plain & (zero < v_) & (v_ < vp);
-    // A velocity next to that of a surface is at neither side of it for certain.
-    const V reach = absolute(v_) + vp;
-    give_up((faster | between) & !(V(near_grazing) * reach < absolute(v_ - vp)));
-    give_up((backward | between) & !(V(near_grazing) * reach < absolute(v_)));
     give_up(at_plate & r_.tie(absolute(carrying), r_.sp));
-
-    above_ = ((at_plate & (carrying < zero - r_.sp)) | faster) & !given_up_;
-    falling_ = ((at_plate & (r_.sp < carrying)) | between | backward) & !given_up_;
-    centre_ = select(above_, zero - r_.outside, select(backward, r_.outside, r_.between));
-    acceleration_ =
-        select(at_plate, (select(above_, zero - r_.fp, r_.fp) - carrying) * r_.per_mass,
-               V(2.0) * w_.alpha * v_ - w_.omega0_squared * (x_ - centre_));
-    // Between the surfaces it may come up to the plate first.
-    const Mask speeding = between & falling_ & (zero < acceleration_);
-    if (any(speeding)) {
-      rise_ = w_.extreme_velocity(v_, acceleration_, V(1.0));
-      give_up(speeding & grazes(rise_.velocity));
-      rising_ = speeding & (vp < rise_.velocity) & !given_up_;
-      falling_ = falling_ & !rising_ & !given_up_;
-    }
+    above_ = at_plate & (carrying < zero - r_.sp);
+    falling_ = at_plate & (r_.sp < carrying);
+    centre_ = select(above_, zero - r_.outside, r_.between);
+    acceleration_ = (select(above_, zero - r_.fp, r_.fp) - carrying) * r_.per_mass;
+    if (any(plain & !at_plate)) start_off_plate(plain, at_plate);
+    above_ = above_ & !given_up_;
+    falling_ = falling_ & !given_up_;
     if constexpr (Later) {
       // From rest: what was seen before it was put off.
       rising_ = rising_ | at_finger;
@@ -151,6 +137,29 @@ class Round {
       carried_ = at_plate & (absolute(carrying) <= r_.sp) & !given_up_;
       goes_on_ = rising_ | above_;
     }
+  }
+
+  /// The same of those whose velocity is not the plate's.
+  void start_off_plate(const Mask& plain, const Mask& at_plate) {
+    const V zero(0.0), vp = r_.vp;
+    const Mask faster = plain & (vp < v_), backward = plain & (v_ < zero);
+    const Mask between = plain & (zero < v_) & (v_ < vp);
+    // A velocity next to that of a surface is at neither side of it for certain.
+    const V reach = absolute(v_) + vp;
+    give_up((faster | between) & !(V(near_grazing) * reach < absolute(v_ - vp)));
+    give_up((backward | between) & !(V(near_grazing) * reach < absolute(v_)));
+    above_ = above_ | faster;
+    centre_ = select(above_, zero - r_.outside, select(backward, r_.outside, centre_));
+    acceleration_ = select(at_plate, acceleration_,
+                           V(2.0) * w_.alpha * v_ - w_.omega0_squared * (x_ - centre_));
+    // Between the surfaces it may come up to the plate first.
+    const Mask speeding = between & (zero < acceleration_) & !given_up_;
+    if (any(speeding)) {
+      rise_ = w_.extreme_velocity(v_, acceleration_, V(1.0));
+      give_up(speeding & grazes(rise_.velocity));
+      rising_ = speeding & (vp < rise_.velocity) & !given_up_;
+    }
+    falling_ = falling_ | ((between | backward) & !rising_);
   }
 
   // ---- from event to event -----------------------------------------------------------------------

@@ -2,8 +2,6 @@
 /// gathered for it, so that packs stay full.
 #pragma once
 
-#include <new>
-
 #include "pindrive/kernel.hpp"
 
 namespace pindrive::detail {
@@ -13,10 +11,10 @@ enum class Asked : signed char { state, numbers, settling };
 
 /// Releases and what became of them, one in each slot; columns as in PlainRelease, and these.
 struct KernelBlock {
-  static constexpr int capacity = 512;
+  static constexpr int capacity = 512, widest = 16;  ///< slots; those of a pack
   /// From a column to the next: not a power of two, which would put all columns in the same few sets
   /// of the processor's cache.
-  static constexpr int stride = capacity + 16;
+  static constexpr int stride = capacity + widest;
   static constexpr int inputs = 14, most_progress = 25;
   /// Of the output: a PlainNumber, or of the state.
   enum State : signed char {
@@ -44,11 +42,17 @@ struct Slots {
   const int* list;  ///< or null
   int size;         ///< of which so many count
   int operator[](int i) const { return list ? list[i] : first + i; }
+#ifdef __GNUC__
+  __attribute__((noinline))
+#endif
+  void scatter(const double* from, double* column) const {
+    for (int i = 0; i < size; ++i) column[(*this)[i]] = from[i];
+  }
 };
 
 /// A list of slots to be taken up later.
 struct SlotList {
-  int slots[KernelBlock::capacity + 16];
+  int slots[KernelBlock::capacity + KernelBlock::widest];
   int size{0};
   template <class Mask>
   void add(const Slots& from, const Mask& which) {
@@ -147,7 +151,7 @@ class PackRound {
     } else {
       double one[Traits<V>::width];
       store(value, one);
-      for (int i = 0; i < slots_.size; ++i) column[slots_[i]] = one[i];
+      slots_.scatter(one, column);
     }
   }
 
@@ -156,32 +160,35 @@ class PackRound {
   Round<V, Later, Measured> round_;
 };
 
-/// Room for an object that is made later.
-template <class T>
-union Room {
-  T value;
-  Room() {}   // NOLINT: empty until one is made
-  ~Room() {}  // NOLINT: of what needs no destruction
-};
-
-/// A round of `count` slots: of a list, or the first ones. The first part of several packs comes before
-/// the second of any of them: in that one the processor has to guess, and what comes before it is done
-/// for all of them at once.
+/// A round of `count` slots: of a list, or the first ones.
 template <class V, bool Later, bool Measured>
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
+// A pack that is handed over in memory costs more than what is done with it.
+__attribute__((flatten, noinline))
+#endif
 void follow_round(KernelBlock& block, const int* list, int count, bool settling, bool knows_rest,
                   SlotList& later, SlotList& again) {
-  constexpr int width = Traits<V>::width, together = 4;
-  using Pack = PackRound<V, Later, Measured>;
-  Room<Pack> packs[together];
-  for (int first = 0; first < count; first += together * width) {
-    int number = 0;
-    for (int at = first; at < count && number < together; at += width, ++number) {
-      const int size = count - at < width ? count - at : width;
-      new (&packs[number].value) Pack(block, {at, list ? list + at : nullptr, size}, knows_rest);
-    }
-    for (int i = 0; i < number; ++i) packs[i].value.finish(block, settling, later, again);
+  constexpr int width = Traits<V>::width;
+  for (int first = 0; first < count; first += width) {
+    const int size = count - first < width ? count - first : width;
+    PackRound<V, Later, Measured> pack(block, {first, list ? list + first : nullptr, size},
+                                       knows_rest);
+    pack.finish(block, settling, later, again);
   }
 }
+
+/// What first rounds are followed in: of the state alone, in two packs at once where there are the
+/// registers for it, so that neither waits for the other.
+template <class V, bool Measured>
+struct FirstRound {
+  using type = V;
+};
+#if defined(PINDRIVE_VECTOR_LANES) && PINDRIVE_VECTOR_LANES == 8
+template <>
+struct FirstRound<Pack<8>, false> {
+  using type = Pack<16>;
+};
+#endif
 
 /// All rounds of so many slots.
 template <class V, bool Measured>
@@ -194,7 +201,8 @@ void follow_all(KernelBlock& block, int* list, int count, bool settling, bool kn
       some.slots[some.size + i] = some.slots[some.size - 1];
   };
   SlotList lists[2];
-  follow_round<V, false, Measured>(block, list, count, settling, knows_rest, lists[0], again);
+  using First = typename FirstRound<V, Measured>::type;
+  follow_round<First, false, Measured>(block, list, count, settling, knows_rest, lists[0], again);
   for (int now = 0; lists[now].size > 0; now = 1 - now) {
     fill(lists[now]);
     lists[1 - now].size = 0;
@@ -206,14 +214,10 @@ void follow_all(KernelBlock& block, int* list, int count, bool settling, bool kn
 
 /// Follows the first `count` releases of a block.
 template <class V>
-#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
-// A pack that is handed over in memory costs more than what is done with it.
-__attribute__((flatten))
-#endif
 void follow_block(KernelBlock& block, int count, Asked asked) {
-  constexpr int width = Traits<V>::width;
+  constexpr int widest = KernelBlock::widest;
   for (int k = 0; k < KernelBlock::inputs; ++k)
-    for (int i = count; i < (count + width - 1) / width * width; ++i)
+    for (int i = count; i < (count + widest - 1) / widest * widest; ++i)
       block.input[k][i] = block.input[k][count - 1];
   for (int i = 0; i < count; ++i) block.given_up[i] = block.unsure[i] = false;
   SlotList again, none;

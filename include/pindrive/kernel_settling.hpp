@@ -83,6 +83,13 @@ class Settling {
     turning = select(found, far - friction, turning);
     distance = select(found, near + (width - friction), distance);
     side = select(found, one, side);
+    // Past the middle of a half turn its end is the nearer turning point; near e^(−πρ/2), that is.
+    const V linear = larger(one - V(0x1.921fb54442d18p-2) * r.swing.rho, zero);
+    const V fourth = (linear * linear) * (linear * linear);
+    const Mask past = found & (distance < r.swing.rho * fourth * turning);
+    time = select(past, time + r.swing.half, time);
+    turning = select(past, zero - r.swing.shrink * turning, turning);
+    side = select(past, V(-1.0), side);
     const Mask enters = found | entered, turned = enters & !(side == zero);
     const V part = distance / select(turning == zero, one, turning);
     const V angle = past_turn(select(turned, part, one), side * r.swing.rho).angle;

@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -221,6 +222,41 @@ struct Row {
   }
 };
 
+/// Rows of numbers, in memory that NumPy asks the system for in large pages. The system clears what it
+/// hands out, which takes as long as a fifth of the work: the memory of results that nobody holds any
+/// more therefore serves the next ones, if it is not large. Used with the interpreter's lock held.
+class Rows {
+ public:
+  Rows(std::size_t count, std::size_t size) : size_(size) {
+    PyObject* memory = std::exchange(kept, nullptr);
+    if (!memory || length(memory) < count * size) {
+      Py_XDECREF(memory);
+      memory = nb::module_::import_("numpy").attr("empty")(count * size).release().ptr();
+    }
+    owner_ = nb::capsule(memory, [](void* given_back) noexcept {
+      auto* memory = static_cast<PyObject*>(given_back);
+      if (length(memory) <= most_kept && !(kept && length(kept) > length(memory)))
+        std::swap(kept, memory);
+      Py_XDECREF(memory);
+    });
+    values_ = nb::cast<Memory>(nb::handle(memory)).data();
+  }
+  double* operator[](std::size_t k) { return values_ + k * size_; }
+  nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> array(std::size_t k) {
+    return {(*this)[k], {size_}, owner_};
+  }
+
+ private:
+  using Memory = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+  static std::size_t length(PyObject* memory) { return nb::len(nb::handle(memory)); }
+
+  static constexpr std::size_t most_kept = std::size_t{1} << 23;  // numbers, 64 MiB
+  inline static PyObject* kept = nullptr;
+  std::size_t size_;
+  nb::capsule owner_;
+  double* values_{nullptr};
+};
+
 /// A column of flags or counts over all points, each of which is written once.
 template <class T>
 class Column {
@@ -253,9 +289,7 @@ class Batch {
         rows_(outputs.begin(), outputs.end()),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
-        // One block, which NumPy asks the system for in large pages.
-        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(rows_.size(), size()))),
-        numbers_(nb::cast<nb::ndarray<double, nb::c_contig, nb::device::cpu>>(block_).data()),
+        numbers_(rows_.size(), size()),
         status_(size()),
         ending_(size()),
         events_(events ? size() : 0) {
@@ -291,7 +325,7 @@ class Batch {
   /// The columns; and how many points the general core followed.
   nb::dict table() {
     nb::dict columns;
-    for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = block_[k];
+    for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = numbers_.array(k);
     columns["status"] = status_.array();
     columns["ending"] = ending_.array();
     if (events_.size() > 0 || size() == 0) columns["events"] = events_.array();
@@ -367,15 +401,15 @@ class Batch {
     if (events_.size() > 0) block.output[PlainNumber::events] = space.events;
     for (std::size_t k = 0; k < rows_.size(); ++k)
       if (rows_[k].number && rows_[k].number->column != no_column)
-        block.output[rows_[k].number->column] = row(k) + first;
+        block.output[rows_[k].number->column] = numbers_[k] + first;
     kernel_.follow(block, static_cast<int>(count), asked_);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].number) continue;
       const int column = rows_[k].number->column;
       if (column == no_column)
-        std::fill_n(row(k) + first, count, std::numeric_limits<double>::quiet_NaN());
-      else if (block.output[column] != row(k) + first)  // two rows of one column
-        std::copy_n(block.output[column], count, row(k) + first);
+        std::fill_n(numbers_[k] + first, count, std::numeric_limits<double>::quiet_NaN());
+      else if (block.output[column] != numbers_[k] + first)  // two rows of one column
+        std::copy_n(block.output[column], count, numbers_[k] + first);
     }
     constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
     constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
@@ -391,14 +425,13 @@ class Batch {
         events_[first + i] = static_cast<std::int32_t>(space.events[i]);
     return followed;
   }
-  double* row(std::size_t k) { return numbers_ + k * size(); }
 
   void leave_out(std::size_t i, std::int8_t status) {
     status_[i] = status;
     ending_[i] = -1;
     if (events_.size() > 0) events_[i] = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      row(k)[i] = std::numeric_limits<double>::quiet_NaN();
+      numbers_[k][i] = std::numeric_limits<double>::quiet_NaN();
   }
 
   /// One point, or what is left of it, and its energies.
@@ -422,7 +455,7 @@ class Batch {
         const Number<Summary>* number = rows_[k].number;
         if (!number) continue;
         if (left == Left::all || number->column == PlainNumber::settling_time)
-          row(k)[i] = number->of(summary);
+          numbers_[k][i] = number->of(summary);
       }
     }
     if (left == Left::all) {
@@ -433,7 +466,7 @@ class Batch {
     if (!energy_) return;
     const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].energy) row(k)[i] = rows_[k].energy->of(ledger);
+      if (rows_[k].energy) numbers_[k][i] = rows_[k].energy->of(ledger);
   }
 
   const Inputs& inputs_;
@@ -444,8 +477,7 @@ class Batch {
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
-  nb::object block_;
-  double* numbers_;  ///< its rows are the columns
+  Rows numbers_;
   Column<std::int8_t> status_, ending_;
   Column<std::int32_t> events_;
   std::atomic<std::size_t> next_{0}, general_{0};
@@ -481,6 +513,11 @@ std::vector<int> kernel_widths() {
 
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+std::pair<double, double> extremes(const Numbers& values, int width) {
+  const auto found = kernel_for(width).extremes(values.data(), values.size());
+  return {found.least, found.largest};
+}
+
 nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, const Numbers& a,
                                                                      const Numbers& b, int width) {
   Column<double> found(a.size());
@@ -505,6 +542,8 @@ void bind_batch(nb::module_& m) {
       "status says which, its numbers are NaN. The column of events is there if asked for; "
       "`general` says how many points the general core followed. The kernel works in packs of "
       "`width`; 0: the widest.");
+  m.def("extremes", &extremes, "values"_a, "width"_a = 0,
+        "The least and the largest of the values in one pass; NaN if one is NaN, or there is none.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
         "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "

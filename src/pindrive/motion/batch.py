@@ -188,7 +188,8 @@ def batched(
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
     table = _core.simulate_batch(spread, _BOUNDS, workers, numbers, "events" in wanted)
     if _SETTLED in wanted:
-        table[_SETTLED] = ~np.isnan(table[_NUMBERS[_SETTLING_TIME]])
+        settling_time = table[_NUMBERS[_SETTLING_TIME]]
+        table[_SETTLED] = settling_time == settling_time  # not NaN
     columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
@@ -331,7 +332,7 @@ def _warn(name: str, given: Broadcastable) -> None:
     seen = quantity.seen
     if seen is None or not values.size:
         return
-    ends = float(values.min()), float(values.max())
+    ends = _core.extremes(values.ravel())
     if ends[0] * ends[1] > 0.0 and all(
         abs(end) in seen and end in quantity.bounds and end in quantity.limits for end in ends
     ):
