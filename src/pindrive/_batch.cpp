@@ -2,7 +2,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -17,6 +16,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -70,10 +70,21 @@ using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
 
+/// Which of the arrays have one value.
+std::array<bool, input_count> with_one_value(const Inputs& inputs) {
+  std::array<bool, input_count> found{};
+  for (std::size_t k = 0; k < input_count; ++k) {
+    found[k] = true;
+    for (std::size_t axis = 0; axis < inputs[k].ndim(); ++axis)
+      found[k] = found[k] && (inputs[k].stride(axis) == 0 || inputs[k].shape(axis) == 1);
+  }
+  return found;
+}
+
 /// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
-/// array may stand still.
+/// array may stand still. Of those that are not `asked` for nothing is written.
 void points(const Inputs& inputs, std::size_t first, std::size_t count,
-            double (*columns)[Block::stride]) {
+            const std::array<bool, input_count>& asked, double (*columns)[Block::stride]) {
   const std::size_t axes = inputs[0].ndim();
   const std::size_t along = axes == 0 ? 1 : inputs[0].shape(axes - 1);
   for (std::size_t done = 0; done < count;) {
@@ -87,6 +98,7 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
     }
     const std::size_t run = std::min(count - done, along - (first + done) % along);
     for (std::size_t k = 0; k < input_count; ++k) {
+      if (!asked[k]) continue;
       const double* from = inputs[k].data() + offset[k];
       const std::int64_t stride = axes == 0 ? 0 : inputs[k].stride(axes - 1);
       double* to = columns[k] + done;
@@ -290,9 +302,18 @@ class Batch {
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
         numbers_(rows_.size(), size()),
+        varies_(with_one_value(inputs)),
         status_(size()),
         ending_(size()),
         events_(events ? size() : 0) {
+    for (bool& each : varies_) each = !each;
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    ends_.fill({infinite, -infinite});
+    // What the load multiplies is written anew for each block, unless it stays as it is.
+    if (varies_[plate_load] || (size() > 0 && *inputs[plate_load].data() != 1.0))
+      varies_[plate_kinetic] = varies_[plate_static] = varies_[plate_load] = true;
+    for (std::size_t k = 0; k < input_count; ++k)
+      if (!varies_[k] && size() > 0) ends_[k] = {*inputs[k].data(), *inputs[k].data()};
     for (const Row& row : rows_) {
       asked_ = std::max(asked_, row.asked());
       energy_ = energy_ || row.energy;
@@ -322,7 +343,7 @@ class Batch {
     }
   }
 
-  /// The columns; and how many points the general core followed.
+  /// The columns; how many points the general core followed; the extremes of the inputs.
   nb::dict table() {
     nb::dict columns;
     for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = numbers_.array(k);
@@ -330,6 +351,9 @@ class Batch {
     columns["ending"] = ending_.array();
     if (events_.size() > 0 || size() == 0) columns["events"] = events_.array();
     columns["general"] = general_.load();
+    nb::list extremes;
+    for (const pe::Extremes& each : ends_) extremes.append(nb::make_tuple(each.least, each.largest));
+    columns["extremes"] = extremes;
     return columns;
   }
 
@@ -348,23 +372,46 @@ class Batch {
     return size;
   }
 
+  /// What one thread does.
   template <class GoOn>
   void work(GoOn go_on) {
     const auto space = std::make_unique<Space>();
+    fill(space->block, std::min(share, size()));
+    std::array<pe::Extremes, input_count> ends = ends_;
+    follow(go_on, *space, ends);
+    const std::lock_guard<std::mutex> one_thread(merging_);
+    for (std::size_t k = 0; k < input_count; ++k) merge(ends_[k], ends[k]);
+  }
+
+  /// What does not change from point to point is written once.
+  void fill(Block& block, std::size_t count) {
+    for (std::size_t k = 0; k < input_count; ++k)
+      if (!varies_[k]) std::fill_n(block.input[k], count, size() > 0 ? *inputs_[k].data() : 0.0);
+  }
+  /// NaN stays.
+  static void merge(pe::Extremes& all, const pe::Extremes& some) {
+    if (all.least == all.least && !(all.least <= some.least)) all.least = some.least;
+    if (all.largest == all.largest && !(all.largest >= some.largest)) all.largest = some.largest;
+  }
+
+  template <class GoOn>
+  void follow(GoOn go_on, Space& space, std::array<pe::Extremes, input_count>& ends) {
     for (;;) {
       const std::size_t first = next_.fetch_add(share);
       if (first >= size()) return;
       const std::size_t count = std::min(share, size() - first);
       if (!go_on(count)) return;
-      Block& block = space->block;
-      points(inputs_, first, count, block.input);
-      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
+      Block& block = space.block;
+      points(inputs_, first, count, varies_, block.input);
+      for (std::size_t k = 0; k < input_count; ++k)
+        if (varies_[k]) merge(ends[k], kernel_.extremes(block.input[k], count));
+      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space.broken);
       press(block, count);
-      const bool followed = by_kernel(first, count, *space);
+      const bool followed = by_kernel(first, count, space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
-        if (space->broken[i] != 0) {
-          leave_out(first + i, static_cast<std::int8_t>(refused + space->broken[i]));
+        if (space.broken[i] != 0) {
+          leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
         const Left left = left_by_kernel(block, i);
@@ -372,15 +419,16 @@ class Batch {
         if (!go_on(1)) return;
         Point p;
         for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
-        by_general_core(first + i, p, left, space->segments, [&] { return go_on(1); });
-        if (space->segments.capacity() > keep)
-          std::vector<pd::Segment<double>>().swap(space->segments);
+        by_general_core(first + i, p, left, space.segments, [&] { return go_on(1); });
+        if (space.segments.capacity() > keep)
+          std::vector<pd::Segment<double>>().swap(space.segments);
       }
     }
   }
 
   /// The load of the plate multiplies its friction forces.
-  static void press(Block& block, std::size_t count) {
+  void press(Block& block, std::size_t count) const {
+    if (!varies_[plate_load]) return;  // it is 1
     for (const std::size_t force : {plate_kinetic, plate_static})
       for (std::size_t i = 0; i < count; ++i) block.input[force][i] *= block.input[plate_load][i];
   }
@@ -478,6 +526,9 @@ class Batch {
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
   Rows numbers_;
+  std::array<bool, input_count> varies_;  ///< which inputs are written for each block
+  std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
+  std::mutex merging_;
   Column<std::int8_t> status_, ending_;
   Column<std::int32_t> events_;
   std::atomic<std::size_t> next_{0}, general_{0};
@@ -513,11 +564,6 @@ std::vector<int> kernel_widths() {
 
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-std::pair<double, double> extremes(const Numbers& values, int width) {
-  const auto found = kernel_for(width).extremes(values.data(), values.size());
-  return {found.least, found.largest};
-}
-
 nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, const Numbers& a,
                                                                      const Numbers& b, int width) {
   Column<double> found(a.size());
@@ -540,10 +586,9 @@ void bind_batch(nb::module_& m) {
       "point that breaks one of the bounds (the least value, the largest, and one beside them or "
       "NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its "
       "status says which, its numbers are NaN. The column of events is there if asked for; "
-      "`general` says how many points the general core followed. The kernel works in packs of "
+      "`general` says how many points the general core followed, `extremes` the least and the "
+      "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
       "`width`; 0: the widest.");
-  m.def("extremes", &extremes, "values"_a, "width"_a = 0,
-        "The least and the largest of the values in one pass; NaN if one is NaN, or there is none.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
         "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "
