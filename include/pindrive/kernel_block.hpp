@@ -91,6 +91,12 @@ class PackRound {
     const auto& end = round_.progress().standing;
     const Mask resting = round_.resting();
     const V position = end.position * release_.mirror;
+    Mask knew_rest(false);
+    if constexpr (Measured) {
+      auto& weighed = round_.progress().settling;
+      knew_rest = weighed.knows_rest();
+      if (settling) weighed.weigh(release_, resting, end.position);
+    }
     if (any(round_.goes_on())) {
       double* column = block.progress[0];
       round_.progress().columns([&](V& value) {
@@ -106,13 +112,11 @@ class PackRound {
     if constexpr (Measured) {
       auto& progress = round_.progress();
       if (settling) {
-        const Mask knew = progress.settling.knew_rest();
-        progress.settling.weigh(release_, resting, end.position);
         const auto found = progress.settling.settled(release_, round_.last_turns());
         give(PlainNumber::settling_time, select(resting, found.time, V(none)));
         unsure = resting & found.unsure;
         if constexpr (Later) {
-          const Mask which = resting & found.within & !knew & !round_.given_up();
+          const Mask which = resting & found.within & !knew_rest & !round_.given_up();
           if (any(which)) {
             out(block.rest, position);
             again.add(slots_, which);

@@ -98,8 +98,8 @@ class Settling {
     return {settled, unsure, !enters};
   }
 
-  /// Whether the place of rest was known before its motion was followed.
-  Mask knew_rest() const { return rest_ == rest_; }
+  /// Whether the place of rest is known.
+  Mask knows_rest() const { return rest_ == rest_; }
 
  private:
   static V width(const V& rest, const ForwardRelease<V>& r) {
@@ -110,7 +110,7 @@ class Settling {
   /// says, however little rounding leaves of it.
   static Mask on_edge(const V& off, const V& width, const Mask& at_start,
                       const ForwardRelease<V>& r) {
-    return !(r.slack() < absolute(off - width)) & !(at_start & (r.slack() < off));
+    return !((r.slack() < absolute(off - width)) | (at_start & (r.slack() < off)));
   }
   void weigh(const Slide<V>& slide, const ForwardRelease<V>& r) {
     const V off = absolute(slide.start - rest_), width = this->width(r);

@@ -54,7 +54,7 @@ PastTurn<V> past_turn(const V& part, const V& rho) {
     angle = select(open, next, angle);
     open = open & !(absolute(change) <= V(1e-4) * smaller(next, pi - next));
   }
-  return {angle, last_slope};
+  return {select(zero < lack, angle, zero), last_slope};
 }
 
 /// The oscillation of mass, spring and damper: x'' − 2α x' + ω0² (x − c) = 0 with α <= 0, its phase
