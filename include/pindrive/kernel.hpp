@@ -65,9 +65,8 @@ struct Progress<V, true> {
     numbers.columns(f);
     settling.columns(f);
   }
-  static constexpr int column_count = Standing<V>::column_count +
-                                      TransientNumbers<V>::column_count +
-                                      Settling<V>::column_count;
+  static constexpr int column_count =
+      Standing<V>::column_count + TransientNumbers<V>::column_count + Settling<V>::column_count;
 };
 
 /// A round, from and to a progress. `Later`: not the first one.
@@ -176,8 +175,7 @@ class Round {
     const Mask passes = on & !held & !given_up_;
     above_ = above_ | passes;
     centre_ = select(passes, V(0.0) - r_.outside, centre_);
-    acceleration_ =
-        select(passes, (V(0.0) - r_.fp - carrying) * r_.per_mass, acceleration_);
+    acceleration_ = select(passes, (V(0.0) - r_.fp - carrying) * r_.per_mass, acceleration_);
   }
 
   /// Faster than the plate, it comes back to its velocity.
@@ -294,8 +292,7 @@ class Round {
       numbers.turns = numbers.turns + select(on, n, zero);
       const V distance = (sum - first) + (sum + w);
       numbers.finger_slid = numbers.finger_slid + select(some, distance, zero);
-      numbers.plate_slid =
-          numbers.plate_slid + select(some, r_.vp * time - (position - x_), zero);
+      numbers.plate_slid = numbers.plate_slid + select(some, r_.vp * time - (position - x_), zero);
       numbers.plate_peak = select(some, larger(numbers.plate_peak, r_.fp), numbers.plate_peak);
       numbers.moved = select(some, one, numbers.moved);
       // What moves on after one half turn came back from a turn outside.
@@ -308,8 +305,7 @@ class Round {
     const Mask moves_on = on & left;
     v_ = select(moves_on, zero, v_);  // which may have been −0
     centre_ = select(moves_on, select(x_ < middle, r_.between, r_.outside), centre_);
-    acceleration_ =
-        select(moves_on, zero - w_.omega0_squared * (x_ - centre_), acceleration_);
+    acceleration_ = select(moves_on, zero - w_.omega0_squared * (x_ - centre_), acceleration_);
     late_ = late_ | (on & late);
     goes_on_ = goes_on_ | (moves_on & !late);
   }

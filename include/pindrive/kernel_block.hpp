@@ -11,7 +11,7 @@ enum class Asked : signed char { state, numbers, settling };
 
 /// Releases and what became of them, one in each slot; columns as in PlainRelease, and these.
 struct KernelBlock {
-  static constexpr int capacity = 512, widest = 16;  ///< slots; those of a pack
+  static constexpr int capacity = 1024, widest = 16;  ///< slots; those of a pack
   /// From a column to the next: not a power of two, which would put all columns in the same few sets
   /// of the processor's cache.
   static constexpr int stride = capacity + widest;
@@ -56,7 +56,8 @@ struct SlotList {
   int size{0};
   template <class Mask>
   void add(const Slots& from, const Mask& which) {
-    for (int i = 0; i < from.size; ++i) {  // without a branch that the processor would have to guess
+    for (int i = 0; i < from.size;
+         ++i) {  // without a branch that the processor would have to guess
       slots[size] = from[i];
       size += answer(which, i) ? 1 : 0;
     }
@@ -145,9 +146,9 @@ class PackRound {
   }
   static ForwardRelease<V> release(const KernelBlock& block, const Slots& slots) {
     const auto input = [&](int k) { return in(block.input[k], slots); };
-    return ForwardRelease<V>(PlainRelease<V>{
-        input(0), input(1), input(2), input(3), input(4), input(5), input(6), input(7), input(8),
-        input(9), input(10), input(11), input(12)});
+    return ForwardRelease<V>(PlainRelease<V>{input(0), input(1), input(2), input(3), input(4),
+                                             input(5), input(6), input(7), input(8), input(9),
+                                             input(10), input(11), input(12)});
   }
   void out(double* column, const V& value) const {
     if (!slots_.list && slots_.size == Traits<V>::width) {
@@ -231,8 +232,7 @@ void follow_block(KernelBlock& block, int count, Asked asked) {
   }
   const bool settling = asked == Asked::settling;
   follow_all<V, true>(block, nullptr, count, settling, false, again);
-  if (again.size > 0)
-    follow_all<V, true>(block, again.slots, again.size, settling, true, none);
+  if (again.size > 0) follow_all<V, true>(block, again.slots, again.size, settling, true, none);
 }
 
 }  // namespace PINDRIVE_TARGET

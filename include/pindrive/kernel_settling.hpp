@@ -10,8 +10,8 @@ inline namespace PINDRIVE_TARGET {
 /// or beyond, its end (−1), or a stretch that the plate carries it (0).
 template <class V>
 struct Slide {
-  V start{__builtin_nan("")};  ///< position; NaN is none
-  V time{0.0};                 ///< of the turning point, or of the start
+  V start{__builtin_nan("")};               ///< position; NaN is none
+  V time{0.0};                              ///< of the turning point, or of the start
   V distance{1.0}, centre{0.0}, side{0.0};  ///< of the turning point from the centre
 };
 

@@ -42,8 +42,8 @@ using Ledger = pd::Ledger<double>;
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
 
-constexpr std::size_t share = Block::capacity;  // points that a thread takes at a time
-constexpr std::size_t keep = 1U << 12;          // segments that a thread keeps room for
+constexpr std::size_t least_share = 64;  // points that a thread takes at a time, at most a block
+constexpr std::size_t keep = 1U << 12;   // segments that a thread keeps room for
 
 // ---- in ------------------------------------------------------------------------------------------
 
@@ -325,10 +325,11 @@ class Batch {
   /// Works all points off with so many threads, of which the caller's is one and alone looks for an
   /// interrupt; when it finds one, all of them stop.
   void run(std::size_t threads, Interrupt& interrupt) {
+    share_ = std::clamp<std::size_t>(size() / (4 * threads), least_share, Block::capacity);
     const auto go_on = [&](std::size_t) { return !stopped_.load(std::memory_order_relaxed); };
     std::vector<std::future<void>> others;
     try {
-      while (others.size() + 1 < std::min(threads, size() / share + 1))
+      while (others.size() + 1 < std::min(threads, size() / share_ + 1))
         others.push_back(std::async(std::launch::async, [this, go_on] { work(go_on); }));
       work([&](std::size_t done) { return interrupt.go_on(done); });
     } catch (...) {
@@ -352,7 +353,8 @@ class Batch {
     if (events_.size() > 0 || size() == 0) columns["events"] = events_.array();
     columns["general"] = general_.load();
     nb::list extremes;
-    for (const pe::Extremes& each : ends_) extremes.append(nb::make_tuple(each.least, each.largest));
+    for (const pe::Extremes& each : ends_)
+      extremes.append(nb::make_tuple(each.least, each.largest));
     columns["extremes"] = extremes;
     return columns;
   }
@@ -376,7 +378,7 @@ class Batch {
   template <class GoOn>
   void work(GoOn go_on) {
     const auto space = std::make_unique<Space>();
-    fill(space->block, std::min(share, size()));
+    fill(space->block, std::min(share_, size()));
     std::array<pe::Extremes, input_count> ends = ends_;
     follow(go_on, *space, ends);
     const std::lock_guard<std::mutex> one_thread(merging_);
@@ -397,9 +399,9 @@ class Batch {
   template <class GoOn>
   void follow(GoOn go_on, Space& space, std::array<pe::Extremes, input_count>& ends) {
     for (;;) {
-      const std::size_t first = next_.fetch_add(share);
+      const std::size_t first = next_.fetch_add(share_);
       if (first >= size()) return;
-      const std::size_t count = std::min(share, size() - first);
+      const std::size_t count = std::min(share_, size() - first);
       if (!go_on(count)) return;
       Block& block = space.block;
       points(inputs_, first, count, varies_, block.input);
@@ -462,16 +464,16 @@ class Batch {
     constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
     constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
     const double* since = block.output[Block::rest_time];
-    bool followed = true;
-    for (std::size_t i = 0; i < count; ++i) {
-      status_[first + i] = static_cast<std::int8_t>(pd::Status::ok);
+    std::fill_n(&status_[first], count, static_cast<std::int8_t>(pd::Status::ok));
+    for (std::size_t i = 0; i < count; ++i)
       ending_[first + i] = since[i] == since[i] ? resting : moving;
-      followed = followed & !block.given_up[i] & !block.unsure[i];
-    }
     if (events_.size() > 0)
       for (std::size_t i = 0; i < count; ++i)
         events_[first + i] = static_cast<std::int32_t>(space.events[i]);
-    return followed;
+    const auto none = [&](const bool* flags) {
+      return std::find(flags, flags + count, true) == flags + count;
+    };
+    return none(block.given_up) && none(block.unsure);
   }
 
   void leave_out(std::size_t i, std::int8_t status) {
@@ -519,14 +521,14 @@ class Batch {
 
   const Inputs& inputs_;
   const pe::Bounds& bounds_;
-  std::size_t size_;
+  std::size_t size_, share_{least_share};
   const std::vector<std::string>& names_;
   std::vector<Row> rows_;
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
   Rows numbers_;
-  std::array<bool, input_count> varies_;  ///< which inputs are written for each block
+  std::array<bool, input_count> varies_;        ///< which inputs are written for each block
   std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
   std::mutex merging_;
   Column<std::int8_t> status_, ending_;

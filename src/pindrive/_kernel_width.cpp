@@ -81,8 +81,7 @@ bool all_surely_keep(const pk::KernelBlock& block, int count, const Bounds& boun
     good = good & (in(plate_kinetic) <= in(plate_static)) &
            (in(finger_kinetic) <= in(finger_static)) & (V(least) < critical) &
            (critical < V(most)) & (squared <= largest * critical) &
-           ((smallest * critical <= squared) |
-            ((in(damping) == beside) & (beside == V(0.0)))) &
+           ((smallest * critical <= squared) | ((in(damping) == beside) & (beside == V(0.0)))) &
            ((time == V(__builtin_inf())) | (turned <= in(mass) * of_phase));
   }
   using pk::any;
