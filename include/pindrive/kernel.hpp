@@ -15,8 +15,7 @@
 /// decide what comes next, and where it repeats a cycle of carrying and sliding for ever.
 #pragma once
 
-#include "pindrive/kernel_numbers.hpp"
-#include "pindrive/kernel_settling.hpp"
+#include "pindrive/kernel_progress.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
@@ -26,48 +25,6 @@ inline namespace PINDRIVE_TARGET {
 inline constexpr double near_grazing = 1e-9;
 /// Half turns that are followed; each costs a few operations, of a whole pack if one drive needs it.
 inline constexpr int most_half_turns = 4096;
-
-/// Where a release is at the start of a round, its plate moving forward.
-template <class V>
-struct Standing {
-  V position, velocity, time;  ///< m, m/s, s
-  V released;                  ///< 1 where the plate carried it and let it go, else 0
-
-  explicit Standing(const ForwardRelease<V>& r)
-      : position(r.start), velocity(r.start_velocity), time(0.0), released(0.0) {}
-  template <class F>
-  void columns(const F& f) {
-    f(position), f(velocity), f(time), f(released);
-  }
-  static constexpr int column_count = 4;
-};
-
-/// All of it at the start of a round. `Measured`: with its numbers.
-template <class V, bool Measured>
-struct Progress {
-  Standing<V> standing;
-  explicit Progress(const ForwardRelease<V>& r) : standing(r) {}
-  template <class F>
-  void columns(const F& f) {
-    standing.columns(f);
-  }
-  static constexpr int column_count = Standing<V>::column_count;
-};
-template <class V>
-struct Progress<V, true> {
-  Standing<V> standing;
-  TransientNumbers<V> numbers;
-  Settling<V> settling;
-  explicit Progress(const ForwardRelease<V>& r) : standing(r), numbers(r) {}
-  template <class F>
-  void columns(const F& f) {
-    standing.columns(f);
-    numbers.columns(f);
-    settling.columns(f);
-  }
-  static constexpr int column_count =
-      Standing<V>::column_count + TransientNumbers<V>::column_count + Settling<V>::column_count;
-};
 
 /// A round, from and to a progress. `Later`: not the first one.
 template <class V, bool Later, bool Measured>

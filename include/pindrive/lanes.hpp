@@ -212,7 +212,16 @@ struct VectorLanes {
   }
   static Truth less(Number a, Number b) { return (Truth)(a < b); }
   static Truth less_equal(Number a, Number b) { return (Truth)(a <= b); }
-  static Truth equal(Number a, Number b) { return (Truth)(a == b); }
+  /// Not by == of vectors, which GCC 12 gets wrong in halves at -O1 and -O2.
+  static Truth equal(Number a, Number b) {
+#if defined(__AVX2__)
+    if constexpr (N == 4) return (Truth)_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_EQ_OQ);
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 2) return (Truth)_mm_cmpeq_pd((__m128d)a, (__m128d)b);
+#endif
+    return (Truth)((a <= b) & (b <= a));
+  }
   static Number choose(Truth t, Number a, Number b) {
     return (Number)(((Truth)a & t) | ((Truth)b & ~t));
   }

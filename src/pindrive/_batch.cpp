@@ -22,6 +22,8 @@
 #include <utility>
 #include <vector>
 
+#include "_batch_numbers.hpp"
+#include "_batch_rows.hpp"
 #include "_kernel.hpp"
 #include "interrupt.hpp"
 #include "pindrive/batch.hpp"
@@ -34,11 +36,7 @@ using nb::literals::operator""_a;
 
 namespace {
 
-/// Of one point: all its numbers, and where it is in the end.
-struct Summary : pd::Summary<double> {
-  double final_position, final_velocity;
-};
-using Ledger = pd::Ledger<double>;
+using pe::Column, pe::Ledger, pe::no_column, pe::Number, pe::Row, pe::Rows, pe::Summary;
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
 
@@ -128,164 +126,6 @@ pd::Drive<double> drive_of(const Point& p) {
 pd::Inputs<double> inputs_of(const Point& p) {
   return {p[mouse_velocity], p[displacement], p[velocity], p[duration]};
 }
-
-// ---- out -----------------------------------------------------------------------------------------
-
-constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
-
-/// A number that is read off a summary or a ledger, or a column of the kernel's.
-template <class Source>
-struct Number {
-  const char* name;  ///< in the table of quantities
-  double (*of)(const Source&);
-  int column = no_column;
-};
-
-constexpr Number<Summary> numbers[] = {
-    {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; },
-     PlainNumber::peak_displacement},
-    {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; },
-     PlainNumber::peak_time},
-    {"transient.trough_displacement",
-     [](const Summary& s) { return s.transient.trough_displacement; },
-     PlainNumber::trough_displacement},
-    {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; },
-     PlainNumber::trough_time},
-    {"transient.swing", [](const Summary& s) { return s.transient.swing; }, PlainNumber::swing},
-    {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; },
-     PlainNumber::return_velocity},
-    {"transient.return_velocity_time",
-     [](const Summary& s) { return s.transient.return_velocity_time; },
-     PlainNumber::return_velocity_time},
-    {"transient.first_reversal_time",
-     [](const Summary& s) { return s.transient.first_reversal_time; },
-     PlainNumber::first_reversal_time},
-    {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; },
-     PlainNumber::settling_time},
-    {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; },
-     Block::rest_time},
-    {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; },
-     Block::rest_time},  // the event is that it comes to rest
-    {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
-    {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
-    {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; },
-     PlainNumber::plate_reversals},
-    {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; },
-     PlainNumber::plate_time_stuck},
-    {"transient.plate.distance_slid",
-     [](const Summary& s) { return s.transient.plate.distance_slid; },
-     PlainNumber::plate_distance_slid},
-    {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; },
-     PlainNumber::plate_dissipated},
-    {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; },
-     PlainNumber::plate_peak_force},
-    {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; },
-     PlainNumber::finger_reversals},
-    {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; },
-     PlainNumber::finger_time_stuck},
-    {"transient.finger.distance_slid",
-     [](const Summary& s) { return s.transient.finger.distance_slid; },
-     PlainNumber::finger_distance_slid},
-    {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; },
-     PlainNumber::finger_dissipated},
-    {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; },
-     PlainNumber::finger_peak_force},
-    {"ending.position", [](const Summary& s) { return s.transient.end_position; },
-     Block::rest_position},
-    {"ending.steady_since", [](const Summary& s) { return s.transient.steady_since; }},
-    {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
-    {"ending.period", [](const Summary& s) { return s.outcome.period; }},
-    {"duration", [](const Summary& s) { return s.duration; }, PlainNumber::duration},
-    {"final.position", [](const Summary& s) { return s.final_position; }, Block::final_position},
-    {"final.velocity", [](const Summary& s) { return s.final_velocity; }, Block::final_velocity},
-};
-constexpr Number<Ledger> energies[] = {
-    {"energy.kinetic_start", [](const Ledger& l) { return l.kinetic_start; }},
-    {"energy.kinetic_end", [](const Ledger& l) { return l.kinetic_end; }},
-    {"energy.spring_start", [](const Ledger& l) { return l.spring_start; }},
-    {"energy.spring_end", [](const Ledger& l) { return l.spring_end; }},
-    {"energy.skin_start", [](const Ledger& l) { return l.skin_start; }},
-    {"energy.skin_end", [](const Ledger& l) { return l.skin_end; }},
-    {"energy.plate_work", [](const Ledger& l) { return l.plate_work; }},
-    {"energy.inertia_work", [](const Ledger& l) { return l.inertia_work; }},
-    {"energy.damper_dissipated", [](const Ledger& l) { return l.damper_dissipated; }},
-    {"energy.plate_dissipated", [](const Ledger& l) { return l.plate_dissipated; }},
-    {"energy.finger_dissipated", [](const Ledger& l) { return l.finger_dissipated; }},
-    {"energy.residual", [](const Ledger& l) { return l.residual(); }},
-};
-/// A row of the results: one of those tables.
-struct Row {
-  const Number<Summary>* number{nullptr};
-  const Number<Ledger>* energy{nullptr};
-
-  explicit Row(const std::string& name) {
-    for (const auto& each : numbers)
-      if (name == each.name) number = &each;
-    for (const auto& each : energies)
-      if (name == each.name) energy = &each;
-    if (!number && !energy) throw std::invalid_argument("there is no number " + name);
-  }
-  /// What the kernel must be asked for it.
-  pd::detail::Asked asked() const {
-    using pd::detail::Asked;
-    if (!number || number->column == no_column || number->column >= Block::rest_position)
-      return Asked::state;
-    return number->column == PlainNumber::settling_time ? Asked::settling : Asked::numbers;
-  }
-};
-
-/// Rows of numbers, in memory that NumPy asks the system for in large pages. The system clears what it
-/// hands out, which takes as long as a fifth of the work: the memory of results that nobody holds any
-/// more therefore serves the next ones, if it is not large. Used with the interpreter's lock held.
-class Rows {
- public:
-  Rows(std::size_t count, std::size_t size) : size_(size) {
-    PyObject* memory = std::exchange(kept, nullptr);
-    if (!memory || length(memory) < count * size) {
-      Py_XDECREF(memory);
-      memory = nb::module_::import_("numpy").attr("empty")(count * size).release().ptr();
-    }
-    owner_ = nb::capsule(memory, [](void* given_back) noexcept {
-      auto* memory = static_cast<PyObject*>(given_back);
-      if (length(memory) <= most_kept && !(kept && length(kept) > length(memory)))
-        std::swap(kept, memory);
-      Py_XDECREF(memory);
-    });
-    values_ = nb::cast<Memory>(nb::handle(memory)).data();
-  }
-  double* operator[](std::size_t k) { return values_ + k * size_; }
-  nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> array(std::size_t k) {
-    return {(*this)[k], {size_}, owner_};
-  }
-
- private:
-  using Memory = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-  static std::size_t length(PyObject* memory) { return nb::len(nb::handle(memory)); }
-
-  static constexpr std::size_t most_kept = std::size_t{1} << 23;  // numbers, 64 MiB
-  inline static PyObject* kept = nullptr;
-  std::size_t size_;
-  nb::capsule owner_;
-  double* values_{nullptr};
-};
-
-/// A column of flags or counts over all points, each of which is written once.
-template <class T>
-class Column {
- public:
-  explicit Column(std::size_t size) : values_(new T[size]), size_(size) {}
-  T& operator[](std::size_t i) { return values_[i]; }
-  std::size_t size() const { return size_; }
-  nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig> array() {
-    T* values = values_.release();
-    const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-    return {values, {size_}, owner};
-  }
-
- private:
-  std::unique_ptr<T[]> values_;
-  std::size_t size_;
-};
 
 // ---- between -------------------------------------------------------------------------------------
 

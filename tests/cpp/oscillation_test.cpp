@@ -1,10 +1,10 @@
 // The swing about a centre against itself a little later, and its inverse against its values.
+#include "pindrive/oscillation.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
-
-#include "pindrive/oscillation.hpp"
 
 namespace pk = pindrive::detail;
 
@@ -17,7 +17,8 @@ int main() {
   // The worst of: a root's value, its slope; and of the oscillation, parts of its size.
   double value = 0, slope = 0, turn = 0, extreme = 0, place = 0, half_turn = 0;
   for (int i = 0; i < 200'000; ++i) {
-    const double damping_ratio = uniform(0, 0.985), root = std::sqrt(1 - damping_ratio * damping_ratio);
+    const double damping_ratio = uniform(0, 0.985),
+                 root = std::sqrt(1 - damping_ratio * damping_ratio);
     const double rho = (i % 2 == 0 ? 1 : -1) * damping_ratio / root, angle = uniform(0, pi);
     const auto part = [&](double d) {
       return std::exp(-rho * d) * (std::cos(d) + rho * std::sin(d));
@@ -34,8 +35,7 @@ int main() {
     const pk::Oscillation<double> swing(mass, stiffness, 2 * damping_ratio * mass * omega0);
     if (!swing.oscillates) continue;
     const double distance = uniform(-1, 1), velocity = omega0 * uniform(-1, 1);
-    const double acceleration =
-        2 * swing.alpha * velocity - swing.omega0_squared * distance;
+    const double acceleration = 2 * swing.alpha * velocity - swing.omega0_squared * distance;
     const double size = std::abs(distance) + std::abs(velocity) / swing.omega;
     place = std::max(place, std::abs(swing.distance_at(velocity, acceleration) - distance) / size);
     const auto next = swing.next_turn(velocity, acceleration);
@@ -55,8 +55,7 @@ int main() {
     const auto opposite = swing.after(pi, distance, 0);
     half_turn = std::max(half_turn, std::abs(opposite.distance + swing.shrink * distance));
     const auto fastest = swing.after(swing.extreme_angle, distance, 0);
-    half_turn = std::max(
-        half_turn, std::abs(fastest.velocity + swing.extreme * distance) / omega0);
+    half_turn = std::max(half_turn, std::abs(fastest.velocity + swing.extreme * distance) / omega0);
   }
   std::printf("part %.1e, its slope %.1e, turn %.1e, extreme %.1e, place %.1e, half turn %.1e\n",
               value, slope, turn, extreme, place, half_turn);
