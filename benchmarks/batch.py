@@ -124,7 +124,7 @@ KEPT = ("transient_peak_displacement", "transient_settling_time", "ending_positi
 
 def time_study(drives: int, speeds: int, threads: int) -> None:
     """A study of random drives at several speeds of the hand that keeps three numbers."""
-    points = {name: values[:, None] for name, values in drawn(drives, 2).items()}
+    points: dict[str, Any] = {k: values[:, None] for k, values in drawn(drives, 2).items()}
     points |= {"mouse_velocity": np.linspace(0.02, 0.3, speeds)}
     begin, worked = perf_counter(), process_time()
     data = simulate_batch(
