@@ -5,7 +5,8 @@ Both are timed twice: keeping nothing but the last state, and with numbers: all 
 Its error is the largest |x - x_exact| over its steps, as a part of the release displacement.
 
 A table follows of the kernel in packs of every width that the processor has, with the share of
-drives that it left to the general core. Where build/cpp/core is built, that core is timed alone.
+drives that it left to the general core; then the time of a study of 10 million points that keeps
+three numbers, on two threads. Where build/cpp/core is built, that core is timed alone.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
-from time import process_time
+from time import perf_counter, process_time
 from typing import Any
 
 import numba
@@ -118,12 +119,31 @@ def width_table(points: dict[str, Any], rounds: int) -> None:
         print(f"{width:10}{times[0]:13.1f} ns{times[1]:13.1f} ns{100.0 * share:14.4f} %")
 
 
+KEPT = ("transient_peak_displacement", "transient_settling_time", "ending_position")
+
+
+def time_study(drives: int, speeds: int, threads: int) -> None:
+    """A study of random drives at several speeds of the hand that keeps three numbers."""
+    points: dict[str, Any] = {k: values[:, None] for k, values in drawn(drives, 2).items()}
+    points |= {"mouse_velocity": np.linspace(0.02, 0.3, speeds)}
+    begin, worked = perf_counter(), process_time()
+    data = simulate_batch(
+        DRIVE, RELEASE, outputs=KEPT, threads=threads, duration=DURATION, **points
+    )
+    wall, worked = perf_counter() - begin, process_time() - worked
+    print(
+        f"\n{data.status.size} points of {drives} drives, three numbers, {threads} threads: "
+        f"{wall:.2f} s, {worked:.2f} s of processor time"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1 << 18, help="drives")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--step", type=float, default=1e-4, help="of the stepper, s")
     parser.add_argument("--rounds", type=int, default=15, help="timings of which the median counts")
+    parser.add_argument("--study", type=int, default=10_000_000, help="points of the study")
     parser.add_argument("--core", type=Path, default=ROOT / "build" / "cpp" / "core")
     given = parser.parse_args()
 
@@ -176,6 +196,7 @@ def main() -> None:
         general = took["stepper, last state alone"] / took["core, last state alone"]
         print(f"last state alone, by the general core: {general:.1f} times")
     width_table(points, given.rounds)
+    time_study(given.study // 100, 100, threads=2)
     coarse, fine = stepper_errors(drives[:, :500], given.step, steps), exact_errors(drives[:, :20])
     print(f"\nstepper's error: median {np.median(coarse):.1e}, largest {coarse.max():.1e} of 500")
     print(f"pindrive's error against thirty digits: largest {fine.max():.1e} of 20")

@@ -44,6 +44,7 @@ struct ScalarLanes {
 
   static Number all(double a) { return a; }
   static Integer all(std::uint64_t a) { return a; }
+  static Number gather(const double* from, const int* places) { return from[places[0]]; }
   static Number add(Number a, Number b) { return a + b; }
   static Number subtract(Number a, Number b) { return a - b; }
   static Number multiply(Number a, Number b) { return a * b; }
@@ -87,6 +88,9 @@ struct PairLanes {
 
   static Number all(double a) { return {Half::all(a), Half::all(a)}; }
   static Integer all(std::uint64_t a) { return {Half::all(a), Half::all(a)}; }
+  static Number gather(const double* from, const int* places) {
+    return {Half::gather(from, places), Half::gather(from, places + N / 2)};
+  }
   static Number add(const Number& a, const Number& b) {
     return {Half::add(a.low, b.low), Half::add(a.high, b.high)};
   }
@@ -187,6 +191,11 @@ struct VectorLanes {
     for (int i = 0; i < N; ++i) result[i] = a;
     return result;
   }
+  static Number gather(const double* from, const int* places) {
+    Number result{};
+    for (int i = 0; i < N; ++i) result[i] = from[places[i]];
+    return result;
+  }
   static Number add(Number a, Number b) { return a + b; }
   static Number subtract(Number a, Number b) { return a - b; }
   static Number multiply(Number a, Number b) { return a * b; }
@@ -203,7 +212,16 @@ struct VectorLanes {
   }
   static Truth less(Number a, Number b) { return (Truth)(a < b); }
   static Truth less_equal(Number a, Number b) { return (Truth)(a <= b); }
-  static Truth equal(Number a, Number b) { return (Truth)(a == b); }
+  /// Not by == of vectors, which GCC 12 gets wrong in halves at -O1 and -O2.
+  static Truth equal(Number a, Number b) {
+#if defined(__AVX2__)
+    if constexpr (N == 4) return (Truth)_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_EQ_OQ);
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 2) return (Truth)_mm_cmpeq_pd((__m128d)a, (__m128d)b);
+#endif
+    return (Truth)((a <= b) & (b <= a));
+  }
   static Number choose(Truth t, Number a, Number b) {
     return (Number)(((Truth)a & t) | ((Truth)b & ~t));
   }

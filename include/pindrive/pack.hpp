@@ -178,6 +178,14 @@ V load(const double* from) {
 #endif
   return a;
 }
+/// The same from places of a column.
+template <class V>
+V gather(const double* column, const int* places) {
+  if constexpr (Traits<V>::width == 1)
+    return column[places[0]];
+  else
+    return V::of(V::Lanes::gather(column, places));
+}
 template <class V>
 void store(const V& a, double* to) {
 #ifdef __CUDACC__

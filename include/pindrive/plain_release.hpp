@@ -1,7 +1,7 @@
-/// What the kernel takes and gives of plain releases, and the one equation that it solves.
+/// What the kernel takes and gives of plain releases.
 #pragma once
 
-#include "pindrive/elementary.hpp"
+#include "pindrive/oscillation.hpp"
 
 namespace pindrive::detail {
 inline namespace PINDRIVE_TARGET {
@@ -17,15 +17,6 @@ struct PlainRelease {
   V displacement, velocity;         ///< x(0), x'(0): m, m/s
   V duration;                       ///< s; infinite: until it rests
   V settling_band;                  ///< of the settling time, a part of |x(0) − x_end|
-};
-
-/// Where it ends: at rest, or moving at the end of the duration.
-template <class V>
-struct LastState {
-  V position, velocity;  ///< m, m/s
-  V time;                ///< since when it rests, s; NaN while it moves
-  MaskOf<V> given_up;    ///< the general core is asked
-  MaskOf<V> put_off;     ///< it meets the plate again, which was not to be followed
 };
 
 /// The numbers of docs/theory.md, section 6, that a plain release has; what it has not is NaN.
@@ -55,50 +46,67 @@ struct PlainNumber {
     count
   };
 };
-template <class V>
-struct PlainNumbers {
-  V of[PlainNumber::count];
-  MaskOf<V> unsure;  ///< the general core is asked for the settling time
-};
 
-/// The δ in (0, π) with e^(−ρδ) (cos δ + ρ sin δ) = part: how far past its turning point an oscillation
-/// has only this part of its distance from the centre; with −ρ, how far before it. part < 1.
+/// 1 of an even whole number below 2^52, −1 of an odd one.
 template <class V>
-V angle_from_turn(const V& part, const V& rho) {
-  using Mask = MaskOf<V>;
-  const V zero(0.0), pi(0x1.921fb54442d18p+1);
-  const V scale = V(1.0) + rho * rho, lack = larger(V(1.0) - part, zero);
-  // Of the first terms of its power series.
-  const V arc = root(V(2.0) * lack / scale);
-  const V bend_of_arc = rho * rho * V(11.0 / 72) + (V(1.0 / 24) + arc * arc * V(3.0 / 640));
-  const V arched = arc * (V(1.0) + arc * (rho * V(1.0 / 3) + arc * bend_of_arc));
-  V low = zero, high = pi;
-  V angle = select((zero < arched) & (arched < V(3.0)), arched, V(1.5));
-  Mask open = zero < lack;
-  // Householder's iteration of the third order, which has four times the digits after each step; or a
-  // bisection where it leaves the bracket.
-  for (int i = 0; i < 60 && any(open); ++i) {
-    const Circular<V> turned = sine_and_cosine_in_turn(angle);
-    const V decay = exponential_in_range(V(0.0) - rho * angle);
-    const V value = decay * (turned.cosine + rho * turned.sine), excess = value - part;
-    const V slope = V(0.0) - scale * decay * turned.sine;
-    const V bend = V(-2.0) * rho * slope - scale * value;
-    const V change_of_bend = V(-2.0) * rho * bend - scale * slope;
-    const Mask before = zero < excess;
-    low = select(before, angle, low);
-    high = select(before, high, angle);
-    const V squared = slope * slope, product = excess * bend;
-    const V above = V(3.0) * excess * (V(2.0) * squared - product);
-    const V below = V(6.0) * slope * (squared - product) + excess * excess * change_of_bend;
-    const V tried = angle - above / below;
-    const Mask inside = (low <= tried) & (tried <= high);
-    const V next = select(inside, tried, V(0.5) * (low + high));
-    const V change = absolute(next - angle);
-    angle = select(open, next, angle);
-    open = open & !(change <= V(1e-4) * smaller(next, pi - next));
-  }
-  return select(zero < lack, angle, zero);
+V one_or_minus_one(const V& n) {
+  const BitsOf<V> low = bits(n + V(0x1p52));
+  return from_bits<V>((low << 63) | bits(V(1.0)));
 }
+
+/// Two numbers that differ by less than this part of what they are computed from may be equal: a
+/// thousand times what rounding adds up to over the turns that are followed.
+inline constexpr double near_tie = 1e-12;
+
+/// A plain release, seen so that its plate moves forward, with what follows from it.
+template <class V>
+struct ForwardRelease {
+  V mirror;                 ///< ±1, which brings its positions and velocities here and back
+  V stiffness, per_mass;    ///< N/m, 1/kg
+  V flexibility;            ///< m/N
+  V fp, sp, ff, sf;         ///< kinetic and static friction of plate and finger, N
+  V vp, drag;               ///< the plate's velocity, and the damper's force at it
+  V start, start_velocity;  ///< x(0), x'(0)
+  V until, band;
+  V between, outside;  ///< the centre while it slides slower than the plate, and backward, m
+  V size;              ///< of the forces, N
+  Oscillation<V> swing;
+  MaskOf<V> plain;  ///< those that the kernel follows
+
+  explicit ForwardRelease(const PlainRelease<V>& r)
+      : mirror(with_sign(V(1.0), r.mouse_velocity)),
+        stiffness(r.stiffness),
+        fp(r.plate_kinetic),
+        sp(r.plate_static),
+        ff(r.finger_kinetic),
+        sf(r.finger_static),
+        vp(absolute(r.mouse_velocity)),
+        start(r.displacement * mirror),
+        start_velocity(r.velocity * mirror),
+        until(r.duration),
+        band(r.settling_band),
+        swing(r.mass, r.stiffness, r.damping) {
+    const V zero(0.0), speed = absolute(start_velocity);
+    per_mass = V(1.0) / r.mass;
+    flexibility = V(1.0) / stiffness;
+    drag = r.damping * vp;
+    between = (fp - ff) * flexibility;
+    outside = (fp + ff) * flexibility;
+    const V reach = absolute(start) + (speed + vp) * swing.per_omega;
+    size = stiffness * reach + fp + sp + ff + sf + drag + r.damping * speed;
+    plain = (r.finger_stiffness == V(__builtin_inf())) & (zero < vp) & (zero < sp) & (zero < sf) &
+            swing.oscillates;
+  }
+
+  /// The force on the plate while it carries the pin.
+  V carrying(const V& position) const { return stiffness * position + drag + ff; }
+  /// Whether rounding could decide which of two forces is larger.
+  MaskOf<V> tie(const V& one, const V& other) const {
+    return !(V(near_tie) * size < absolute(one - other));
+  }
+  /// The same of positions.
+  V slack() const { return V(near_tie) * size * flexibility; }
+};
 
 }  // namespace PINDRIVE_TARGET
 }  // namespace pindrive::detail

@@ -16,11 +16,14 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "_batch_numbers.hpp"
+#include "_batch_rows.hpp"
 #include "_kernel.hpp"
 #include "interrupt.hpp"
 #include "pindrive/batch.hpp"
@@ -33,16 +36,12 @@ using nb::literals::operator""_a;
 
 namespace {
 
-/// Of one point: all its numbers, and where it is in the end.
-struct Summary : pd::Summary<double> {
-  double final_position, final_velocity;
-};
-using Ledger = pd::Ledger<double>;
+using pe::Column, pe::Ledger, pe::no_column, pe::Number, pe::Row, pe::Rows, pe::Summary;
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
 
-constexpr std::size_t share = Block::capacity;  // points that a thread takes at a time
-constexpr std::size_t keep = 1U << 12;          // segments that a thread keeps room for
+constexpr std::size_t least_share = 64;  // points that a thread takes at a time, at most a block
+constexpr std::size_t keep = 1U << 12;   // segments that a thread keeps room for
 
 // ---- in ------------------------------------------------------------------------------------------
 
@@ -69,10 +68,21 @@ using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
 
+/// Which of the arrays have one value.
+std::array<bool, input_count> with_one_value(const Inputs& inputs) {
+  std::array<bool, input_count> found{};
+  for (std::size_t k = 0; k < input_count; ++k) {
+    found[k] = true;
+    for (std::size_t axis = 0; axis < inputs[k].ndim(); ++axis)
+      found[k] = found[k] && (inputs[k].stride(axis) == 0 || inputs[k].shape(axis) == 1);
+  }
+  return found;
+}
+
 /// Points first to first + count, in C order, of arrays that have one shape, as columns; along an axis an
-/// array may stand still.
+/// array may stand still. Of those that are not `asked` for nothing is written.
 void points(const Inputs& inputs, std::size_t first, std::size_t count,
-            double (*columns)[Block::stride]) {
+            const std::array<bool, input_count>& asked, double (*columns)[Block::stride]) {
   const std::size_t axes = inputs[0].ndim();
   const std::size_t along = axes == 0 ? 1 : inputs[0].shape(axes - 1);
   for (std::size_t done = 0; done < count;) {
@@ -86,6 +96,7 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
     }
     const std::size_t run = std::min(count - done, along - (first + done) % along);
     for (std::size_t k = 0; k < input_count; ++k) {
+      if (!asked[k]) continue;
       const double* from = inputs[k].data() + offset[k];
       const std::int64_t stride = axes == 0 ? 0 : inputs[k].stride(axes - 1);
       double* to = columns[k] + done;
@@ -116,129 +127,6 @@ pd::Inputs<double> inputs_of(const Point& p) {
   return {p[mouse_velocity], p[displacement], p[velocity], p[duration]};
 }
 
-// ---- out -----------------------------------------------------------------------------------------
-
-constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
-
-/// A number that is read off a summary or a ledger, or a column of the kernel's.
-template <class Source>
-struct Number {
-  const char* name;  ///< in the table of quantities
-  double (*of)(const Source&);
-  int column = no_column;
-};
-
-constexpr Number<Summary> numbers[] = {
-    {"transient.peak_displacement", [](const Summary& s) { return s.transient.peak_displacement; },
-     PlainNumber::peak_displacement},
-    {"transient.peak_time", [](const Summary& s) { return s.transient.peak_time; },
-     PlainNumber::peak_time},
-    {"transient.trough_displacement",
-     [](const Summary& s) { return s.transient.trough_displacement; },
-     PlainNumber::trough_displacement},
-    {"transient.trough_time", [](const Summary& s) { return s.transient.trough_time; },
-     PlainNumber::trough_time},
-    {"transient.swing", [](const Summary& s) { return s.transient.swing; }, PlainNumber::swing},
-    {"transient.return_velocity", [](const Summary& s) { return s.transient.return_velocity; },
-     PlainNumber::return_velocity},
-    {"transient.return_velocity_time",
-     [](const Summary& s) { return s.transient.return_velocity_time; },
-     PlainNumber::return_velocity_time},
-    {"transient.first_reversal_time",
-     [](const Summary& s) { return s.transient.first_reversal_time; },
-     PlainNumber::first_reversal_time},
-    {"transient.settling_time", [](const Summary& s) { return s.transient.settling_time; },
-     PlainNumber::settling_time},
-    {"transient.rest_time", [](const Summary& s) { return s.transient.rest_time; },
-     Block::rest_time},
-    {"transient.last_event_time", [](const Summary& s) { return s.transient.last_event_time; },
-     Block::rest_time},  // the event is that it comes to rest
-    {"transient.peak_stretch", [](const Summary& s) { return s.transient.peak_stretch; }},
-    {"transient.peak_stretch_rate", [](const Summary& s) { return s.transient.peak_stretch_rate; }},
-    {"transient.plate.reversals", [](const Summary& s) { return s.transient.plate.reversals; },
-     PlainNumber::plate_reversals},
-    {"transient.plate.time_stuck", [](const Summary& s) { return s.transient.plate.time_stuck; },
-     PlainNumber::plate_time_stuck},
-    {"transient.plate.distance_slid",
-     [](const Summary& s) { return s.transient.plate.distance_slid; },
-     PlainNumber::plate_distance_slid},
-    {"transient.plate.dissipated", [](const Summary& s) { return s.transient.plate.dissipated; },
-     PlainNumber::plate_dissipated},
-    {"transient.plate.peak_force", [](const Summary& s) { return s.transient.plate.peak_force; },
-     PlainNumber::plate_peak_force},
-    {"transient.finger.reversals", [](const Summary& s) { return s.transient.finger.reversals; },
-     PlainNumber::finger_reversals},
-    {"transient.finger.time_stuck", [](const Summary& s) { return s.transient.finger.time_stuck; },
-     PlainNumber::finger_time_stuck},
-    {"transient.finger.distance_slid",
-     [](const Summary& s) { return s.transient.finger.distance_slid; },
-     PlainNumber::finger_distance_slid},
-    {"transient.finger.dissipated", [](const Summary& s) { return s.transient.finger.dissipated; },
-     PlainNumber::finger_dissipated},
-    {"transient.finger.peak_force", [](const Summary& s) { return s.transient.finger.peak_force; },
-     PlainNumber::finger_peak_force},
-    {"ending.position", [](const Summary& s) { return s.transient.end_position; },
-     Block::rest_position},
-    {"ending.steady_since", [](const Summary& s) { return s.transient.steady_since; }},
-    {"ending.amplitude", [](const Summary& s) { return s.transient.amplitude; }},
-    {"ending.period", [](const Summary& s) { return s.outcome.period; }},
-    {"duration", [](const Summary& s) { return s.duration; }, PlainNumber::duration},
-    {"final.position", [](const Summary& s) { return s.final_position; }, Block::final_position},
-    {"final.velocity", [](const Summary& s) { return s.final_velocity; }, Block::final_velocity},
-};
-constexpr Number<Ledger> energies[] = {
-    {"energy.kinetic_start", [](const Ledger& l) { return l.kinetic_start; }},
-    {"energy.kinetic_end", [](const Ledger& l) { return l.kinetic_end; }},
-    {"energy.spring_start", [](const Ledger& l) { return l.spring_start; }},
-    {"energy.spring_end", [](const Ledger& l) { return l.spring_end; }},
-    {"energy.skin_start", [](const Ledger& l) { return l.skin_start; }},
-    {"energy.skin_end", [](const Ledger& l) { return l.skin_end; }},
-    {"energy.plate_work", [](const Ledger& l) { return l.plate_work; }},
-    {"energy.inertia_work", [](const Ledger& l) { return l.inertia_work; }},
-    {"energy.damper_dissipated", [](const Ledger& l) { return l.damper_dissipated; }},
-    {"energy.plate_dissipated", [](const Ledger& l) { return l.plate_dissipated; }},
-    {"energy.finger_dissipated", [](const Ledger& l) { return l.finger_dissipated; }},
-    {"energy.residual", [](const Ledger& l) { return l.residual(); }},
-};
-/// A row of the results: one of those tables.
-struct Row {
-  const Number<Summary>* number{nullptr};
-  const Number<Ledger>* energy{nullptr};
-
-  explicit Row(const std::string& name) {
-    for (const auto& each : numbers)
-      if (name == each.name) number = &each;
-    for (const auto& each : energies)
-      if (name == each.name) energy = &each;
-    if (!number && !energy) throw std::invalid_argument("there is no number " + name);
-  }
-  /// What the kernel must be asked for it.
-  pd::detail::Asked asked() const {
-    using pd::detail::Asked;
-    if (!number || number->column == no_column || number->column >= Block::rest_position)
-      return Asked::state;
-    return number->column == PlainNumber::settling_time ? Asked::settling : Asked::numbers;
-  }
-};
-
-/// A column of flags or counts over all points, each of which is written once.
-template <class T>
-class Column {
- public:
-  explicit Column(std::size_t size) : values_(new T[size]), size_(size) {}
-  T& operator[](std::size_t i) { return values_[i]; }
-  std::size_t size() const { return size_; }
-  nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig> array() {
-    T* values = values_.release();
-    const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-    return {values, {size_}, owner};
-  }
-
- private:
-  std::unique_ptr<T[]> values_;
-  std::size_t size_;
-};
-
 // ---- between -------------------------------------------------------------------------------------
 
 class Batch {
@@ -253,12 +141,19 @@ class Batch {
         rows_(outputs.begin(), outputs.end()),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
-        // One block, which NumPy asks the system for in large pages.
-        block_(nb::module_::import_("numpy").attr("empty")(nb::make_tuple(rows_.size(), size()))),
-        numbers_(nb::cast<nb::ndarray<double, nb::c_contig, nb::device::cpu>>(block_).data()),
+        numbers_(rows_.size(), size()),
+        varies_(with_one_value(inputs)),
         status_(size()),
         ending_(size()),
         events_(events ? size() : 0) {
+    for (bool& each : varies_) each = !each;
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    ends_.fill({infinite, -infinite});
+    // What the load multiplies is written anew for each block, unless it stays as it is.
+    if (varies_[plate_load] || (size() > 0 && *inputs[plate_load].data() != 1.0))
+      varies_[plate_kinetic] = varies_[plate_static] = varies_[plate_load] = true;
+    for (std::size_t k = 0; k < input_count; ++k)
+      if (!varies_[k] && size() > 0) ends_[k] = {*inputs[k].data(), *inputs[k].data()};
     for (const Row& row : rows_) {
       asked_ = std::max(asked_, row.asked());
       energy_ = energy_ || row.energy;
@@ -270,10 +165,11 @@ class Batch {
   /// Works all points off with so many threads, of which the caller's is one and alone looks for an
   /// interrupt; when it finds one, all of them stop.
   void run(std::size_t threads, Interrupt& interrupt) {
+    share_ = std::clamp<std::size_t>(size() / (4 * threads), least_share, Block::capacity);
     const auto go_on = [&](std::size_t) { return !stopped_.load(std::memory_order_relaxed); };
     std::vector<std::future<void>> others;
     try {
-      while (others.size() + 1 < std::min(threads, size() / share + 1))
+      while (others.size() + 1 < std::min(threads, size() / share_ + 1))
         others.push_back(std::async(std::launch::async, [this, go_on] { work(go_on); }));
       work([&](std::size_t done) { return interrupt.go_on(done); });
     } catch (...) {
@@ -288,14 +184,18 @@ class Batch {
     }
   }
 
-  /// The columns; and how many points the general core followed.
+  /// The columns; how many points the general core followed; the extremes of the inputs.
   nb::dict table() {
     nb::dict columns;
-    for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = block_[k];
+    for (std::size_t k = 0; k < rows_.size(); ++k) columns[names_[k].c_str()] = numbers_.array(k);
     columns["status"] = status_.array();
     columns["ending"] = ending_.array();
     if (events_.size() > 0 || size() == 0) columns["events"] = events_.array();
     columns["general"] = general_.load();
+    nb::list extremes;
+    for (const pe::Extremes& each : ends_)
+      extremes.append(nb::make_tuple(each.least, each.largest));
+    columns["extremes"] = extremes;
     return columns;
   }
 
@@ -304,6 +204,7 @@ class Batch {
   struct Space {
     signed char broken[Block::capacity];
     Block block;
+    double rest_time[Block::capacity], events[Block::capacity];  // where no row is asked for
     std::vector<pd::Segment<double>> segments;
   };
 
@@ -313,23 +214,46 @@ class Batch {
     return size;
   }
 
+  /// What one thread does.
   template <class GoOn>
   void work(GoOn go_on) {
     const auto space = std::make_unique<Space>();
+    fill(space->block, std::min(share_, size()));
+    std::array<pe::Extremes, input_count> ends = ends_;
+    follow(go_on, *space, ends);
+    const std::lock_guard<std::mutex> one_thread(merging_);
+    for (std::size_t k = 0; k < input_count; ++k) merge(ends_[k], ends[k]);
+  }
+
+  /// What does not change from point to point is written once.
+  void fill(Block& block, std::size_t count) {
+    for (std::size_t k = 0; k < input_count; ++k)
+      if (!varies_[k]) std::fill_n(block.input[k], count, size() > 0 ? *inputs_[k].data() : 0.0);
+  }
+  /// NaN stays.
+  static void merge(pe::Extremes& all, const pe::Extremes& some) {
+    if (all.least == all.least && !(all.least <= some.least)) all.least = some.least;
+    if (all.largest == all.largest && !(all.largest >= some.largest)) all.largest = some.largest;
+  }
+
+  template <class GoOn>
+  void follow(GoOn go_on, Space& space, std::array<pe::Extremes, input_count>& ends) {
     for (;;) {
-      const std::size_t first = next_.fetch_add(share);
+      const std::size_t first = next_.fetch_add(share_);
       if (first >= size()) return;
-      const std::size_t count = std::min(share, size() - first);
+      const std::size_t count = std::min(share_, size() - first);
       if (!go_on(count)) return;
-      Block& block = space->block;
-      points(inputs_, first, count, block.input);
-      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space->broken);
+      Block& block = space.block;
+      points(inputs_, first, count, varies_, block.input);
+      for (std::size_t k = 0; k < input_count; ++k)
+        if (varies_[k]) merge(ends[k], kernel_.extremes(block.input[k], count));
+      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space.broken);
       press(block, count);
-      const bool followed = by_kernel(first, count, block);
+      const bool followed = by_kernel(first, count, space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
-        if (space->broken[i] != 0) {
-          leave_out(first + i, static_cast<std::int8_t>(refused + space->broken[i]));
+        if (space.broken[i] != 0) {
+          leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
         const Left left = left_by_kernel(block, i);
@@ -337,15 +261,16 @@ class Batch {
         if (!go_on(1)) return;
         Point p;
         for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
-        by_general_core(first + i, p, left, space->segments, [&] { return go_on(1); });
-        if (space->segments.capacity() > keep)
-          std::vector<pd::Segment<double>>().swap(space->segments);
+        by_general_core(first + i, p, left, space.segments, [&] { return go_on(1); });
+        if (space.segments.capacity() > keep)
+          std::vector<pd::Segment<double>>().swap(space.segments);
       }
     }
   }
 
   /// The load of the plate multiplies its friction forces.
-  static void press(Block& block, std::size_t count) {
+  void press(Block& block, std::size_t count) const {
+    if (!varies_[plate_load]) return;  // it is 1
     for (const std::size_t force : {plate_kinetic, plate_static})
       for (std::size_t i = 0; i < count; ++i) block.input[force][i] *= block.input[plate_load][i];
   }
@@ -357,32 +282,38 @@ class Batch {
     return block.unsure[i] ? Left::settling_time : Left::nothing;
   }
 
-  /// All points of a share; what the kernel leaves to the general core is overwritten. Whether there is
-  /// nothing.
-  bool by_kernel(std::size_t first, std::size_t count, Block& block) {
+  /// All points of a share, their numbers straight into the rows; what the kernel leaves to the general
+  /// core is overwritten. Whether there is nothing.
+  bool by_kernel(std::size_t first, std::size_t count, Space& space) {
+    Block& block = space.block;
+    std::fill_n(block.output, Block::columns, nullptr);
+    block.output[Block::rest_time] = space.rest_time;
+    if (events_.size() > 0) block.output[PlainNumber::events] = space.events;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (rows_[k].number && rows_[k].number->column != no_column)
+        block.output[rows_[k].number->column] = numbers_[k] + first;
     kernel_.follow(block, static_cast<int>(count), asked_);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!rows_[k].number) continue;
       const int column = rows_[k].number->column;
-      double* row = numbers_ + k * size() + first;
       if (column == no_column)
-        std::fill_n(row, count, std::numeric_limits<double>::quiet_NaN());
-      else
-        std::copy_n(block.output[column], count, row);
+        std::fill_n(numbers_[k] + first, count, std::numeric_limits<double>::quiet_NaN());
+      else if (block.output[column] != numbers_[k] + first)  // two rows of one column
+        std::copy_n(block.output[column], count, numbers_[k] + first);
     }
     constexpr auto resting = static_cast<std::int8_t>(pd::End::resting);
     constexpr auto moving = static_cast<std::int8_t>(pd::End::moving);
-    bool followed = true;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double since = block.output[Block::rest_time][i];
-      status_[first + i] = static_cast<std::int8_t>(pd::Status::ok);
-      ending_[first + i] = since == since ? resting : moving;
-      followed = followed & !block.given_up[i] & !block.unsure[i];
-    }
+    const double* since = block.output[Block::rest_time];
+    std::fill_n(&status_[first], count, static_cast<std::int8_t>(pd::Status::ok));
+    for (std::size_t i = 0; i < count; ++i)
+      ending_[first + i] = since[i] == since[i] ? resting : moving;
     if (events_.size() > 0)
       for (std::size_t i = 0; i < count; ++i)
-        events_[first + i] = static_cast<std::int32_t>(block.output[PlainNumber::events][i]);
-    return followed;
+        events_[first + i] = static_cast<std::int32_t>(space.events[i]);
+    const auto none = [&](const bool* flags) {
+      return std::find(flags, flags + count, true) == flags + count;
+    };
+    return none(block.given_up) && none(block.unsure);
   }
 
   void leave_out(std::size_t i, std::int8_t status) {
@@ -390,7 +321,7 @@ class Batch {
     ending_[i] = -1;
     if (events_.size() > 0) events_[i] = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      numbers_[k * size() + i] = std::numeric_limits<double>::quiet_NaN();
+      numbers_[k][i] = std::numeric_limits<double>::quiet_NaN();
   }
 
   /// One point, or what is left of it, and its energies.
@@ -414,7 +345,7 @@ class Batch {
         const Number<Summary>* number = rows_[k].number;
         if (!number) continue;
         if (left == Left::all || number->column == PlainNumber::settling_time)
-          numbers_[k * size() + i] = number->of(summary);
+          numbers_[k][i] = number->of(summary);
       }
     }
     if (left == Left::all) {
@@ -425,19 +356,21 @@ class Batch {
     if (!energy_) return;
     const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].energy) numbers_[k * size() + i] = rows_[k].energy->of(ledger);
+      if (rows_[k].energy) numbers_[k][i] = rows_[k].energy->of(ledger);
   }
 
   const Inputs& inputs_;
   const pe::Bounds& bounds_;
-  std::size_t size_;
+  std::size_t size_, share_{least_share};
   const std::vector<std::string>& names_;
   std::vector<Row> rows_;
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
-  nb::object block_;
-  double* numbers_;  ///< its rows are the columns
+  Rows numbers_;
+  std::array<bool, input_count> varies_;        ///< which inputs are written for each block
+  std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
+  std::mutex merging_;
   Column<std::int8_t> status_, ending_;
   Column<std::int32_t> events_;
   std::atomic<std::size_t> next_{0}, general_{0};
@@ -495,7 +428,8 @@ void bind_batch(nb::module_& m) {
       "point that breaks one of the bounds (the least value, the largest, and one beside them or "
       "NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its "
       "status says which, its numbers are NaN. The column of events is there if asked for; "
-      "`general` says how many points the general core followed. The kernel works in packs of "
+      "`general` says how many points the general core followed, `extremes` the least and the "
+      "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
       "`width`; 0: the widest.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,

@@ -13,6 +13,11 @@ using Interval = std::array<double, 3>;
 /// Of the inputs of a block, then of the damping ratio and of the phase over the duration.
 using Bounds = std::array<Interval, pindrive::detail::KernelBlock::inputs + 2>;
 
+/// Of some numbers; NaN if one is NaN, or there is none.
+struct Extremes {
+  double least, largest;
+};
+
 /// What is compiled for one width.
 struct KernelFunctions {
   int width;
@@ -22,6 +27,7 @@ struct KernelFunctions {
   /// Whether all are 0.
   bool (*judge)(const pindrive::detail::KernelBlock& block, int count, const Bounds& bounds,
                 signed char* broken);
+  Extremes (*extremes)(const double* values, std::size_t count);
   /// `which` of the elementary functions, in the order of their header, at arguments a (and b).
   void (*elementary)(int which, const double* a, const double* b, double* found, std::size_t count);
 };

