@@ -1,0 +1,170 @@
+"""The least squares of a model: from many candidates to the best one, by trust regions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.fitting.candidates import candidates
+from pindrive.fitting.model import Model
+from pindrive.lazy import optimize
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+ROUGH: Final = 250
+"""Samples of each recording with which candidates are refined."""
+REFINED: Final = 12
+"""Candidates that are refined on them."""
+FINISHED: Final = 3
+"""Of those, how many are refined on all samples."""
+FEW: Final = 25
+"""The most evaluations of the refinement of a candidate."""
+MANY: Final = 200
+"""Those of the last one."""
+_FAR: Final = 1e3
+"""A sample that a motion does not reach is off by so many times its channel's extent."""
+APART: Final = 0.02
+"""Two candidates this part of their range apart in every parameter are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """Where a refinement ended."""
+
+    theta: Array
+    cost: float
+    """Weighted sum of squares."""
+    converged: bool
+
+
+class Problem:
+    """A model with the weights of its samples, one over the noise of each."""
+
+    def __init__(self, model: Model, weights: Array) -> None:
+        self.model, self.weights = model, weights
+        self.lower = np.array([p.lower for p in model.parameters])
+        self.upper = np.array([p.upper for p in model.parameters])
+        self._extent = np.concatenate(
+            [np.full(block.size, size) for block, size in zip(model.blocks, model.range, strict=True)]
+        )
+        self._last: tuple[bytes, Array, Array] | None = None
+
+    def residuals(self, theta: Array) -> Array:
+        """Computed less recorded over the noise, shape (n,)."""
+        return self._whole(theta)[0]
+
+    def cost(self, theta: Array) -> float:
+        """The sum of their squares."""
+        off = self._whole(theta)[0]
+        return float(off @ off)
+
+    def slopes(self, theta: Array) -> Array:
+        """The derivatives of the residuals, shape (n, k)."""
+        return self._whole(theta)[1]
+
+    def _whole(self, theta: Array) -> tuple[Array, Array]:
+        key = np.asarray(theta, float).tobytes()
+        if self._last is None or self._last[0] != key:
+            values, slopes = self.model.linearise(theta)
+            off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
+            slopes = np.where(np.isfinite(slopes), slopes, 0.0)
+            self._last = key, off * self.weights, slopes * self.weights[:, None]
+        return self._last[1:]
+
+    def refined(
+        self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-10
+    ) -> Optimum:
+        """The optimum that is reached from `theta`, varying the parameters `free` alone."""
+        places = np.arange(len(theta)) if free is None else np.asarray(free, np.intp)
+        theta = np.clip(theta, self.lower, self.upper)
+        if not len(places):
+            return Optimum(theta, self.cost(theta), True)
+        low, high = self.lower[places], self.upper[places]
+        margin = 1e-9 * (high - low)
+        size = np.maximum(np.abs(theta[places]), 1e-3 * (high - low))
+
+        def full(part: Array) -> Array:
+            whole = theta.copy()
+            whole[places] = part * size
+            return whole
+
+        found = optimize.least_squares(
+            lambda part: self.residuals(full(part)),
+            np.clip(theta[places], low + margin, high - margin) / size,
+            lambda part: self.slopes(full(part))[:, places] * size,
+            (low / size, high / size),
+            x_scale="jac",
+            ftol=tol,
+            xtol=tol,
+            gtol=tol,
+            max_nfev=most,
+        )
+        best = full(found.x)
+        cost = 2.0 * float(found.cost)
+        # A trust region keeps clear of the bounds; what lies on one is set on it.
+        near = (best - self.lower <= 1e-6 * (self.upper - self.lower)) & np.isin(
+            np.arange(len(best)), places
+        )
+        if near.any():
+            on = np.where(near, self.lower, best)
+            at = self.cost(on)
+            if at <= cost * (1.0 + 1e-12):
+                best, cost = on, at
+        return Optimum(best, cost, bool(found.status > 0))
+
+
+def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
+    """The best optimum from the best of many candidates, and those candidates, shape (n, k)."""
+    counts = [len(recording.time) for recording in model.recordings]
+    strides = [max(1, n // ROUGH) for n in counts]
+    looks = [max(1, n // 40) for n in counts]
+    args = model.parameters, model.drive, model.releases, model.recordings
+    coarse = Model(*args, looks)
+    tried = candidates(coarse, _thinned(model, coarse, weights), seed)
+    rough = Model(*args, strides)
+    problem = Problem(rough, _thinned(model, rough, weights))
+    ends = sorted(
+        (problem.refined(theta, most=FEW, tol=1e-4) for theta in _distinct(tried, problem)),
+        key=lambda end: end.cost,
+    )
+    whole = Problem(model, weights)
+    best = [whole.refined(end.theta) for end in _apart(ends, problem)[:FINISHED]]
+    return min(best, key=lambda end: end.cost), tried
+
+
+def _thinned(model: Model, other: Model, weights: Array) -> Array:
+    """The weights of the blocks of another model of the same recordings."""
+    return np.concatenate(
+        [
+            np.full(thin.size, weights[block.place.start])
+            for block, thin in zip(model.blocks, other.blocks, strict=True)
+        ]
+    )
+
+
+def _distinct(tried: Array, problem: Problem) -> list[Array]:
+    """The best candidates, no two of them in one place."""
+    extent = problem.upper - problem.lower
+    found: list[Array] = []
+    for theta in tried[: 20 * REFINED]:
+        if all(np.any(np.abs(theta - other) > APART * extent) for other in found):
+            found.append(theta)
+        if len(found) == REFINED:
+            break
+    return found
+
+
+def _apart(ends: list[Optimum], problem: Problem) -> list[Optimum]:
+    """The best ends, those that are alike once."""
+    found: list[Optimum] = []
+    for end in ends:
+        if all(abs(end.cost - other.cost) > 1e-3 * other.cost for other in found):
+            found.append(end)
+    return found or [Problem.refined(problem, np.array([p.start for p in problem.model.parameters]))]
