@@ -94,6 +94,8 @@ def draw(rng: np.random.Generator) -> Case:
         return truth[name] * (decades(0.5, 2.0) if name in free else 1.0)
 
     start_finger = off("finger_kinetic")
+    if "finger_static" not in free:  # it keeps its ratio to kinetic friction
+        truth["finger_static"] *= start_finger / truth["finger_kinetic"]
     start = Drive(
         mass=mass,
         stiffness=off("stiffness"),

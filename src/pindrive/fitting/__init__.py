@@ -8,7 +8,7 @@ from pindrive.lazy import attach
 
 if TYPE_CHECKING:
     from pindrive.fitting.comparison import ModelComparison
-    from pindrive.fitting.fit import fit
+    from pindrive.fitting.estimation import fit
     from pindrive.fitting.friction_curve import FrictionCurve, fit_friction
     from pindrive.fitting.identifiability import Identifiability
     from pindrive.fitting.recording import Recording, read_recording
@@ -35,7 +35,7 @@ __getattr__, __dir__ = attach(
         "Identifiability": "pindrive.fitting.identifiability",
         "ModelComparison": "pindrive.fitting.comparison",
         "Recording": "pindrive.fitting.recording",
-        "fit": "pindrive.fitting.fit",
+        "fit": "pindrive.fitting.estimation",
         "fit_friction": "pindrive.fitting.friction_curve",
         "read_recording": "pindrive.fitting.recording",
     },

@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.fitting.search import Problem
+from pindrive.fitting.search import RANK, Problem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
 
-RANK: Final = 1e-9
-"""A singular value so much smaller than the largest is zero, of columns of length one."""
 PART: Final = 1e-5
 """A parameter has a part in a combination if it has so much of the largest part."""
 TRIED: Final = 24

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.fitting.search import Optimum, Problem
+from pindrive.fitting.search import BETTER, Optimum, Problem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,9 +21,6 @@ BEYOND: Final = 1.15
 """How far past the end of the interval a profile is drawn, of its square root."""
 MOST: Final = 60
 """Points of one side, before it is called open."""
-BETTER: Final = 1e-4
-"""A decrease of the cost by so much is a better optimum."""
-
 
 @dataclass(frozen=True, slots=True)
 class Profile:

@@ -28,6 +28,16 @@ FEW: Final = 25
 """The most evaluations of the refinement of a candidate."""
 MANY: Final = 200
 """Those of the last one."""
+ROUNDS: Final = 10
+"""Better optima beyond kinks that are followed."""
+DRAWN: Final = 60
+"""Points around an optimum."""
+SIZES: Final = (0.3, 1.0, 3.0)
+"""How far they lie, in standard errors."""
+BETTER: Final = 1e-2
+"""A cost that is lower by so much is better; the end of an interval lies 3.84 higher."""
+RANK: Final = 1e-9
+"""A singular value so much smaller than the largest is zero, of columns of length one."""
 _FAR: Final = 1e3
 """A sample that a motion does not reach is off by so many times its channel's extent."""
 APART: Final = 0.02
@@ -78,8 +88,15 @@ class Problem:
             self._last = key, off * self.weights, slopes * self.weights[:, None]
         return self._last[1:]
 
+    def plain_cost(self, theta: Array) -> float:
+        """The sum of their squares, without the derivatives."""
+        values = self.model.predict(theta)
+        off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
+        off *= self.weights
+        return float(off @ off)
+
     def refined(
-        self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-10
+        self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-8
     ) -> Optimum:
         """The optimum that is reached from `theta`, varying the parameters `free` alone."""
         places = np.arange(len(theta)) if free is None else np.asarray(free, np.intp)
@@ -117,7 +134,55 @@ class Problem:
             at = self.cost(on)
             if at <= cost * (1.0 + 1e-12):
                 best, cost = on, at
-        return Optimum(best, cost, bool(found.status > 0))
+        return Optimum(best, cost, bool(found.status > 0) or self._flat(best, places))
+
+    def _flat(self, theta: Array, places: Array) -> bool:
+        """Whether a Gauss-Newton step would change the cost by next to nothing."""
+        inner = places[(theta > self.lower)[places] & (theta < self.upper)[places]]
+        slopes = self.slopes(theta)[:, inner]
+        part, *_ = np.linalg.lstsq(slopes, self.residuals(theta), rcond=RANK)
+        return float(np.sum((slopes @ part) ** 2)) < BETTER
+
+
+def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> Optimum:
+    """A better optimum near one, if there is any beyond a kink or a jump of the cost.
+
+    Where other events happen, the cost has a kink, and where the pin just sticks or does not, a
+    jump. A trust region stops there; points drawn around it lie on both sides.
+
+    Args:
+        problem: of all samples.
+        best: where a refinement ended.
+        covariance: of the parameters there; infinite on the diagonal where there is none.
+        seed: of the points.
+    """
+    rng = np.random.default_rng(seed)
+    spread = np.sqrt(np.diag(covariance))
+    told = np.isfinite(spread) & (spread > 0.0)
+    for _ in range(ROUNDS):
+        factor = _root(covariance[np.ix_(told, told)])
+        normal = rng.normal(size=(DRAWN, int(np.count_nonzero(told))))
+        near = np.tile(best.theta, (DRAWN, 1))
+        size = rng.choice(SIZES, (DRAWN, 1))
+        near[:, told] += size * normal @ factor.T
+        near[:, ~told] *= 2.0 ** rng.uniform(-1.0, 1.0, (DRAWN, int(np.count_nonzero(~told))))
+        near = np.clip(near, problem.lower, problem.upper)
+        costs = np.array([problem.plain_cost(theta) for theta in near])
+        # Far points cost more by their distance alone; of that their size is a measure.
+        order = np.argsort(costs - size[:, 0] ** 2 * len(best.theta), kind="stable")
+        ends = [problem.refined(near[i], most=FEW) for i in order[:FINISHED]]
+        end = min(ends, key=lambda found: found.cost)
+        if end.cost > best.cost - BETTER:
+            return best
+        best = problem.refined(end.theta)
+    return best
+
+
+def _root(covariance: Array) -> Array:
+    """A factor of a covariance that may be singular."""
+    values, vectors = np.linalg.eigh(covariance)
+    root: Array = vectors * np.sqrt(np.maximum(values, 0.0))
+    return root
 
 
 def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:

@@ -15,7 +15,7 @@ from pindrive.fitting.profiles import BetterOptimum, Profile, profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
-from pindrive.fitting.search import Problem, search
+from pindrive.fitting.search import Problem, polished, search
 from pindrive.lazy import stats
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.table import check_whole, refusal
@@ -32,7 +32,7 @@ __all__ = ["fit"]
 
 ROUNDS: Final = 12
 """Refinements with the noise that the one before left."""
-RESTARTS: Final = 8
+RESTARTS: Final = 20
 """Better optima that profiles may meet."""
 SWING: Final = 0.25
 """The least part of a period that a recording must last."""
@@ -106,7 +106,8 @@ def fit(
     _check_touched(model, weights, tried)
     solved = _Solved(model, noise, best, tried, confidence)
     solved.settle_noise()
-    traced = solved.profiled() if profiles else [None] * len(found)
+    solved.polish(seed)
+    traced = solved.profiled(seed) if profiles else [None] * len(found)
     return solved.result(traced)
 
 
@@ -156,10 +157,18 @@ class _Solved:
         coarse = _coarse(self._model, self._problem.weights)
         self.rank = rank(self._problem, self._best.theta, self._tried, coarse)
 
-    def profiled(self) -> list[Profile | None]:
-        """The profile of each parameter; a better fit that one meets is taken instead."""
-        for _ in range(RESTARTS):
+    def polish(self, seed: int) -> None:
+        """Look for a better optimum nearby, and say what the derivatives tell there."""
+        self._rank()
+        better = polished(self._problem, self._best, self.rank.covariance, seed)
+        if better is not self._best:
+            self._best = better
+            self.settle_noise()
             self._rank()
+
+    def profiled(self, seed: int) -> list[Profile | None]:
+        """The profile of each parameter; a better fit that one meets is taken instead."""
+        for turn in range(RESTARTS):
             hidden = {i for group in self.rank.groups for i in group}
             try:
                 return [
@@ -172,12 +181,12 @@ class _Solved:
                 again = self._problem.refined(better.end.theta)
                 self._best = again if again.cost <= better.end.cost else better.end
                 self.settle_noise()
+                self.polish(seed + turn + 1)
         self._best = replace(self._best, converged=False)
         return [None] * len(self._best.theta)
 
     def result(self, traced: Sequence[Profile | None]) -> Fit:
         """All of it."""
-        self._rank()
         theta, model = self._best.theta, self._model
         covariance = self.rank.covariance
         errors = np.sqrt(np.diag(covariance))
