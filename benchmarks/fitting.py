@@ -12,7 +12,9 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite, pi
 
 import numpy as np
@@ -107,49 +109,54 @@ def draw(rng: np.random.Generator) -> Case:
     return Case(recording, {name: truth[name] for name in free}, start, start_release)
 
 
-def main(count: int, seed: int) -> None:
-    """Fit all of them, and print how often the intervals hold the truth."""
-    tally: Counter[str] = Counter()
-    by_name: Counter[tuple[str, str]] = Counter()
-    times, missed = [], []
-    for i, rng in enumerate(np.random.default_rng(seed).spawn(count)):
-        case = draw(rng)
-        begin = time.perf_counter()
-        found = fit(case.recording, case.drive, case.release, free=[*case.truth], seed=seed)
-        times.append(time.perf_counter() - begin)
-        _count(found, case, tally, by_name)
-        tally["not converged"] += not found.converged
-        if found.converged and _lost(found, case):
-            missed.append(i)
-    print(f"{count} recordings, seed {seed}")
-    closed, held = tally["closed"], tally["closed held"]
-    print(f"closed intervals: {held} of {closed} hold the truth, {100 * held / closed:.2f} %")
-    for what in ("open", "open held", "structural", "not converged"):
-        print(f"{what}: {tally[what]}")
-    print(f"converged elsewhere (cost above that of the truth): {len(missed)} {missed[:10]}")
-    for name in (*ALWAYS, *SOMETIMES):
-        n = by_name[name, "closed"]
-        if n:
-            part = 100 * by_name[name, "held"] / n
-            print(f"  {name:16} {by_name[name, 'held']:4d} of {n:4d}  {part:.1f} %")
-    print(f"time of a fit: median {np.median(times):.2f} s, longest {max(times):.2f} s")
+@dataclass(frozen=True)
+class Outcome:
+    """What a fit said of a case."""
+
+    held: tuple[tuple[str, str, bool], ...]
+    """Of each parameter: its name, the kind of its interval, and whether that holds the truth."""
+    converged: bool
+    lost: bool
+    """Whether the truth fits better than what was found."""
+    seconds: float
 
 
-def _count(
-    found: Fit, case: Case, tally: Counter[str], by_name: Counter[tuple[str, str]]
-) -> None:
+def outcome(seed: int, count: int, i: int) -> Outcome:
+    """Draw the i-th of the cases of a seed, and fit it."""
+    case = draw(np.random.default_rng(seed).spawn(count)[i])
+    begin = time.perf_counter()
+    found = fit(case.recording, case.drive, case.release, free=[*case.truth], seed=seed)
+    seconds = time.perf_counter() - begin
+    rows = []
     for estimate in found.estimates:
         low, high = estimate.interval
-        held = low <= case.truth[estimate.name] <= high
-        if estimate.identifiability is Identifiability.structurally_not:
-            tally["structural"] += 1
-            continue
         kind = "closed" if isfinite(low) and isfinite(high) else "open"
-        tally[kind] += 1
-        tally[f"{kind} held"] += held
-        if kind == "closed":
-            by_name[estimate.name, "closed"] += 1
-            by_name[estimate.name, "held"] += held
+        if estimate.identifiability is Identifiability.structurally_not:
+            kind = "structural"
+        rows.append((estimate.name, kind, bool(low <= case.truth[estimate.name] <= high)))
+    return Outcome(tuple(rows), found.converged, _lost(found, case), seconds)
+
+
+def main(count: int, seed: int) -> None:
+    """Fit all of them, and print how often the intervals hold the truth."""
+    with ProcessPoolExecutor() as pool:
+        done = list(pool.map(partial(outcome, seed, count), range(count)))
+    tally = Counter((kind, held) for each in done for _, kind, held in each.held)
+    print(f"{count} recordings, seed {seed}")
+    held, closed = tally["closed", True], tally["closed", True] + tally["closed", False]
+    print(f"closed intervals: {held} of {closed} hold the truth, {100 * held / closed:.2f} %")
+    open_held = tally["open", True]
+    print(f"open intervals: {open_held} of {open_held + tally['open', False]} hold it")
+    print(f"called structurally not identifiable: {tally['structural', True]}")
+    print(f"not converged, and said so: {sum(not each.converged for each in done)}")
+    lost = [i for i, each in enumerate(done) if each.lost]
+    print(f"converged where the truth fits better: {len(lost)} {lost[:10]}")
+    for name in (*ALWAYS, *SOMETIMES):
+        own = [row[2] for each in done for row in each.held if row[:2] == (name, "closed")]
+        if own:
+            print(f"  {name:16} {sum(own):4d} of {len(own):4d}  {100 * np.mean(own):.1f} %")
+    times = [each.seconds for each in done]
+    print(f"time of a fit: median {np.median(times):.2f} s, longest {max(times):.2f} s")
 
 
 def _lost(found: Fit, case: Case) -> bool:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-BATCHED: Final = 8192
+BATCHED: Final = 16384
 """Candidates of plain releases, which `simulate_batch` follows."""
 SINGLE: Final = 1024
 """Candidates of what only the general core follows."""

@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 
 ROUGH: Final = 250
 """Samples of each recording with which candidates are refined."""
-REFINED: Final = 12
+REFINED: Final = 16
 """Candidates that are refined on them."""
+BEGINNING: Final = 0.35
+"""The part of a recording with which a search begins, beside one with all of it."""
 FINISHED: Final = 3
 """Of those, how many are refined on all samples."""
 FEW: Final = 25
@@ -32,7 +34,7 @@ ROUNDS: Final = 10
 """Better optima beyond kinks that are followed."""
 DRAWN: Final = 60
 """Points around an optimum."""
-SIZES: Final = (0.3, 1.0, 3.0)
+SIZES: Final = (0.5, 2.0, 8.0)
 """How far they lie, in standard errors."""
 BETTER: Final = 1e-2
 """A cost that is lower by so much is better; the end of an interval lies 3.84 higher."""
@@ -165,7 +167,7 @@ def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> O
         near = np.tile(best.theta, (DRAWN, 1))
         size = rng.choice(SIZES, (DRAWN, 1))
         near[:, told] += size * normal @ factor.T
-        near[:, ~told] *= 2.0 ** rng.uniform(-1.0, 1.0, (DRAWN, int(np.count_nonzero(~told))))
+        near[:, ~told] *= 2.0 ** rng.uniform(-3.0, 3.0, (DRAWN, int(np.count_nonzero(~told))))
         near = np.clip(near, problem.lower, problem.upper)
         costs = np.array([problem.plain_cost(theta) for theta in near])
         # Far points cost more by their distance alone; of that their size is a measure.
@@ -192,16 +194,34 @@ def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
     looks = [max(1, n // 40) for n in counts]
     args = model.parameters, model.drive, model.releases, model.recordings
     coarse = Model(*args, looks)
-    tried = candidates(coarse, _thinned(model, coarse, weights), seed)
     rough = Model(*args, strides)
-    problem = Problem(rough, _thinned(model, rough, weights))
+    thin, few = _thinned(model, rough, weights), _thinned(model, coarse, weights)
+    problem = Problem(rough, thin)
+    tried = candidates(coarse, few, seed)
+    starts = _distinct(tried, problem)
+    # What sticks too early is far off from then on whatever the rest is: begin with the first part.
+    first = candidates(coarse, few * _beginning(coarse), seed)
+    early = Problem(rough, thin * _beginning(rough))
+    starts += [
+        early.refined(theta, most=FEW, tol=1e-3).theta for theta in _distinct(first, problem)
+    ]
     ends = sorted(
-        (problem.refined(theta, most=FEW, tol=1e-4) for theta in _distinct(tried, problem)),
+        (problem.refined(theta, most=FEW, tol=1e-4) for theta in starts),
         key=lambda end: end.cost,
     )
     whole = Problem(model, weights)
     best = [whole.refined(end.theta) for end in _apart(ends, problem)[:FINISHED]]
     return min(best, key=lambda end: end.cost), tried
+
+
+def _beginning(model: Model) -> Array:
+    """One for samples in the first part of their recording, zero for the others."""
+    parts = []
+    for block in model.blocks:
+        times = model.times(block.recording)
+        end = times[0] + BEGINNING * (times[-1] - times[0])
+        parts.append(np.where(times <= end, 1.0, 0.0))
+    return np.concatenate(parts)
 
 
 def _thinned(model: Model, other: Model, weights: Array) -> Array:
