@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from pindrive.device.reading import Page
     from pindrive.device.scanning import Scan, scan
     from pindrive.files.device import load_device
+    from pindrive.fitting.estimation import fit
+    from pindrive.fitting.friction_curve import fit_friction
+    from pindrive.fitting.recording import Recording, read_recording
     from pindrive.motion.batch import simulate_batch
     from pindrive.motion.drive import Contact, Drive, Profile
     from pindrive.motion.motion import Motion
@@ -33,15 +36,19 @@ __all__ = [
     "Motion",
     "Page",
     "Profile",
+    "Recording",
     "Release",
     "Scan",
     "Scene",
     "Status",
     "Study",
     "__version__",
+    "fit",
+    "fit_friction",
     "load_device",
     "load_study",
     "local_sensitivity",
+    "read_recording",
     "robustness",
     "scan",
     "simulate",
@@ -58,14 +65,18 @@ _HOME = {
     "Motion": "pindrive.motion.motion",
     "Page": "pindrive.device.reading",
     "Profile": "pindrive.motion.drive",
+    "Recording": "pindrive.fitting.recording",
     "Release": "pindrive.motion.release",
     "Scan": "pindrive.device.scanning",
     "Scene": "pindrive.device.page",
     "Status": "pindrive.quantities.status",
     "Study": "pindrive.study.study",
+    "fit": "pindrive.fitting.estimation",
+    "fit_friction": "pindrive.fitting.friction_curve",
     "load_device": "pindrive.files.device",
     "load_study": "pindrive.study.study",
     "local_sensitivity": "pindrive.study.sensitivity",
+    "read_recording": "pindrive.fitting.recording",
     "robustness": "pindrive.study.robustness",
     "scan": "pindrive.device.scanning",
     "simulate": "pindrive.motion.simulate",

@@ -254,12 +254,13 @@ def simulate(
 
 def _register() -> None:
     """The commands that have a file of their own."""
+    from pindrive.cli.fit import fit
     from pindrive.cli.paper import paper
     from pindrive.cli.scan import scan
     from pindrive.cli.speed import speed
     from pindrive.cli.study import map_study, robustness, sensitivity, sweep
 
-    for command in (scan, speed, sweep, sensitivity, robustness, paper):
+    for command in (scan, speed, fit, sweep, sensitivity, robustness, paper):
         app.command(**shown(command.__name__))(command)
     app.command(**shown("map"))(map_study)
 

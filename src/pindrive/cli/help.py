@@ -13,6 +13,7 @@ COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "simulate": ("One release", 'pindrive simulate device.toml --set mass="1.2 g" --plot pin.png'),
     "scan": ("The whole device", 'pindrive scan device.toml --text "a" --plot scan.png'),
     "speed": ("The whole device", 'pindrive speed device.toml --pitch "4 mm" --plot speed.png'),
+    "fit": ("Measurements", 'pindrive fit device.toml pin.csv --free "stiffness, damping"'),
     "sweep": ("Studies", "pindrive sweep study.toml -o study.nc"),
     "map": ("Studies", "pindrive map study.nc --number settling_time -o map.png"),
     "sensitivity": ("Studies", "pindrive sensitivity study.toml --tolerances --plot matters.png"),
@@ -26,6 +27,7 @@ OPTIONS: Final[dict[str, tuple[str, ...]]] = {
     "What is on the page": ("text", "image", "grating", "font", "path"),
     "What is asked": (
         *("pitch", "width", "part", "slowest", "fastest", "tolerances", "number"),
+        *("free", "mouse_velocity", "window", "noise", "compare"),
         *("x", "y", "at", "overrides"),
     ),
     "How it is computed": (
