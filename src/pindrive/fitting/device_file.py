@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pindrive.files.ratios import written
 from pindrive.files.recording import files_named
-from pindrive.fitting.parameters import ROW
+from pindrive.fitting.parameters import key_of
 from pindrive.fitting.results import Estimate, is_of_sensor
 from pindrive.motion.drive import Profile
 from pindrive.quantities.drive import COLUMNS
@@ -45,7 +45,7 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     _put(tables, "drive.damping", written("drive.damping", found.drive.damping))
     for estimate in found.estimates:
         if not is_of_sensor(estimate) and estimate.parameter.recording in (None, 0):
-            comments.setdefault(_key(estimate.parameter.key), []).append(_comment(estimate))
+            comments.setdefault(key_of(estimate.parameter.key), []).append(_comment(estimate))
     for line in tables.pop("device", {}).items():
         tables.setdefault("device", {})[line[0]] = line[1]
     names = ", ".join(recording.name for recording in found.recordings)
@@ -72,15 +72,6 @@ def _plain(text: str) -> str:
 def _put(tables: dict[str, dict[str, Any]], key: str, value: Any) -> None:
     table, _, name = key.partition(".")
     tables.setdefault(table, {})[name] = value
-
-
-def _key(name: str) -> str:
-    """The key of a device file that a parameter belongs to."""
-    match = ROW.fullmatch(name)
-    quantity = re.sub(r"^(plate|finger)_", r"\1.", match[1] if match else name)
-    if quantity not in QUANTITIES:  # plate_load
-        quantity = match[1] if match else name
-    return QUANTITIES[quantity].key
 
 
 def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:

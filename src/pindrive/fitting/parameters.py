@@ -43,7 +43,13 @@ SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
 ROW: Final = re.compile(
     r"(plate_curve|finger_curve|mouse_velocity|plate_load)\[(\d+)\]\.(speed|force|time|value)"
 )
-_OF_RECORDING: Final = re.compile(r"(.*)@(\d+)")
+_TABLES: Final = {
+    "plate_curve": "plate.curve",
+    "finger_curve": "finger.curve",
+    "mouse_velocity": "mouse_velocity",
+    "plate_load": "plate_load",
+}
+"""The quantity of each table of rows."""
 DECADE: Final = 10.0
 """A positive parameter is searched from its tenth to its tenfold unless bounds are given."""
 _STEP: Final = 1e-30
@@ -117,6 +123,12 @@ def parameters(
     return tuple(found)
 
 
+def key_of(name: str) -> str:
+    """The key of a device file in which a parameter stands."""
+    match = ROW.fullmatch(name)
+    return QUANTITIES[_TABLES[match[1]] if match else DRIVE.get(name, name)].key
+
+
 def _key(given: str) -> str:
     """The one name of a parameter: keys of device files are names too."""
     name = str(given).strip().removeprefix("motion.").removeprefix("drive.")
@@ -131,7 +143,7 @@ def _quantity(key: str) -> Quantity | None:
     if key in DRIVE:
         return QUANTITIES[DRIVE[key]]
     if match := ROW.fullmatch(key):
-        table = QUANTITIES[re.sub(r"^(plate|finger)_", r"\1.", match[1])]
+        table = QUANTITIES[_TABLES[match[1]]]
         across, _ = COLUMNS[table.rows_of]
         return QUANTITIES[across] if match[3] in ("speed", "time") else table
     return QUANTITIES.get(key)

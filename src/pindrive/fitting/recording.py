@@ -199,8 +199,8 @@ def read_recording(
             required = "left out where a column gives it"
             raise ValueError(refusal("mouse_velocity", required, repr(mouse_velocity), file))
         inputs["mouse_velocity"] = mouse_velocity
-    made = Recording(time, **channels, **inputs, noise=noise, name=Path(file).name)
-    return made.with_changes(sources=(Path(path),))
+    made = Recording(time, **channels, **inputs, noise=noise, name=file)
+    return made.with_changes(name=Path(file).name, sources=(Path(path),))
 
 
 # ---- what is checked -----------------------------------------------------------------------------

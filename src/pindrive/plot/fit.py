@@ -39,13 +39,13 @@ def plot_fit(found: Fit) -> Figure:
     """
     blocks = found.model.blocks[:BLOCKS]
     estimates = found.estimates
-    rows = max(len(blocks), -(-len(estimates) // 2))
     with matplotlib.style.context(STYLE, after_reset=True):
-        height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * -(-len(estimates) // 2)))
+        rows = -(-len(estimates) // 2)
+        height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * rows))
         figure = Figure(figsize=(180 / 25.4, height / 25.4), layout="constrained")
         left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
         _draw_blocks(left, found)
-        panels = right.subplots(-(-len(estimates) // 2), 2, squeeze=False).ravel()
+        panels = right.subplots(rows, 2, squeeze=False).ravel()
         for axes, estimate in zip(panels, estimates, strict=False):
             _profile(axes, estimate, found.threshold)
         for axes in panels[len(estimates) :]:
@@ -55,7 +55,6 @@ def plot_fit(found: Fit) -> Figure:
         more = f", {len(blocks)} of {len(found.model.blocks)} channels" if shown else ""
         names = ", ".join(dict.fromkeys(each.name for each in found.recordings[:3]))
         figure.suptitle(plain(f"Fit to {names}{more}"), fontsize=9.0)
-        assert rows
     return figure
 
 
@@ -95,6 +94,7 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         words += ", structured" if left_over.structured else ", no structure found"
         below.set_title(words, fontsize=SMALL, loc="left", pad=2.0)
         below.set_ylabel(f"rest ({unit})")
+        below.ticklabel_format(axis="y", style="plain")
         if i == 0:
             axes.legend(frameon=False, ncols=2, loc="best", handlelength=1.2)
     panels[-1].set_xlabel("$t$ (ms)")
@@ -122,7 +122,7 @@ def _profile(axes: Axes, estimate: Estimate, threshold: float) -> None:
     axes.axhline(threshold, color=GREY, lw=0.6, ls="--", gid="threshold")
     axes.set_ylim(0.0, 1.6 * threshold)
     axes.ticklabel_format(axis="x", style="plain")
-    axes.locator_params(axis="x", nbins=4)
+    axes.locator_params(axis="x", nbins=3, min_n_ticks=2)
     profile = estimate.profile
     if profile is None:
         axes.text(0.5, 0.5, str(estimate.identifiability).replace("not", "not\nidentifiable")
