@@ -2,9 +2,9 @@
 
     python3 run.py bench fitting [COUNT [SEED]]
 
-Each recording is 0.2 s of a random drive at 10 kHz, of position, velocity or both, with noise of 1 or
-5 % of its largest value, known or not. Four to six parameters are free, and the search starts at a
-drive that is off by up to a factor of two in each.
+Each recording is 0.2 s of a random drive at 10 kHz, of position, velocity or both, with noise of 1
+or 5 % of its largest value, known or not. Four to six parameters are free, and the search starts at
+a drive that is off by up to a factor of two in each.
 """
 
 from __future__ import annotations
@@ -90,7 +90,10 @@ def draw(rng: np.random.Generator) -> Case:
     part = float(rng.choice([0.01, 0.05]))
     noise = {name: part * float(np.abs(values[name]).max()) for name in channels}
     recorded = {name: values[name] + noise[name] * rng.normal(size=len(t)) for name in channels}
-    recording = Recording(t, **recorded, noise=noise if rng.random() < 0.5 else None)
+    known = noise if rng.random() < 0.5 else None
+    recording = Recording(
+        t, position=recorded.get("position"), velocity=recorded.get("velocity"), noise=known
+    )
 
     def off(name: str) -> float:
         return truth[name] * (decades(0.5, 2.0) if name in free else 1.0)

@@ -12,12 +12,14 @@ from recordings import recorded
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
-TRUTH = Drive(mass=0.010, stiffness=140.0, damping=0.31, plate=Contact(0.019), finger=Contact(0.006))
+TRUTH = Drive(
+    mass=0.010, stiffness=140.0, damping=0.31, plate=Contact(0.019), finger=Contact(0.006)
+)
 HEAD = "t [ms], position [mm]\n"
 
 
-def write(name: str = "pin.csv", head: str = HEAD, **more: float) -> None:
-    given = recorded(TRUTH, Release(0.1, 2e-3), rate=2e3, **more)
+def write(name: str = "pin.csv", head: str = HEAD, span: float = 0.15) -> None:
+    given = recorded(TRUTH, Release(0.1, 2e-3), rate=2e3, span=span)
     rows = zip(1e3 * given.time, 1e3 * given.channels["position"], strict=True)
     Path(name).write_text(head + "".join(f"{t:.6g},{x:.6g}\n" for t, x in rows))
 
@@ -71,12 +73,12 @@ def test_bad_options_are_one_line(arguments: list[str], said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("head", "more", "said"),
+    ("head", "span", "said"),
     [
-        ("t, position [mm]\n", {}, 'column t must be given with its unit, like "t [s]"'),
-        (HEAD, {"span": 0.004}, "a recording must be at least"),
+        ("t, position [mm]\n", 0.15, 'column t must be given with its unit, like "t [s]"'),
+        (HEAD, 0.004, "a recording must be at least"),
     ],
 )
-def test_bad_recordings_are_one_line(head: str, more: dict[str, float], said: str) -> None:
-    write("bad.csv", head, **more)
+def test_bad_recordings_are_one_line(head: str, span: float, said: str) -> None:
+    write("bad.csv", head, span)
     assert said in refused("fit", "device.toml", "bad.csv", "--free", "stiffness")

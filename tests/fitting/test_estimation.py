@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf, isfinite
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +53,7 @@ def test_a_profile_is_the_least_cost_of_the_others(found: Fit) -> None:
     )
     noise = {"position": found.residuals[0].noise}
     (recording,) = found.recordings
-    given = Recording(recording.time, **recording.channels, noise=noise)
+    given = Recording(recording.time, position=recording.channels["position"], noise=noise)
     others = [name for name in FREE if name != "damping"]
     held = fit(given, drive, RELEASE, free=others, profiles=False)
     best = fit(given, START, RELEASE, free=FREE, profiles=False)
@@ -82,7 +83,7 @@ def test_all_channels_with_offsets_and_an_unknown_time_of_release() -> None:
     names = ("position", "velocity", "acceleration", "force")
     given = recorded(TRUTH, RELEASE, *names, rate=2e3, delay=0.0132, noise=0.02)
     shifted = {**given.channels, "position": given.channels["position"] + 4e-4}
-    recording = Recording(given.time, **shifted)
+    recording = given.with_changes(channels=shifted)
     free = ["mass", *FREE, "time_offset", "position_offset"]
     done = fit(recording, START, RELEASE, free=free, profiles=False)
     truth = {**TRUE, "mass": TRUTH.mass, "time_offset": 0.0132, "position_offset": 4e-4}
@@ -162,10 +163,11 @@ def test_static_friction_that_only_lets_the_pin_stick_is_open_on_one_side() -> N
 def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
     size = 0.01 * 2.3e-3
     given = recorded(rate=2e3)
-    good = Recording(given.time, **given.channels, noise={"position": size})
+    x = given.channels["position"]
+    good = Recording(given.time, position=x, noise={"position": size})
     done = fit(good, START, RELEASE, free=FREE, profiles=False)
     assert done.residuals[0].noise == size and done.warnings == ()
-    tight = Recording(given.time, **given.channels, noise={"position": size / 3.0})
+    tight = Recording(given.time, position=x, noise={"position": size / 3.0})
     doubtful = fit(tight, START, RELEASE, free=FREE, profiles=False)
     assert "times the given noise" in doubtful.warnings[0]
     assert doubtful.status is Status.incomplete
@@ -186,28 +188,47 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 @pytest.mark.parametrize(
     ("span", "free", "more", "said"),
     [
-        (0.005, FREE, {}, "recording: a recording must be at least 0.0122 s long, a quarter of the"),
-        (0.1, ["damping", "finger_stiffness"], {}, "leave out what changes no sample, got finger_st"),
+        (
+            0.005,
+            FREE,
+            {},
+            "recording: a recording must be at least 0.0122 s long, a quarter of the",
+        ),
+        (
+            0.1,
+            ["damping", "finger_stiffness"],
+            {},
+            "leave out what changes no sample, got finger_st",
+        ),
         (0.1, FREE, {"confidence": 1.0}, "confidence must be between 0 and 1, got 1.0"),
         (0.1, FREE, {"seed": -1}, "seed must be a whole number of at least 0"),
         (0.1, ["plate_static[2]"], {}, "free must be one of mass"),
     ],
 )
 def test_bad_input_is_one_line(
-    span: float, free: list[str], more: dict[str, float], said: str
+    span: float, free: list[str], more: dict[str, Any], said: str
 ) -> None:
-    smooth = Drive(mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=Contact(0))
+    smooth = Drive(
+        mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=Contact(0)
+    )
     release = Release(1.0, 2e-3, 0.0)
     with pytest.raises(ValueError, match=said) as error:
-        fit(recorded(smooth, release, span=span), START if span < 0.1 else smooth, release,
-            free=free, **more)  # type: ignore[arg-type]
+        fit(
+            recorded(smooth, release, span=span),
+            START if span < 0.1 else smooth,
+            release,
+            free=free,
+            **more,
+        )
     assert "\n" not in str(error.value)
 
 
 def test_times_before_the_release_need_a_free_offset() -> None:
     given = recorded(rate=2e3)
-    early = Recording(given.time - 0.01, **given.channels)
-    with pytest.raises(ValueError, match="time must be at least 0 s, the release; free time_offset"):
+    early = Recording(given.time - 0.01, position=given.channels["position"])
+    with pytest.raises(
+        ValueError, match="time must be at least 0 s, the release; free time_offset"
+    ):
         fit(early, START, RELEASE, free=["damping"])
 
 

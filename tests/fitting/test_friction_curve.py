@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pindrive import Contact, Drive, Recording, Release, fit, fit_friction
-from pindrive.fitting.comparison import LAWS
+from pindrive.fitting.comparison import LAWS, compare_models
 from recordings import recorded
 
 PUBLISHED = Path(__file__).parents[1] / "published" / "data" / "msl-friction-stop2.csv"
@@ -101,11 +101,15 @@ def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
         finger=Contact(0.011, stiffness=700.0),
     )
     release = Release(0.0, 2.2e-3, 0.0)
-    start = Drive(mass=0.006, stiffness=150.0, damping=0.2, plate=Contact(0.0), finger=Contact(0.01))
+    start = Drive(
+        mass=0.006, stiffness=150.0, damping=0.2, plate=Contact(0.0), finger=Contact(0.01)
+    )
     given = recorded(drive, release, rate=2e3)
-    found = fit(given, start, release, free=["stiffness", "damping", "finger_kinetic"], profiles=False)
+    found = fit(
+        given, start, release, free=["stiffness", "damping", "finger_kinetic"], profiles=False
+    )
     assert found.residuals[0].structured
-    compared = found.compare_models()
+    compared = compare_models(found)
     assert [*compared.fits] == [*LAWS]
     assert compared.best == "compliant skin"
     assert compared.weights["compliant skin"] > 0.999

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from recordings import RELEASE, recorded, sampled
 from pindrive import Contact, Drive, Profile, Recording, Release, simulate
 from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import parameters
+from recordings import RELEASE, recorded, sampled
 
 CHANNELS = ("position", "velocity", "acceleration", "force")
 CURVED = Drive(
@@ -35,15 +35,19 @@ CASES = {
     "curve": (
         CURVED,
         RELEASE,
-        ["mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"]
-        + ["finger_curve[1].force", "displacement", "mouse_velocity", "time_offset"],
+        [
+            *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
+            *("finger_curve[1].force", "displacement", "mouse_velocity", "time_offset"),
+        ],
     ),
     "skin": (SKIN, RELEASE, ["mass", "finger.stiffness", "finger_kinetic", "plate_load"]),
     "cycle": (
         SKIN,
         CYCLE,
-        ["mass", "stiffness", "damping", "plate_load[1].time", "mouse_velocity[1].value"]
-        + ["plate_static", "time_offset", "force_offset"],
+        [
+            *("mass", "stiffness", "damping", "plate_load[1].time", "mouse_velocity[1].value"),
+            *("plate_static", "time_offset", "force_offset"),
+        ],
     ),
 }
 
@@ -67,7 +71,9 @@ def test_derivatives_are_those_of_the_samples(name: str) -> None:
         difference = (model.predict(ends[0]) - model.predict(ends[1])) / (2.0 * step)
         for block, size in zip(model.blocks, model.range, strict=True):
             off = np.abs(difference - slopes[:, i])[block.place]
-            scale = max(np.abs(slopes[block.place, i]).max(), 1e-3 * size / max(abs(theta[i]), step))
+            scale = max(
+                np.abs(slopes[block.place, i]).max(), 1e-3 * size / max(abs(theta[i]), step)
+            )
             # A sample whose interval an event enters between the two has a difference of its own.
             assert np.mean(off > 1e-5 * scale) < 0.01, (p.name, block.channel)
 
@@ -91,7 +97,12 @@ def test_several_recordings_share_the_drive_and_have_starts_of_their_own() -> No
     found = parameters(
         ["mass", "displacement", "velocity_offset"], {}, SKIN, [RELEASE, RELEASE], [slow, fast]
     )
-    assert [p.name for p in found] == ["mass", "displacement@0", "displacement@1", "velocity_offset@1"]
+    assert [p.name for p in found] == [
+        "mass",
+        "displacement@0",
+        "displacement@1",
+        "velocity_offset@1",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -102,13 +113,19 @@ def test_several_recordings_share_the_drive_and_have_starts_of_their_own() -> No
         (["mass", "drive.mass"], {}, "free must be names that differ, got mass twice"),
         (["finger_curve[0].force"], {}, "free must be one of 0 rows of finger_curve"),
         (["force_offset"], {}, "free must be an offset of a recorded channel, got force_offset"),
-        (["mass"], {"damping": (0, 1)}, r"bounds must be for a free parameter \(mass\), got damping"),
+        (
+            ["mass"],
+            {"damping": (0, 1)},
+            r"bounds must be for a free parameter \(mass\), got damping",
+        ),
         (["mass"], {"mass": ("2 g", "1 g")}, "bounds of mass must be increasing"),
         (["mass"], {"mass": ("2 N", "1 g")}, "bounds of mass must be"),
         (["skin_stretch"], {}, "free must be one that the release was given"),
     ],
 )
-def test_what_cannot_be_free_is_refused(free: list[str], bounds: dict[str, object], said: str) -> None:
+def test_what_cannot_be_free_is_refused(
+    free: list[str], bounds: dict[str, object], said: str
+) -> None:
     recording = recorded(rate=1e3)
     with pytest.raises(ValueError, match=said):
         parameters(free, bounds, SKIN, [RELEASE], [recording])  # type: ignore[arg-type]

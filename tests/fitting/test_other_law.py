@@ -19,7 +19,9 @@ def test_a_smooth_friction_law_of_sundials_is_fitted_and_its_misfit_is_told() ->
     solver = CVODE(rhs, method="BDF", rtol=1e-9, atol=1e-12)
     x = solver.solve(t, np.array([2e-3, 0.0])).y[:, 0]
     noisy = x + 2e-6 * np.random.default_rng(1).normal(size=len(t))
-    start = Drive(mass=MASS, stiffness=120.0, damping=0.3, plate=Contact(0.0), finger=Contact(0.005))
+    start = Drive(
+        mass=MASS, stiffness=120.0, damping=0.3, plate=Contact(0.0), finger=Contact(0.005)
+    )
     free = ["stiffness", "damping", "finger_kinetic", "displacement"]
     found = fit(Recording(t, position=noisy), start, Release(0.0, 2e-3, 0.0), free=free)
     (left,) = found.residuals

@@ -68,9 +68,12 @@ def test_a_window_keeps_the_times() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("t [s], position\n" + ROWS, 'column position must be given with its unit, like "position [mm]"'),
+        (
+            "t [s], position\n" + ROWS,
+            'column position must be given with its unit, like "position [mm]"',
+        ),
         ("t, position [mm]\n" + ROWS, 'column t must be given with its unit, like "t [s]"'),
-        ("t [s], position [mN]\n" + ROWS, 'column position must be in m or a unit alike, like'),
+        ("t [s], position [mN]\n" + ROWS, "column position must be in m or a unit alike, like"),
         ("t [s], place [mm]\n" + ROWS, "the header must be with t and at least one of position"),
         (HEAD + ROWS + "3,1,60\n", "row 22: t must be greater than the one before, 0.019 s; sort"),
         (HEAD + ROWS.replace("1.9,", "x,"), 'row 3: position must be a number, got "x"'),

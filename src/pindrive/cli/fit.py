@@ -81,10 +81,11 @@ def fit(
         inputs = [*loaded.inputs, *recordings]
         parts = stack.enter_context(writing(outputs, inputs, consent=force))
 
+        from pindrive.fitting.comparison import compare_models
         from pindrive.fitting.estimation import fit as fitted
 
         found = fitted(given, loaded.drive, loaded.release, free=keys, bounds=bounds, seed=seed)
-        compared = found.compare_models(seed) if compare else None
+        compared = compare_models(found, seed) if compare else None
         if output:
             from pindrive.fitting.device_file import fitted_file
 
@@ -113,7 +114,9 @@ def _free(given: Sequence[str]) -> tuple[list[str], dict[str, tuple[float | str,
     for part in (part.strip() for text in given for part in text.split(",")):
         key, equals, ends = (piece.strip() for piece in part.partition("="))
         if not key:
-            raise ValueError(f'--free: must be keys apart by commas, like "{EXAMPLE}", got "{part}"')
+            raise ValueError(
+                f'--free: must be keys apart by commas, like "{EXAMPLE}", got "{part}"'
+            )
         keys.append(key)
         if equals:
             bounds[key] = _ends(ends, f"--free {key}", EXAMPLE.partition("=")[2])
@@ -139,7 +142,8 @@ def _recordings(
     if len(velocities) not in (0, 1, len(paths)):
         required = f"given once, or once for each of {len(paths)} recordings"
         raise ValueError(f"--mouse-velocity must be {required}, got {len(velocities)} of them")
-    each = [*velocities] * (len(paths) if len(velocities) == 1 else 1) or [None] * len(paths)
+    each: list[str | None] = [*velocities] * (len(paths) if len(velocities) == 1 else 1)
+    each = each or [None] * len(paths)
     sizes = {}
     for text in noise:
         channel, equals, size = (piece.strip() for piece in text.partition("="))

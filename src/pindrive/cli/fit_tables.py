@@ -23,7 +23,15 @@ def fit_report(found: Fit) -> RenderableType:
     """Estimates, then correlations that matter, the noise of each channel, and what is doubtful."""
     percent = f"{100.0 * found.confidence:g} %"
     names = ", ".join(recording.name for recording in found.recordings)
-    heads = ("parameter", ">value", ">± standard", f">{percent} from", ">to", "unit", "identifiable")
+    heads = (
+        "parameter",
+        ">value",
+        ">± standard",
+        f">{percent} from",
+        ">to",
+        "unit",
+        "identifiable",
+    )
     table = new_table(f"Fit to {names}", *heads)
     for row in found.table():
         table.add_row(*row)
@@ -34,7 +42,16 @@ def fit_report(found: Fit) -> RenderableType:
 
 
 def _noise(found: Fit) -> Table:
-    heads = ("recording", "channel", ">samples", ">noise", "unit", ">runs p", ">Ljung-Box p", "rest")
+    heads = (
+        "recording",
+        "channel",
+        ">samples",
+        ">noise",
+        "unit",
+        ">runs p",
+        ">Ljung-Box p",
+        "rest",
+    )
     table = new_table("What is left", *heads)
     for left in found.residuals:
         unit = CHANNELS[left.channel][0]

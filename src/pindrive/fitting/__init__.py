@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from pindrive.lazy import attach
 
 if TYPE_CHECKING:
-    from pindrive.fitting.comparison import ModelComparison
+    from pindrive.fitting.comparison import ModelComparison, compare_models
     from pindrive.fitting.estimation import fit
     from pindrive.fitting.friction_curve import FrictionCurve, fit_friction
     from pindrive.fitting.identifiability import Identifiability
@@ -21,6 +21,7 @@ __all__ = [
     "Identifiability",
     "ModelComparison",
     "Recording",
+    "compare_models",
     "fit",
     "fit_friction",
     "read_recording",
@@ -35,6 +36,7 @@ __getattr__, __dir__ = attach(
         "Identifiability": "pindrive.fitting.identifiability",
         "ModelComparison": "pindrive.fitting.comparison",
         "Recording": "pindrive.fitting.recording",
+        "compare_models": "pindrive.fitting.comparison",
         "fit": "pindrive.fitting.estimation",
         "fit_friction": "pindrive.fitting.friction_curve",
         "read_recording": "pindrive.fitting.recording",

@@ -69,8 +69,10 @@ def candidates(model: Model, weights: Array, seed: int) -> Array:
 
 def _plain(model: Model) -> bool:
     """Whether `simulate_batch` can follow all of it."""
-    numbers = [model.assembly.numbers([p.start for p in model.parameters], r) for r in
-               range(len(model.releases))]
+    numbers = [
+        model.assembly.numbers([p.start for p in model.parameters], r)
+        for r in range(len(model.releases))
+    ]
     channels = {block.channel for block in model.blocks}
     rigid = all(np.isinf(n[4][2]) for n in numbers)
     free = all(p.key in _ARGUMENTS or p.key.endswith("_offset") for p in model.parameters)
@@ -106,7 +108,9 @@ def _batched_costs(model: Model, weights: Array, theta: Array) -> Array:
         for block in model.blocks:
             if block.recording == r:
                 computed = np.broadcast_to(x if block.channel == "position" else v, shape)
-                costs += _cost(model, block.place, weights, computed, f"{block.channel}_offset", r, theta)
+                costs += _cost(
+                    model, block.place, weights, computed, f"{block.channel}_offset", r, theta
+                )
     return costs
 
 
@@ -120,7 +124,8 @@ def _cost(
         p = model.parameters[i]
         theta[:, i] = np.clip(np.nan_to_num(off.mean(axis=-1)), p.lower, p.upper)
         off = off - theta[:, i, None]
-    return np.sum((off * weights[place]) ** 2, axis=-1)
+    costs: Array = np.sum((off * weights[place]) ** 2, axis=-1)
+    return costs
 
 
 def _single_costs(model: Model, weights: Array, theta: Array) -> Array:

@@ -19,7 +19,7 @@ from pindrive.quantities.status import Status
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["ModelComparison"]
+__all__ = ["ModelComparison", "compare_models"]
 
 SPEEDS: Final = (0.0, 0.1, 0.4, 1.0)
 """Rows of a friction curve that is tried, in parts of the largest sliding speed."""
@@ -86,8 +86,20 @@ class ModelComparison(lazy.NotebookHtml):
         return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
 
 
-def compare(found: Fit, seed: int) -> ModelComparison:
-    """Fits of each law to the recordings of a fit, with the other parameters that it had free."""
+def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
+    """Fits of other laws of friction to the recordings of a fit, by AICc.
+
+    Args:
+        found: the fit; what it had free besides friction is free again.
+        seed: of the candidates.
+
+    Returns:
+        Coulomb friction, static friction, a friction curve and compliant skin, where the drive can
+        have them, with AICc and weights.
+
+    Raises:
+        ValueError: none of them can be fitted.
+    """
     model = found.model
     bounds = {p.key: (p.lower, p.upper) for p in model.parameters}
     others = [p.key for p in model.parameters if not _of_friction(p.key)]
@@ -118,6 +130,8 @@ def compare(found: Fit, seed: int) -> ModelComparison:
             )
         except ValueError as error:
             refused[law] = str(error)
+    if not fits:
+        raise ValueError("; ".join(f"{law}: {why}" for law, why in refused.items()))
     return ModelComparison(fits, refused)
 
 
@@ -157,7 +171,9 @@ def _changed(
                 return None, ["the finger has no friction"]
             skin = drive.finger.stiffness
             kinetic = made["finger"].kinetic
-            made["finger"] = Contact(kinetic, stiffness=10.0 * drive.stiffness if skin == inf else skin)
+            made["finger"] = Contact(
+                kinetic, stiffness=10.0 * drive.stiffness if skin == inf else skin
+            )
             keys = [*keys, "finger_stiffness"]
     return (
         Drive(mass=drive.mass, stiffness=drive.stiffness, damping=drive.damping, **made),

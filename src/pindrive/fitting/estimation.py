@@ -174,7 +174,9 @@ class _Solved:
                 return [
                     None
                     if i in hidden
-                    else profile(self._problem, self._best, i, self.rank.covariance, self._threshold)
+                    else profile(
+                        self._problem, self._best, i, self.rank.covariance, self._threshold
+                    )
                     for i in range(len(self._best.theta))
                 ]
             except BetterOptimum as better:
@@ -257,7 +259,9 @@ def _releases(given: Sequence[Recording], release: Release | Sequence[Release]) 
         raise ValueError(refusal("recordings", "a Recording or several", repr(given)))
     listed = [release] * len(given) if isinstance(release, Release) else [*release]
     if len(listed) != len(given):
-        raise ValueError(refusal("release", f"one, or {len(given)} for as many recordings", len(listed)))
+        raise ValueError(
+            refusal("release", f"one, or {len(given)} for as many recordings", len(listed))
+        )
     return [
         Release(
             each.mouse_velocity if recording.mouse_velocity is None else recording.mouse_velocity,

@@ -29,6 +29,8 @@ GRID: Final = 60
 """Places at which another row is tried, evenly through the data."""
 WITHOUT_GAIN: Final = 3
 """Rows added without a lower AICc before the search ends."""
+KNOT: Final = 2
+"""Parameters that a row placed by the data counts for (Friedman, Ann. Statist. 19:1, 1991)."""
 CLOSEST: Final = 1e-3
 """Part of the range of speeds by which rows are at least apart."""
 
@@ -57,7 +59,9 @@ class FrictionCurve(lazy.NotebookHtml):
         """How many rows, from how many samples, in a line."""
         count = counted(len(self.speed), "sample")
         rows = counted(len(self.rows), "row")
-        return f"<FrictionCurve of {rows} from {count}, noise {self.noise:.3g} N, {self.status.name}>"
+        return (
+            f"<FrictionCurve of {rows} from {count}, noise {self.noise:.3g} N, {self.status.name}>"
+        )
 
     @property
     def status(self) -> Status:
@@ -71,7 +75,8 @@ class FrictionCurve(lazy.NotebookHtml):
         if len(x) == 1:
             return np.full_like(u, y[0])
         beyond = y[-1] + (u - x[-1]) * (y[-1] - y[-2]) / (x[-1] - x[-2])
-        return np.where(u > x[-1], beyond, np.interp(u, x, y))
+        found: Array = np.where(u > x[-1], beyond, np.interp(u, x, y))
+        return found
 
     def contact(self, static: float | None = None) -> Contact:
         """A contact with this friction, and static friction (N; None: the force at rest)."""
@@ -157,7 +162,8 @@ def _against(u: Array, f: Array) -> Array:
     if both:
         product = float(np.sum(np.sign(u) * f))
         if abs(product) > 0.5 * float(np.sum(np.abs(f))):
-            return f * np.sign(u) * np.sign(product)
+            turned: Array = f * np.sign(u) * np.sign(product)
+            return turned
         return f
     return f if f.sum() > 0.0 else -f
 
@@ -233,7 +239,7 @@ def _power(u: Array, f: Array, knots: Array) -> float:
 
 def _aicc(u: Array, f: Array, knots: Array) -> float:
     """Of the forces, the inner knots and the noise."""
-    n, k = len(u), len(knots) + max(0, len(knots) - 2) + 1
+    n, k = len(u), len(knots) + KNOT * max(0, len(knots) - 2) + 1
     square = max(_power(u, f, knots) / n, (1e-12 * float(np.abs(f).max())) ** 2)
     return n * (log(2.0 * pi * square) + 1.0) + 2.0 * k + 2.0 * k * (k + 1) / max(n - k - 1, 1)
 

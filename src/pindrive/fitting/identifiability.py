@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
@@ -105,7 +104,8 @@ def _moves(coarse: Problem, chosen: Array, i: int) -> bool:
 
 def _sizes(problem: Problem, theta: Array) -> Array:
     """How large each parameter is."""
-    return np.maximum(np.abs(theta), 1e-3 * (problem.upper - problem.lower))
+    sizes: Array = np.maximum(np.abs(theta), 1e-3 * (problem.upper - problem.lower))
+    return sizes
 
 
 def _rank(slopes: Array) -> int:
@@ -115,7 +115,7 @@ def _rank(slopes: Array) -> int:
     return int(np.count_nonzero(values > RANK * values[0]))
 
 
-def _supports(hidden: Array) -> list[Sequence[int]]:
+def _supports(hidden: Array) -> list[list[int]]:
     """Which parameters have a part in each hidden combination, in few parameters each."""
     rows = np.array(hidden, copy=True)
     found = []

@@ -129,7 +129,7 @@ class Model:
             if not derivatives:
                 continue
             for i in self.assembly.places(r):
-                tangent = trace.along(self.assembly.along(theta, i, r))
+                tangent = trace.along(self.assembly.along(theta.tolist(), i, r))
                 for block in own:
                     slopes[block.place, i] = tangent.channel(block.channel)
             for key, i in self._sensor[r].items():
@@ -164,7 +164,8 @@ class _Trace:
 
     def plate_velocity(self, t: Array) -> Array:
         times, values = np.transpose(self.numbers[5])
-        return np.interp(t, times, values)
+        found: Array = np.interp(t, times, values)
+        return found
 
     @cached_property
     def edges(self) -> tuple[Array, Array]:
@@ -173,12 +174,14 @@ class _Trace:
     def mean_slope(self, of: Any) -> Array:
         """The mean rate of a function of time over each sample interval."""
         before, after = self.edges
-        return (of(after) - of(before)) / (2.0 * self.half)
+        found: Array = (of(after) - of(before)) / (2.0 * self.half)
+        return found
 
     def mean(self, of: Any) -> Array:
         """The mean over each sample interval, by Simpson's rule."""
         before, after = self.edges
-        return (of(before) + 4.0 * of(self.times) + of(after)) / 6.0
+        found: Array = (of(before) + 4.0 * of(self.times) + of(after)) / 6.0
+        return found
 
     def channel(self, name: str) -> Array:
         match name:
@@ -191,7 +194,8 @@ class _Trace:
         mass, stiffness, damping = self.numbers[:3]
         inertia = self.mean_slope(self.velocity) - self.mean_slope(self.plate_velocity)
         spring = stiffness * self.mean(self.position)
-        return mass * inertia + damping * self.mean_slope(self.position) + spring
+        force: Array = mass * inertia + damping * self.mean_slope(self.position) + spring
+        return force
 
     def rate(self, name: str) -> Array:
         """The rate of a channel."""
@@ -205,7 +209,8 @@ class _Trace:
         mass, stiffness, damping = self.numbers[:3]
         inertia = self.mean_slope(self.acceleration) - self.mean_slope(self.plate_acceleration)
         spring = stiffness * self.mean(self.velocity)
-        return mass * inertia + damping * self.mean_slope(self.velocity) + spring
+        rate: Array = mass * inertia + damping * self.mean_slope(self.velocity) + spring
+        return rate
 
     def plate_acceleration(self, t: Array) -> Array:
         times, values = np.transpose(self.numbers[5])
@@ -234,9 +239,9 @@ class _Tangent:
         if not times.any() and not values.any():
             return np.zeros_like(t)
         at, _ = np.transpose(self._trace.numbers[5])
-        return np.interp(t, at, values) - self._trace.plate_acceleration(t) * np.interp(
-            t, at, times
-        )
+        moved = self._trace.plate_acceleration(t) * np.interp(t, at, times)
+        found: Array = np.interp(t, at, values) - moved
+        return found
 
     def channel(self, name: str) -> Array:
         trace = self._trace
@@ -249,7 +254,9 @@ class _Tangent:
                 return trace.mean_slope(self.velocity)
         mass, stiffness, damping = trace.numbers[:3]
         d_mass, d_stiffness, d_damping = self._direction[:3]
-        found = mass * (trace.mean_slope(self.velocity) - trace.mean_slope(self.plate_velocity))
+        found: Array = mass * (
+            trace.mean_slope(self.velocity) - trace.mean_slope(self.plate_velocity)
+        )
         found += damping * trace.mean_slope(self.position) + stiffness * trace.mean(self.position)
         if d_mass:
             inertia = trace.mean_slope(trace.velocity) - trace.mean_slope(trace.plate_velocity)

@@ -159,6 +159,7 @@ def _parameter(
 ) -> list[Parameter]:
     name = key if r is None or len(releases) == 1 else f"{key}@{r}"
     release, recording = releases[r or 0], recordings[r or 0]
+    quantity = _quantity(key)
     if key in SENSOR:
         channel = key.removesuffix("_offset")
         if channel != "time" and channel not in recording.channels:
@@ -174,18 +175,15 @@ def _parameter(
             half = float(np.ptp(recording.channels[channel]))
             ends = -half, half
     else:
-        quantity = _quantity(key)
         assert quantity
         unit, allowed = quantity.unit, quantity.limits
         start = _start(key, core_numbers(drive, release, None), quantity, release)
         ends = _searched(start, quantity, drive, recordings if r is None else [recording], key)
     if bounds is not None:
-        low, high = (
-            check(quantity.name, end, label=f"bounds of {name}")
-            if key not in SENSOR
-            else check("profile.time" if unit == "s" else "profile.value", end, label=f"bounds of {name}")
-            for end in bounds
-        )
+        of = "profile.time" if unit == "s" else "profile.value"
+        if quantity:
+            of = quantity.name
+        low, high = (check(of, end, label=f"bounds of {name}") for end in bounds)
         if not low < high:
             raise ValueError(refusal(f"bounds of {name}", "increasing", f"{low:g} to {high:g}"))
         ends = low, high
@@ -357,7 +355,7 @@ class Assembly:
             still[j] if part is base[j] else _mapped(lambda y: y.imag / _STEP, part)
             for j, part in enumerate(numbers)
         ]
-        return tuple(found)  # type: ignore[return-value]
+        return tuple(found)
 
 
 def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:

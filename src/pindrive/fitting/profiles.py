@@ -22,6 +22,7 @@ BEYOND: Final = 1.15
 MOST: Final = 60
 """Points of one side, before it is called open."""
 
+
 @dataclass(frozen=True, slots=True)
 class Profile:
     """The least cost over the other parameters, at values of one.
@@ -37,7 +38,7 @@ class Profile:
     interval: tuple[float, float]
 
 
-class BetterOptimum(Exception):  # noqa: N818
+class BetterOptimum(Exception):
     """A profile met a better fit."""
 
     def __init__(self, end: Optimum) -> None:
@@ -64,7 +65,13 @@ class _Side:
     """One side of a profile."""
 
     def __init__(
-        self, problem: Problem, best: Optimum, i: int, covariance: Array, threshold: float, way: float
+        self,
+        problem: Problem,
+        best: Optimum,
+        i: int,
+        covariance: Array,
+        threshold: float,
+        way: float,
     ) -> None:
         self._problem, self._best, self._i, self._way = problem, best, i, way
         self._target = sqrt(threshold)

@@ -243,7 +243,9 @@ def _noise(
         try:
             size = to_si(value, unit, f"1 {unit}") if isinstance(value, str) else float(value)
         except (TypeError, ValueError) as error:
-            raise ValueError(f"{where}: noise of {channel} must be {error}, got {value!r}") from None
+            raise ValueError(
+                f"{where}: noise of {channel} must be {error}, got {value!r}"
+            ) from None
         if not 0.0 < size < np.inf:
             raise ValueError(
                 refusal(f"noise of {channel}", "finite and greater than 0", value, where)

@@ -107,7 +107,9 @@ def _runs(off: Array) -> float:
     runs = 1 + int(np.count_nonzero(positive[1:] != positive[:-1]))
     expected = 1.0 + 2.0 * ups * downs / n
     variance = (expected - 1.0) * (expected - 2.0) / (n - 1.0)
-    return float(2.0 * stats.norm.sf(abs(runs - expected) / sqrt(variance))) if variance > 0 else 0.0
+    return (
+        float(2.0 * stats.norm.sf(abs(runs - expected) / sqrt(variance))) if variance > 0 else 0.0
+    )
 
 
 def first_noise(values: Array) -> float:

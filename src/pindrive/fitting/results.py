@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from pindrive.fitting.comparison import ModelComparison
     from pindrive.motion.drive import Drive
     from pindrive.motion.release import Release
 
@@ -191,9 +190,7 @@ class Fit(lazy.NotebookHtml):
         """The fitted channel at the sample times, SI, and its standard error, shapes (n,)."""
         values, slopes = self.model.linearise(self.theta)
         place = next(
-            b.place
-            for b in self.model.blocks
-            if (b.recording, b.channel) == (recording, channel)
+            b.place for b in self.model.blocks if (b.recording, b.channel) == (recording, channel)
         )
         known = np.isfinite(np.diag(self.covariance))
         part = slopes[place][:, known]
@@ -220,19 +217,6 @@ class Fit(lazy.NotebookHtml):
         n = len(self.model.data)
         k = len(self.theta) + sum(not left.known for left in self.residuals)
         return 2.0 * k - 2.0 * self.log_likelihood + 2.0 * k * (k + 1) / max(n - k - 1, 1)
-
-    def compare_models(self, seed: int = 1) -> ModelComparison:
-        """Fits of other laws of friction to the same recordings, by AICc.
-
-        Args:
-            seed: of the candidates.
-
-        Returns:
-            Coulomb friction, static friction, a friction curve and compliant skin, where the drive
-            can have them, with AICc and weights.
-        """
-        found: ModelComparison = lazy.call("pindrive.fitting.comparison:compare", self, seed)
-        return found
 
     # ---- for other programs ----------------------------------------------------------------------
 
@@ -290,8 +274,12 @@ class Fit(lazy.NotebookHtml):
         rows = []
         for e in self.estimates:
             unit, scale = e.parameter.scale
-            ends = ["open" if not isfinite(end) else significant(end * scale, 5) for end in e.interval]
-            error = "-" if not isfinite(e.standard_error) else significant(e.standard_error * scale, 2)
+            ends = [
+                "open" if not isfinite(end) else significant(end * scale, 5) for end in e.interval
+            ]
+            error = (
+                "-" if not isfinite(e.standard_error) else significant(e.standard_error * scale, 2)
+            )
             verdict = str(e.identifiability) + (f": {e.explanation}" if e.explanation else "")
             rows.append([e.name, significant(e.value * scale, 5), error, *ends, unit, verdict])
         return rows

@@ -64,7 +64,10 @@ class Problem:
         self.lower = np.array([p.lower for p in model.parameters])
         self.upper = np.array([p.upper for p in model.parameters])
         self._extent = np.concatenate(
-            [np.full(block.size, size) for block, size in zip(model.blocks, model.range, strict=True)]
+            [
+                np.full(block.size, size)
+                for block, size in zip(model.blocks, model.range, strict=True)
+            ]
         )
         self._last: tuple[bytes, Array, Array] | None = None
 
@@ -138,7 +141,7 @@ class Problem:
                 best, cost = on, at
         return Optimum(best, cost, bool(found.status > 0) or self._flat(best, places))
 
-    def _flat(self, theta: Array, places: Array) -> bool:
+    def _flat(self, theta: Array, places: NDArray[np.intp]) -> bool:
         """Whether a Gauss-Newton step would change the cost by next to nothing."""
         inner = places[(theta > self.lower)[places] & (theta < self.upper)[places]]
         slopes = self.slopes(theta)[:, inner]
@@ -252,4 +255,6 @@ def _apart(ends: list[Optimum], problem: Problem) -> list[Optimum]:
     for end in ends:
         if all(abs(end.cost - other.cost) > 1e-3 * other.cost for other in found):
             found.append(end)
-    return found or [Problem.refined(problem, np.array([p.start for p in problem.model.parameters]))]
+    return found or [
+        Problem.refined(problem, np.array([p.start for p in problem.model.parameters]))
+    ]

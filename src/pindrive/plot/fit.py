@@ -26,6 +26,8 @@ DOTS: Final = 1500
 """Samples that are drawn of each."""
 ACROSS: Final = 1.96
 """Standard errors on either side of the fit in its band."""
+LEGEND: Final = 0.35
+"""Part of the height of the first panel that is added for the legend."""
 UNITS: Final = {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 SYMBOLS: Final = {"position": "x", "velocity": "x'", "acceleration": "x''", "force": "F"}
 CURVE: Final = PALETTE["curve"]
@@ -43,7 +45,8 @@ def plot_fit(found: Fit) -> Figure:
         rows = -(-len(estimates) // 2)
         height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * rows))
         figure = Figure(figsize=(180 / 25.4, height / 25.4), layout="constrained")
-        left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
+        halves: Any = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
+        left, right = halves
         _draw_blocks(left, found)
         panels = right.subplots(rows, 2, squeeze=False).ravel()
         for axes, estimate in zip(panels, estimates, strict=False):
@@ -96,7 +99,9 @@ def _draw_blocks(left: Any, found: Fit) -> None:
         below.set_ylabel(f"rest ({unit})")
         below.ticklabel_format(axis="y", style="plain")
         if i == 0:
-            axes.legend(frameon=False, ncols=2, loc="best", handlelength=1.2)
+            low, high = axes.get_ylim()
+            axes.set_ylim(low, high + LEGEND * (high - low))
+            axes.legend(frameon=False, ncols=2, loc="upper right", handlelength=1.2)
     panels[-1].set_xlabel("$t$ (ms)")
 
 
@@ -125,13 +130,21 @@ def _profile(axes: Axes, estimate: Estimate, threshold: float) -> None:
     axes.locator_params(axis="x", nbins=3, min_n_ticks=2)
     profile = estimate.profile
     if profile is None:
-        axes.text(0.5, 0.5, str(estimate.identifiability).replace("not", "not\nidentifiable")
-                  if estimate.explanation else "no profile",
-                  ha="center", va="center", transform=axes.transAxes, fontsize=SMALL)
+        axes.text(
+            0.5,
+            0.5,
+            str(estimate.identifiability).replace("not", "not\nidentifiable")
+            if estimate.explanation
+            else "no profile",
+            ha="center",
+            va="center",
+            transform=axes.transAxes,
+            fontsize=SMALL,
+        )
         axes.axvline(scale * estimate.value, color=CURVE, lw=0.8, gid="value")
         return
     inside = profile.excess <= 2.0 * threshold
-    look = {"color": CURVE, "marker": ".", "ms": 3.0}
+    look: dict[str, Any] = {"color": CURVE, "marker": ".", "ms": 3.0}
     axes.plot(scale * profile.values[inside], profile.excess[inside], **look, gid="profile")
     ends = [
         scale * (end if isfinite(end) else bound)
@@ -141,8 +154,11 @@ def _profile(axes: Axes, estimate: Estimate, threshold: float) -> None:
     ]
     axes.axvspan(*ends, color=CURVE, alpha=0.12, lw=0.0, gid="interval")
     axes.axvline(scale * estimate.value, color=CURVE, lw=0.8, gid="value")
-    open_ = [side for side, end in zip(("below", "above"), estimate.interval, strict=True)
-             if not isfinite(end)]
+    open_ = [
+        side
+        for side, end in zip(("below", "above"), estimate.interval, strict=True)
+        if not isfinite(end)
+    ]
     if open_:
         words = f"open {' and '.join(open_)}"
         axes.text(0.97, 0.95, words, ha="right", va="top", transform=axes.transAxes, fontsize=SMALL)
