@@ -105,6 +105,21 @@ def test_several_recordings_share_the_drive_and_have_starts_of_their_own() -> No
     ]
 
 
+def test_what_is_not_fitted_keeps_its_ratio_to_kinetic_friction() -> None:
+    finger = Contact(0.010, 0.015, [(0.0, 0.010), (0.1, 0.008)])
+    drive = Drive(mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=finger)
+    recording = recorded(drive, RELEASE, rate=1e3)
+    found = parameters(["finger_kinetic"], {}, drive, [RELEASE], [recording])
+    made = Model(found, drive, [RELEASE], [recording]).assembly.drive(np.array([0.020]))
+    assert made.finger == Contact(0.020, 0.030, [(0.0, 0.020), (0.1, 0.016)])
+    assert made.plate == drive.plate and made.mass == drive.mass
+    free = ["finger_kinetic", "finger_static"]
+    found = parameters(free, {}, drive, [RELEASE], [recording])
+    both = Model(found, drive, [RELEASE], [recording]).assembly
+    assert both.drive(np.array([0.020, 0.026])).finger.static == 0.026
+    assert both.drive(np.array([0.020, 0.011])).finger.static == 0.020  # never below the kinetic
+
+
 @pytest.mark.parametrize(
     ("free", "bounds", "said"),
     [

@@ -53,6 +53,11 @@ def test_samples_of_an_input_become_the_fewest_rows_that_follow_them() -> None:
     assert isinstance(found, Profile)
     assert len(found.times) == 4
     assert np.abs(found(t) - load).max() <= 5e-3
+    speed = 0.1 * (1.0 - np.cos(30.0 * t))
+    smooth = Recording(t, position=np.cos(t), mouse_velocity=speed).mouse_velocity
+    assert isinstance(smooth, Profile)
+    assert 10 < len(smooth.times) < 200
+    assert np.abs(smooth(t) - speed).max() <= 1e-3 * speed.max()
 
 
 def test_a_window_keeps_the_times() -> None:
