@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -24,6 +25,10 @@ REFINED: Final = 16
 """Candidates that are refined on them."""
 BEGINNING: Final = 0.35
 """The part of a recording with which a search begins, beside one with all of it."""
+STEPS: Final = 10
+"""Parts of the range of a parameter without a derivative."""
+OF_EACH: Final = 2
+"""Candidates of each part."""
 FINISHED: Final = 3
 """Of those, how many are refined on all samples."""
 FEW: Final = 25
@@ -212,9 +217,28 @@ def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
         (problem.refined(theta, most=FEW, tol=1e-4) for theta in starts),
         key=lambda end: end.cost,
     )
+    again = _by_steps(problem, ends[0].theta, (tried, first))
+    ends += [problem.refined(theta, most=FEW, tol=1e-4) for theta in again]
+    ends.sort(key=lambda end: end.cost)
     whole = Problem(model, weights)
     best = [whole.refined(end.theta) for end in _apart(ends, problem)[:FINISHED]]
     return min(best, key=lambda end: end.cost), tried
+
+
+def _by_steps(problem: Problem, theta: Array, lists: Sequence[Array]) -> list[Array]:
+    """More candidates, along parameters that change the samples by steps alone.
+
+    Static friction may only decide at which turn the pin stays. No derivative leads from one such
+    step to the next, so that the best candidates of each part of its range are refined too.
+    """
+    found: list[Array] = []
+    for i in np.flatnonzero(~problem.slopes(theta).any(axis=0)):
+        for tried in lists:
+            ends = np.quantile(tried[:, i], np.linspace(0.0, 1.0, STEPS + 1))
+            for low, high in pairwise(ends):
+                inside = (tried[:, i] >= low) & (tried[:, i] <= high)
+                found += [*tried[np.flatnonzero(inside)[:OF_EACH]]]
+    return found
 
 
 def _beginning(model: Model) -> Array:
