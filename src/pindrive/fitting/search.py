@@ -27,6 +27,8 @@ BEGINNING: Final = 0.35
 """The part of a recording with which a search begins, beside one with all of it."""
 STEPS: Final = 10
 """Parts of the range of a parameter without a derivative."""
+SCANNED: Final = 40
+"""Values of one that are compared, closer together where it is small."""
 OF_EACH: Final = 2
 """Candidates of each part."""
 FINISHED: Final = 3
@@ -211,7 +213,8 @@ def search(model: Model, weights: Array, seed: int) -> tuple[Optimum, Array]:
     first = candidates(coarse, few * _beginning(coarse), seed)
     early = Problem(rough, thin * _beginning(rough))
     starts += [
-        early.refined(theta, most=FEW, tol=1e-3).theta for theta in _distinct(first, problem)
+        _stepped(problem, early.refined(theta, most=FEW, tol=1e-3).theta, early)
+        for theta in _distinct(first, problem)
     ]
     ends = sorted(
         (problem.refined(theta, most=FEW, tol=1e-4) for theta in starts),
@@ -238,6 +241,17 @@ def _by_steps(problem: Problem, theta: Array, lists: Sequence[Array]) -> list[Ar
             for low, high in pairwise(ends):
                 inside = (tried[:, i] >= low) & (tried[:, i] <= high)
                 found += [*tried[np.flatnonzero(inside)[:OF_EACH]]]
+    return found
+
+
+def _stepped(problem: Problem, theta: Array, early: Problem) -> Array:
+    """The best values of parameters that the first part of a recording does not tell."""
+    found = theta.copy()
+    for i in np.flatnonzero(~early.slopes(theta).any(axis=0)):
+        tried = np.tile(found, (SCANNED, 1))
+        span = problem.upper[i] - problem.lower[i]
+        tried[:, i] = problem.lower[i] + span * np.linspace(0.0, 1.0, SCANNED) ** 3
+        found = tried[int(np.argmin([problem.plain_cost(each) for each in tried]))]
     return found
 
 
