@@ -135,6 +135,7 @@ class _Side:
         excess = found.cost - self._best.cost
         if excess < -BETTER:
             raise BetterOptimum(found)
-        self._near[value] = found.theta
+        if excess < self._target**2:  # beyond a jump of the cost the others may have gone astray
+            self._near[value] = found.theta
         self.points[value] = max(excess, 0.0)
         return sqrt(max(excess, 0.0))
