@@ -33,7 +33,9 @@ def test_the_package_is_imported_without_its_modules() -> None:
     assert run.stdout == "[]\n"
 
 
-@pytest.mark.parametrize("name", ["quantities", "motion", "device", "evaluation", "files"])
+@pytest.mark.parametrize(
+    "name", ["quantities", "motion", "device", "evaluation", "files", "study", "fitting"]
+)
 def test_a_package_says_what_is_public(name: str) -> None:
     """Its docstring has a line for each name, and each name is what it is said to be."""
     package = importlib.import_module(f"pindrive.{name}")

@@ -7,6 +7,10 @@ from pindrive.device.reading import Page as Page
 from pindrive.device.scanning import Scan as Scan
 from pindrive.device.scanning import scan as scan
 from pindrive.files.device import load_device as load_device
+from pindrive.fitting.estimation import fit as fit
+from pindrive.fitting.friction_curve import fit_friction as fit_friction
+from pindrive.fitting.recording import Recording as Recording
+from pindrive.fitting.recording import read_recording as read_recording
 from pindrive.motion.batch import simulate_batch as simulate_batch
 from pindrive.motion.drive import Contact as Contact
 from pindrive.motion.drive import Drive as Drive

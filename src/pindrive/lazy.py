@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from types import ModuleType
 
     import h5netcdf
@@ -87,26 +87,18 @@ def _loaded(name: str) -> ModuleType:
     return sys.modules[name]
 
 
-def attach(
-    package: str, homes: Mapping[str, str] | None = None
-) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """The functions `__getattr__` and `__dir__` of a package whose names are imported at first use.
 
     Args:
-        package: its name.
-        homes: the module of each public name; as the package's `__init__.pyi` has it unless given.
+        package: its name; the module of each public name stands in its `__init__.pyi`.
     """
     module = sys.modules[package]
 
-    def found() -> Mapping[str, str]:
-        if homes is not None:
-            return homes
+    def get(name: str) -> object:
         with open(f"{module.__file__}i", encoding="utf-8") as stub:
             lines = (line.split() for line in stub)
-            return {words[5]: words[1] for words in lines if words[4:5] == ["as"]}
-
-    def get(name: str) -> object:
-        public = found()
+            public = {words[5]: words[1] for words in lines if words[4:5] == ["as"]}
         if name == "__version__":
             from importlib.metadata import version
 

@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from math import cos, exp
 from pathlib import Path
 from typing import Any
 
@@ -116,6 +117,9 @@ def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: 
 @pytest.mark.usefixtures("in_empty_folder")
 def test_the_examples_run_one_after_the_other() -> None:
     """All but that of `paper`, which has tests of its own and takes long."""
+    times = [0.25 * i for i in range(200)]
+    rows = "".join(f"{t},{2.0 * exp(-0.02 * t) * cos(0.1 * t):.4f}\n" for t in times)
+    Path("pin.csv").write_text(f"t [ms],position [mm]\n{rows}")
     assert run("init", "study.toml", "--study").exit_code == 0
     for name in sorted(NAMES, key=lambda name: name not in BEFORE_OTHERS):
         if name == "paper":

@@ -14,6 +14,7 @@ from PIL import Image
 import pindrive as pd
 from command import EXAMPLE
 from pindrive.quantities.quantity import significant
+from recordings import RELEASE, START, recorded
 
 
 class Parts(HTMLParser):
@@ -67,12 +68,16 @@ def results(motion: pd.Motion) -> dict[str, Any]:
         "robustness": pd.robustness(study, count=50),
         "local sensitivity": pd.local_sensitivity(study),
         "sobol": pd.sobol(study, rows=128),
+        "fit": pd.fit(recorded(rate=1e3), START, RELEASE, free=["damping"], profiles=False),
+        "friction curve": pd.fit_friction(SPEEDS, 0.02 + 0.1 * SPEEDS),
     }
 
 
+SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
 RESULTS = (
     *("motion", "sensitivity", "scan", "judgement", "robustness", "local sensitivity", "sobol"),
+    *("fit", "friction curve"),
 )
 
 

@@ -16,6 +16,7 @@ Function = TypeVar("Function", bound=Callable[..., None])
 COMMAND_GROUPS: Final = (
     "Device and study files",
     "One release",
+    "Measurements",
     "The whole device",
     "Studies",
     "The paper behind the model",
@@ -33,6 +34,7 @@ _PANELS: Final = ("Arguments", WRITTEN, PAGE, ASKED, COMPUTED, FILES, "Help")
 _SHARED: Final = (
     "app",
     "errors",
+    "fit_tables",
     "help",
     "options",
     "progress",

@@ -1,0 +1,184 @@
+"""The command `pindrive fit`: parameters of a device from recordings of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import ASKED, COMPUTED, FILES, command
+from pindrive.cli.options import (
+    OverridesOption,
+    PlotOption,
+    count_option,
+    file_option,
+    picture,
+    save_picture,
+)
+
+if TYPE_CHECKING:
+    from pindrive.files.device import DeviceFile
+    from pindrive.fitting.recording import Recording
+
+EXAMPLE = "stiffness, damping, plate.kinetic=5 mN..50 mN"
+
+
+@command("Measurements", 'pindrive fit device.toml pin.csv --free "stiffness, damping"')
+def fit(
+    device: Annotated[Path, typer.Argument(metavar="DEVICE", help="Device file (TOML).")],
+    recordings: Annotated[
+        list[Path],
+        typer.Argument(metavar="RECORDING...", help="Of releases (CSV with units in its header)."),
+    ],
+    free: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEYS",
+            help=f'What is fitted, with bounds or not: "{EXAMPLE}".',
+            rich_help_panel=ASKED,
+        ),
+    ],
+    output: Annotated[Path | None, file_option("The fitted device file.", "--output", "-o")] = None,
+    mouse_velocity: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SPEED|CSV",
+            help="Of each recording, in their order, or of all; its column.",
+            rich_help_panel=ASKED,
+        ),
+    ] = None,
+    window: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM..TO", help='Samples used: "5 ms..150 ms".', rich_help_panel=ASKED
+        ),
+    ] = None,
+    noise: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CHANNEL=SIZE",
+            help='Known noise: "position=5 um"; else estimated.',
+            rich_help_panel=ASKED,
+        ),
+    ] = None,
+    compare: Annotated[
+        bool,
+        typer.Option(
+            "--compare", help="Compare laws of friction by AICc too.", rich_help_panel=COMPUTED
+        ),
+    ] = False,
+    plot: PlotOption = None,
+    seed: Annotated[int, count_option("--seed", "Of the candidates.", least=0)] = 1,
+    overrides: OverridesOption = None,
+    force: Annotated[
+        bool,
+        typer.Option("--force", help="Replace such a file that is there.", rich_help_panel=FILES),
+    ] = False,
+) -> None:
+    """Fit a device to recordings of its pin, and say what they cannot tell.
+
+    A recording has columns t and position, velocity, acceleration or force, and mouse_velocity and
+    plate_load where they change, such as "t [s], position [mm]". What may be fitted: the keys of a
+    drive and its motion, time_offset, and position_offset or that of another channel.
+    """
+    from contextlib import ExitStack
+
+    from pindrive.files.device import load_device
+    from pindrive.files.output import DEVICE_FILE, Output, naming, writing
+
+    with refusing(), ExitStack() as stack:
+        loaded = load_device(device, overrides or ())
+        keys, bounds = _free(free)
+        given = _recordings(recordings, mouse_velocity or [], noise or [], window, loaded)
+        outputs = [picture(plot)] if plot else []
+        outputs += [Output(output, DEVICE_FILE, "-o")] if output else []
+        inputs = [*loaded.inputs, *recordings]
+        parts = stack.enter_context(writing(outputs, inputs, consent=force))
+
+        from pindrive.fitting.comparison import compare_models
+        from pindrive.fitting.estimation import fit as fitted
+
+        found = fitted(given, loaded.drive, loaded.release, free=keys, bounds=bounds, seed=seed)
+        compared = compare_models(found, seed) if compare else None
+        if output:
+            from pindrive.fitting.device_file import fitted_file
+
+            with naming(output):
+                parts[output].write_text(fitted_file(loaded, found, output), encoding="utf-8")
+        if plot:
+            from pindrive.plot.fit import plot_fit
+
+            with naming(plot):
+                save_picture(plot_fit(found), plot, parts[plot])
+    from pindrive.cli.fit_tables import comparison_report, fit_report
+    from pindrive.cli.tables import show
+
+    show(fit_report(found))
+    if compared:
+        show(comparison_report(compared))
+    for path in (output, plot):
+        if path:
+            typer.echo(f"Wrote {path}")
+
+
+def _free(given: Sequence[str]) -> tuple[list[str], dict[str, tuple[float | str, float | str]]]:
+    """The keys that are free, and the bounds of those that have some."""
+    keys, bounds = [], {}
+    for part in (part.strip() for text in given for part in text.split(",")):
+        key, equals, ends = (piece.strip() for piece in part.partition("="))
+        if not key:
+            raise ValueError(
+                f'--free: must be keys apart by commas, like "{EXAMPLE}", got "{part}"'
+            )
+        keys.append(key)
+        if equals:
+            bounds[key] = _ends(ends, f"--free {key}", EXAMPLE.partition("=")[2])
+    return keys, bounds
+
+
+def _ends(text: str, option: str, example: str) -> tuple[Any, Any]:
+    low, dots, high = (piece.strip() for piece in text.partition(".."))
+    if not (low and dots and high):
+        raise ValueError(f'{option}: must be two values, like "{example}", got "{text}"')
+    return low, high
+
+
+def _recordings(
+    paths: Sequence[Path],
+    velocities: Sequence[str],
+    noise: Sequence[str],
+    window: str | None,
+    device: DeviceFile,
+) -> list[Recording]:
+    from pindrive.fitting.recording import read_recording
+
+    if len(velocities) not in (0, 1, len(paths)):
+        required = f"given once, or once for each of {len(paths)} recordings"
+        raise ValueError(f"--mouse-velocity must be {required}, got {len(velocities)} of them")
+    each: list[str | None] = [*velocities] * (len(paths) if len(velocities) == 1 else 1)
+    each = each or [None] * len(paths)
+    sizes = {}
+    for text in noise:
+        channel, equals, size = (piece.strip() for piece in text.partition("="))
+        if not equals:
+            raise ValueError(f'--noise must be like "position=5 um", got "{text}"')
+        sizes[channel] = size
+    found = []
+    for path, velocity in zip(paths, each, strict=True):
+        speed = None if velocity is None else _velocity(velocity, device)
+        made = read_recording(path, mouse_velocity=speed, noise=sizes)
+        found.append(made.window(*_ends(window, "--window", "5 ms..150 ms")) if window else made)
+    return found
+
+
+def _velocity(text: str, device: DeviceFile) -> Any:
+    """A speed, or the profile of a CSV of it or of a recorded hand."""
+    from pindrive.files.device import load_device
+    from pindrive.files.recording import is_file
+
+    if not is_file("motion.mouse_velocity", text):
+        return text
+    return load_device(device.path, [f"mouse_velocity={text}"]).release.mouse_velocity

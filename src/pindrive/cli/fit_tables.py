@@ -1,0 +1,97 @@
+"""Fits as tables and words in a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from pindrive.cli.tables import new_table
+from pindrive.fitting.recording import CHANNELS
+from pindrive.quantities.quantity import DISPLAY, significant
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from pindrive.fitting.comparison import ModelComparison
+    from pindrive.fitting.results import Fit
+
+
+def fit_report(found: Fit) -> RenderableType:
+    """Estimates, then correlations that matter, the noise of each channel, and what is doubtful."""
+    percent = f"{100.0 * found.confidence:g} %"
+    names = ", ".join(recording.name for recording in found.recordings)
+    heads = (
+        "parameter",
+        ">value",
+        ">± standard",
+        f">{percent} from",
+        ">to",
+        "unit",
+        "identifiable",
+    )
+    table = new_table(f"Fit to {names}", *heads)
+    for row in found.table():
+        table.add_row(*row)
+    words = [*_correlations(found), f"AICc {found.aicc:.1f}"]
+    words += [f"warning: {line}" for line in found.warnings]
+    lines = [Text(line, no_wrap=True, overflow="ignore") for line in words]
+    return Group(table, _noise(found), *lines)
+
+
+def _noise(found: Fit) -> Table:
+    heads = (
+        "recording",
+        "channel",
+        ">samples",
+        ">noise",
+        "unit",
+        ">runs p",
+        ">Ljung-Box p",
+        "rest",
+    )
+    table = new_table("What is left", *heads)
+    for left in found.residuals:
+        unit = CHANNELS[left.channel][0]
+        unit, scale = DISPLAY.get(unit, (unit, 1.0))
+        table.add_row(
+            found.recordings[left.recording].name,
+            left.channel,
+            str(left.count),
+            significant(left.noise * scale, 3) + (" given" if left.known else ""),
+            unit,
+            f"{left.runs:.2g}",
+            f"{left.ljung_box:.2g}",
+            "structure" if left.structured else "noise",
+        )
+    return table
+
+
+def _correlations(found: Fit) -> list[str]:
+    """The pairs whose estimates are strongly correlated."""
+    strong = []
+    for i, one in enumerate(found.estimates):
+        for j in range(i):
+            value = float(found.correlation[i, j])
+            if np.isfinite(value) and abs(value) > 0.9:
+                strong.append(f"{found.estimates[j].name} and {one.name} {value:+.3f}")
+    return [f"Correlations above 0.9: {', '.join(strong)}"] if strong else []
+
+
+def comparison_report(compared: ModelComparison) -> RenderableType:
+    """The laws by AICc, and why others are missing."""
+    heads = ("law of friction", ">parameters", ">AICc", ">above best", ">weight", "rest")
+    table = new_table("Laws of friction", *heads)
+    for law, found in sorted(compared.fits.items(), key=lambda item: item[1].aicc):
+        structured = any(left.structured for left in found.residuals)
+        table.add_row(
+            law,
+            str(len(found.theta)),
+            f"{found.aicc:.1f}",
+            f"{compared.excess[law]:.1f}",
+            f"{compared.weights[law]:.3f}",
+            "structure" if structured else "noise",
+        )
+    return Group(table, *(Text(f"{law}: {why}") for law, why in compared.refused.items()))

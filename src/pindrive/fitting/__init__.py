@@ -1,0 +1,17 @@
+"""Fitting: recordings of a pin in, parameters of its drive with their uncertainty out.
+
+- `compare_models`: fits of other laws of friction to the recordings of a fit, by AICc
+- `Estimate`: one fitted parameter
+- `fit`: fits parameters of a drive and its releases to recordings
+- `Fit`: what `fit` found
+- `fit_friction`: fits a friction curve to friction forces that were measured at sliding speeds
+- `FrictionCurve`: a friction curve that was fitted
+- `Identifiability`: whether recordings tell a parameter
+- `ModelComparison`: fits of several laws of friction to the same recordings
+- `read_recording`: a recording from a CSV file whose header names columns with their units
+- `Recording`: samples of one release, and what is known of it
+"""
+
+from pindrive.lazy import attach
+
+__getattr__, __dir__ = attach(__name__)

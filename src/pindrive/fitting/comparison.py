@@ -1,0 +1,195 @@
+"""Laws of friction compared on the same recordings, by Akaike's criterion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, inf
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive import lazy
+from pindrive.fitting.estimation import fit
+from pindrive.fitting.results import Fit
+from pindrive.lazy import xr
+from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.quantities.status import Status
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["ModelComparison", "compare_models"]
+
+SPEEDS: Final = (0.0, 0.1, 0.4, 1.0)
+"""Rows of a friction curve that is tried, in parts of the largest sliding speed."""
+LAWS: Final = ("Coulomb", "static friction", "friction curve", "compliant skin")
+"""In their order."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelComparison(lazy.NotebookHtml):
+    """Fits of several laws of friction to the same recordings.
+
+    Attributes:
+        fits: by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
+        refused: why, of each law that this drive or release cannot have.
+    """
+
+    fits: Mapping[str, Fit]
+    refused: Mapping[str, str]
+
+    def __repr__(self) -> str:
+        """The best law, and how far behind the next one is, in a line."""
+        order = sorted(self.excess.items(), key=lambda item: item[1])
+        rest = ", ".join(f"{name} +{value:.1f}" for name, value in order[1:])
+        return f"<ModelComparison by AICc: {order[0][0]} is best; {rest}, {self.status.name}>"
+
+    @property
+    def best(self) -> str:
+        """The law with the least AICc."""
+        return min(self.fits, key=lambda name: self.fits[name].aicc)
+
+    @property
+    def excess(self) -> dict[str, float]:
+        """The AICc of each law less that of the best; above 10 it has next to no support."""
+        least = self.fits[self.best].aicc
+        return {name: found.aicc - least for name, found in self.fits.items()}
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """Akaike weights: how likely each law is the best of these."""
+        parts = {name: exp(-0.5 * value) for name, value in self.excess.items()}
+        total = sum(parts.values())
+        return {name: part / total for name, part in parts.items()}
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where a law could not be fitted."""
+        complete = not self.refused and all(found.converged for found in self.fits.values())
+        return Status.ok if complete else Status.incomplete
+
+    def plot(self) -> Figure:
+        """The residuals of each law over time, as a figure."""
+        figure: Figure = lazy.call("pindrive.plot.fit:plot_comparison", self)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """AICc, its excess over the best, weights and the count of parameters over `law`."""
+        data: dict[str, Any] = {
+            "aicc": ("law", [found.aicc for found in self.fits.values()], {"units": "1"}),
+            "excess": ("law", [*self.excess.values()], {"units": "1"}),
+            "weight": ("law", [*self.weights.values()], {"units": "1"}),
+            "parameters": ("law", [len(found.theta) for found in self.fits.values()]),
+        }
+        attributes = {"status": self.status.name, "best": self.best}
+        return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
+
+
+def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
+    """Fits of other laws of friction to the recordings of a fit, by AICc.
+
+    Args:
+        found: the fit; what it had free besides friction is free again.
+        seed: of the candidates.
+
+    Returns:
+        Coulomb friction, static friction, a friction curve and compliant skin, where the drive can
+        have them, with AICc and weights.
+
+    Raises:
+        ValueError: none of them can be fitted.
+    """
+    model = found.model
+    bounds = {p.key: (p.lower, p.upper) for p in model.parameters}
+    others = [p.key for p in model.parameters if not _of_friction(p.key)]
+    friction = [p.key for p in model.parameters if p.key.endswith("_kinetic")]
+    contacts = [
+        name
+        for name in ("plate", "finger")
+        if f"{name}_kinetic" in friction or not getattr(found.drive, name).frictionless
+    ]
+    fits, refused = {}, {}
+    for law in LAWS:
+        drive, keys = _changed(law, found, contacts, friction)
+        if drive is None:
+            refused[law] = keys[0]
+            continue
+        free = [*dict.fromkeys([*others, *keys])]
+        kept = {key: ends for key, ends in bounds.items() if key in free}
+        try:
+            fits[law] = fit(
+                model.recordings,
+                drive,
+                found.releases,
+                free=free,
+                bounds=kept,
+                seed=seed,
+                confidence=found.confidence,
+                profiles=False,
+            )
+        except ValueError as error:
+            refused[law] = str(error)
+    if not fits:
+        raise ValueError("; ".join(f"{law}: {why}" for law, why in refused.items()))
+    return ModelComparison(fits, refused)
+
+
+def _of_friction(key: str) -> bool:
+    return key.startswith(("plate_", "finger_")) and key != "plate_load"
+
+
+def _changed(
+    law: str, found: Fit, contacts: list[str], friction: list[str]
+) -> tuple[Drive | None, list[str]]:
+    """A drive of another law and what is free of it; None, and why it cannot be."""
+    drive = found.drive
+    made = {name: _coulomb(getattr(drive, name)) for name in ("plate", "finger")}
+    keys = friction or [f"{name}_kinetic" for name in contacts]
+    match law:
+        case "static friction":
+            keys = [*keys, *(f"{name}_static" for name in contacts)]
+            for name in contacts:
+                kinetic = made[name].kinetic
+                made[name] = Contact(kinetic, 1.2 * kinetic)
+        case "friction curve":
+            loaded = any(
+                isinstance(release.plate_load, Profile) and release.plate_load.changes
+                for release in found.releases
+            )
+            curved = [name for name in contacts if not (name == "plate" and loaded)]
+            if not curved:
+                return None, ["a plate whose load changes has no friction curve"]
+            speeds = np.array(SPEEDS) * _fastest(found)
+            for name in curved:
+                kinetic = made[name].kinetic
+                made[name] = Contact(curve=[(float(u), kinetic) for u in speeds])
+                keys = [key for key in keys if key != f"{name}_kinetic"]
+                keys += [f"{name}_curve[{i}].force" for i in range(len(speeds))]
+        case "compliant skin":
+            if "finger" not in contacts:
+                return None, ["the finger has no friction"]
+            skin = drive.finger.stiffness
+            kinetic = made["finger"].kinetic
+            made["finger"] = Contact(
+                kinetic, stiffness=10.0 * drive.stiffness if skin == inf else skin
+            )
+            keys = [*keys, "finger_stiffness"]
+    return (
+        Drive(mass=drive.mass, stiffness=drive.stiffness, damping=drive.damping, **made),
+        keys,
+    )
+
+
+def _coulomb(contact: Contact) -> Contact:
+    return Contact(contact.kinetic)
+
+
+def _fastest(found: Fit) -> float:
+    """The largest speed at which the fitted pin slides, m/s."""
+    speeds = []
+    for motion in found.motions:
+        times = motion.sample_times()
+        v = motion.velocity(times)
+        speeds += [np.abs(v).max(), np.abs(v - motion.plate_velocity(times)).max()]
+    return float(max(speeds))

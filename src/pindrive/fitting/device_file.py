@@ -1,0 +1,120 @@
+"""A device file with fitted values: what the old one says, and where each new value comes from."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pindrive.files.recording import files_named
+from pindrive.files.schema import written
+from pindrive.fitting.parameters import key_of
+from pindrive.fitting.results import Estimate, is_of_sensor
+from pindrive.motion.drive import Profile
+from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.quantity import significant
+from pindrive.quantities.table import QUANTITIES
+
+if TYPE_CHECKING:
+    from pindrive.files.device import DeviceFile
+    from pindrive.fitting.results import Fit
+
+
+def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
+    """The text of a device file with the values of a fit.
+
+    Every value that was fitted says its standard error, its interval and its recordings; values
+    that keep a ratio to it have changed with it. Where several recordings have a release of their
+    own, that of the first is written.
+
+    Args:
+        device: the file that the fit started from.
+        found: the fit.
+        target: where the text will stand; paths in it are relative to that.
+    """
+    tables = {name: dict(table) for name, table in device.tables.items() if table}
+    for key, path in files_named(device.tables, device.path.parent).items():
+        _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
+    comments: dict[str, list[str]] = {}
+    for key, value in _values(device, found).items():
+        _put(tables, key, value)
+    tables["drive"].pop("damping_ratio", None)
+    _put(tables, "drive.damping", written("drive.damping", found.drive.damping))
+    for estimate in found.estimates:
+        if not is_of_sensor(estimate) and estimate.parameter.recording in (None, 0):
+            comments.setdefault(key_of(estimate.parameter.key), []).append(_comment(estimate))
+    for line in tables.pop("device", {}).items():
+        tables.setdefault("device", {})[line[0]] = line[1]
+    names = ", ".join(recording.name for recording in found.recordings)
+    lines = [
+        f"# {device.path.name}, fitted by pindrive to {names}.",
+        f"# Intervals hold {100.0 * found.confidence:g} %; status: {found.status.name}.",
+        *(f"# {_plain(warning)}" for warning in found.warnings),
+    ]
+    order = ["device", *(name for name in tables if name != "device")]
+    for name in order:
+        if not tables.get(name):
+            continue
+        lines += ["", f"[{name}]"]
+        for key, value in tables[name].items():
+            lines += [f"# {text}" for text in comments.get(f"{name}.{key}", ())]
+            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return "\n".join(lines) + "\n"
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[\x00-\x1f\x7f]", " ", text)
+
+
+def _put(tables: dict[str, dict[str, Any]], key: str, value: Any) -> None:
+    table, _, name = key.partition(".")
+    tables.setdefault(table, {})[name] = value
+
+
+def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
+    """Every value that differs from those of the device file, as TOML has it."""
+    drive, release = found.drive, found.releases[0]
+    values: dict[str, Any] = {"drive.mass": drive.mass, "drive.stiffness": drive.stiffness}
+    for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
+        values[f"{name}.kinetic"] = contact.kinetic
+        values[f"{name}.static"] = contact.static
+        values[f"{name}.curve"] = contact.curve
+        if name == "finger" and not contact.rigid:
+            values[f"{name}.stiffness"] = contact.stiffness
+    values["motion.displacement"] = release.displacement
+    values["motion.velocity"] = release.velocity
+    values["motion.mouse_velocity"] = release.mouse_velocity
+    values["motion.plate_load"] = release.plate_load
+    values["motion.skin_stretch"] = release.skin_stretch
+    before = device.values()
+    changed = {}
+    for key, value in values.items():
+        value = value.rows if isinstance(value, Profile) else value
+        if value is None or value == before.get(key):
+            continue
+        changed[key] = _rows(key, value) if isinstance(value, tuple) else written(key, float(value))
+    return changed
+
+
+def _rows(key: str, rows: Any) -> list[list[Any]]:
+    name = key if key in QUANTITIES else key.partition(".")[2]
+    across = QUANTITIES[COLUMNS[QUANTITIES[name].rows_of][0]]
+    return [[f"{x!r} {across.unit}", written(key, y)] for x, y in rows]
+
+
+def _comment(estimate: Estimate) -> str:
+    """What an estimate is worth, in a line."""
+    unit, scale = estimate.parameter.scale
+    low, high = (
+        "open" if not isfinite(end) else significant(end * scale, 5) for end in estimate.interval
+    )
+    name = estimate.parameter.key
+    value = f"{name} fitted: {significant(estimate.value * scale, 5)}"
+    error = ""
+    if isfinite(estimate.standard_error):
+        error = f" ± {significant(estimate.standard_error * scale, 2)}"
+    told = f"; {estimate.identifiability} identifiable" if estimate.explanation else ""
+    return f"{value}{error} {unit}, interval {low} to {high} {unit}{told}".replace("  ", " ")

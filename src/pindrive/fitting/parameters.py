@@ -1,0 +1,452 @@
+"""What may be fitted: parameters by name, and what they make of a drive and its releases.
+
+Static friction and friction curves keep their ratio to kinetic friction, and the skin's stretch to
+the largest that it can have, unless they are fitted themselves. Static friction below the kinetic
+one acts as the kinetic one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isinf, isnan
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.fitting.recording import CHANNELS, Recording
+from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.motion.release import Release, core_numbers
+from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
+from pindrive.quantities.table import QUANTITIES, check, refusal
+
+if TYPE_CHECKING:
+    from pindrive.motion.results import CoreNumbers
+
+DRIVE: Final = {
+    "mass": "mass",
+    "stiffness": "stiffness",
+    "damping": "damping",
+    "plate_kinetic": "plate.kinetic",
+    "plate_static": "plate.static",
+    "finger_kinetic": "finger.kinetic",
+    "finger_static": "finger.static",
+    "finger_stiffness": "finger.stiffness",
+}
+"""Parameters of the drive, which all recordings share, and their quantities."""
+START: Final = ("displacement", "velocity", "skin_stretch", "mouse_velocity", "plate_load")
+"""Parameters of each release."""
+SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
+"""Parameters of each recording: its time of the release, and what its sensors add."""
+ROW: Final = re.compile(
+    r"(plate_curve|finger_curve|mouse_velocity|plate_load)\[(\d+)\]\.(speed|force|time|value)"
+)
+_TABLES: Final = {
+    "plate_curve": "plate.curve",
+    "finger_curve": "finger.curve",
+    "mouse_velocity": "mouse_velocity",
+    "plate_load": "plate_load",
+}
+"""The quantity of each table of rows."""
+DECADE: Final = 10.0
+"""A positive parameter is searched from its tenth to its tenfold unless bounds are given."""
+_STEP: Final = 1e-30
+"""Imaginary step of a complex-step derivative (Squire and Trapp, 1998): exact to rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number that is fitted."""
+
+    name: str
+    """As it is reported: "stiffness", with several recordings "displacement@1" of the second."""
+    key: str
+    """Without the recording."""
+    recording: int | None
+    """The one that it belongs to; None for all."""
+    unit: str
+    """SI."""
+    start: float
+    """Where the drive or the release has it."""
+    lower: float
+    upper: float
+    """From where to where it is searched."""
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether candidates are spread over its decades."""
+        return self.lower > 0.0 and self.upper > 3.0 * self.lower
+
+    @property
+    def quantity(self) -> Quantity | None:
+        """Its row of the table of quantities; None for what a sensor adds."""
+        return _quantity(self.key)
+
+    @property
+    def scale(self) -> tuple[str, float]:
+        """The unit in which a person reads it, and how many of it make one SI unit."""
+        return ("", 1.0) if self.unit == "1" else DISPLAY.get(self.unit, (self.unit, 1.0))
+
+
+def parameters(
+    free: Sequence[str],
+    bounds: Mapping[str, tuple[float | str, float | str]],
+    drive: Drive,
+    releases: Sequence[Release],
+    recordings: Sequence[Recording],
+) -> tuple[Parameter, ...]:
+    """The parameters that are named in `free`, those of a recording once for each of them.
+
+    Raises:
+        ValueError: a name is unknown or given twice, or the drive or the release does not have it;
+            bounds of what is not free, or out of range.
+    """
+    if isinstance(free, str) or not free:
+        raise ValueError(refusal("free", "a list of parameters, like ['stiffness']", repr(free)))
+    keys = [_key(name) for name in free]
+    for i, key in enumerate(keys):
+        if key in keys[:i]:
+            raise ValueError(refusal("free", "names that differ", f"{key} twice"))
+    given = {_key(name): ends for name, ends in bounds.items()}
+    for key in given:
+        if key not in keys:
+            raise ValueError(refusal("bounds", f"for a free parameter ({', '.join(keys)})", key))
+    found = []
+    for key in keys:
+        own = key in SENSOR or key in START or key.startswith(("mouse_velocity", "plate_load"))
+        for r in range(len(releases)) if own else (None,):
+            found += _parameter(key, r, given.get(key), drive, releases, recordings)
+    if not found:
+        raise ValueError(refusal("free", "parameters that the recordings have", ", ".join(free)))
+    return tuple(found)
+
+
+def key_of(name: str) -> str:
+    """The key of a device file in which a parameter stands."""
+    match = ROW.fullmatch(name)
+    return QUANTITIES[_TABLES[match[1]] if match else DRIVE.get(name, name)].key
+
+
+def _key(given: str) -> str:
+    """The one name of a parameter: keys of device files are names too."""
+    name = str(given).strip().removeprefix("motion.").removeprefix("drive.")
+    name = re.sub(r"^(plate|finger)\.", r"\1_", name)
+    if name in DRIVE or name in START or name in SENSOR or ROW.fullmatch(name):
+        return name
+    known = f"one of {', '.join((*DRIVE, *START, *SENSOR))}, or a row like finger_curve[1].force"
+    raise ValueError(refusal("free", known, repr(given)))
+
+
+def _quantity(key: str) -> Quantity | None:
+    if key in DRIVE:
+        return QUANTITIES[DRIVE[key]]
+    if match := ROW.fullmatch(key):
+        table = QUANTITIES[_TABLES[match[1]]]
+        across, _ = COLUMNS[table.rows_of]
+        return QUANTITIES[across] if match[3] in ("speed", "time") else table
+    return QUANTITIES.get(key)
+
+
+def _parameter(
+    key: str,
+    r: int | None,
+    bounds: tuple[float | str, float | str] | None,
+    drive: Drive,
+    releases: Sequence[Release],
+    recordings: Sequence[Recording],
+) -> list[Parameter]:
+    name = key if r is None or len(releases) == 1 else f"{key}@{r}"
+    release, recording = releases[r or 0], recordings[r or 0]
+    quantity = _quantity(key)
+    if key in SENSOR:
+        channel = key.removesuffix("_offset")
+        if channel != "time" and channel not in recording.channels:
+            if any(channel in other.channels for other in recordings):
+                return []  # of another recording
+            raise ValueError(refusal("free", "an offset of a recorded channel", key))
+        unit = "s" if channel == "time" else CHANNELS[channel][0]
+        start, allowed = 0.0, Bounds()
+        if channel == "time":
+            first, last = float(recording.time[0]), float(recording.time[-1])
+            ends = first - 0.25 * (last - first), 0.5 * (first + last)
+        else:
+            half = float(np.ptp(recording.channels[channel]))
+            ends = -half, half
+    else:
+        assert quantity
+        unit, allowed = quantity.unit, quantity.limits
+        start = _start(key, core_numbers(drive, release, None), quantity, release)
+        ends = _searched(start, quantity, drive, recordings if r is None else [recording], key)
+    if bounds is not None:
+        of = "profile.time" if unit == "s" else "profile.value"
+        if quantity:
+            of = quantity.name
+        low, high = (check(of, end, label=f"bounds of {name}") for end in bounds)
+        if not low < high:
+            raise ValueError(refusal(f"bounds of {name}", "increasing", f"{low:g} to {high:g}"))
+        ends = low, high
+    ends = max(ends[0], allowed.lower), min(ends[1], allowed.upper)
+    return [Parameter(name, key, r, unit, min(max(start, ends[0]), ends[1]), *ends)]
+
+
+def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release) -> float:
+    """The value that drive and release have."""
+    if match := ROW.fullmatch(key):
+        rows = _rows(numbers, match[1])
+        if int(match[2]) >= len(rows):
+            one = f"one of {counted(len(rows), 'row')} of {match[1]}"
+            raise ValueError(refusal("free", one, key))
+        return float(rows[int(match[2])][match[3] in ("force", "value")])
+    if key in ("mouse_velocity", "plate_load"):
+        rows = _rows(numbers, key)
+        if len(rows) > 1:
+            required = f"a row of it, like {key}[0].value, where it changes over time"
+            raise ValueError(refusal("free", required, key))
+        return float(rows[0][1])
+    if key == "finger_stiffness" and isinf(numbers[4][2]):
+        start = QUANTITIES["finger.stiffness"].example
+        assert start
+        return start
+    found = {
+        "mass": numbers[0],
+        "stiffness": numbers[1],
+        "damping": numbers[2],
+        "plate_kinetic": numbers[3][0],
+        "plate_static": numbers[3][1],
+        "finger_kinetic": numbers[4][0],
+        "finger_static": numbers[4][1],
+        "finger_stiffness": numbers[4][2],
+        "displacement": numbers[7],
+        "velocity": numbers[8],
+        "skin_stretch": numbers[9],
+    }[key]
+    if isnan(found):
+        raise ValueError(refusal("free", "one that the release was given", key))
+    return float(found)
+
+
+def _rows(numbers: Any, table: str) -> Sequence[tuple[Any, Any]]:
+    places = {"plate_curve": (3, 3), "finger_curve": (4, 3), "mouse_velocity": (5,)}
+    for i in places.get(table, (6,)):
+        numbers = numbers[i]
+    rows: Sequence[tuple[Any, Any]] = numbers
+    return rows
+
+
+def _searched(
+    start: float, quantity: Quantity, drive: Drive, recordings: Sequence[Recording], key: str
+) -> tuple[float, float]:
+    """From where to where a parameter is searched without bounds."""
+    size = abs(start) or _size(quantity.unit, drive, recordings)
+    if key.endswith(("_static",)):
+        return 0.0, 2.0 * DECADE * size
+    if quantity.bounds.lower == 0.0 and not quantity.bounds.lower_closed:
+        return size / DECADE, size * DECADE
+    if quantity.bounds.lower == 0.0:
+        return 0.0, size * DECADE
+    if quantity.unit == "m":
+        size = max(size, _size("m", drive, recordings))
+    if quantity.unit == "m/s":
+        size = max(size, _size("m/s", drive, recordings))
+    return start - 2.0 * size, start + 2.0 * size
+
+
+def _size(unit: str, drive: Drive, recordings: Sequence[Recording]) -> float:
+    """How large a parameter is that has no size of its own, by what was recorded."""
+    omega = drive.natural_frequency
+    per_length = {
+        "position": 1.0,
+        "velocity": omega,
+        "acceleration": omega**2,
+        "force": drive.stiffness,
+    }
+    length = max(
+        float(np.abs(values).max()) / per_length[channel]
+        for recording in recordings
+        for channel, values in recording.channels.items()
+    )
+    powers = {"m": length, "m/s": length * omega, "N": length * drive.stiffness, "s": 1.0 / omega}
+    return powers.get(unit, drive.mass * omega if unit == "N*s/m" else 1.0)
+
+
+# ---- what they make ------------------------------------------------------------------------------
+
+
+class Assembly:
+    """The core's numbers of each recording as functions of the parameters.
+
+    Args:
+        found: the parameters.
+        drive: what they change.
+        releases: likewise, one for each recording.
+        durations: until when each recording is simulated, s.
+    """
+
+    def __init__(
+        self,
+        found: Sequence[Parameter],
+        drive: Drive,
+        releases: Sequence[Release],
+        durations: Sequence[float],
+    ) -> None:
+        self._own = [
+            {
+                p.key: i
+                for i, p in enumerate(found)
+                if p.recording in (None, r) and p.key not in SENSOR
+            }
+            for r in range(len(releases))
+        ]
+        self._drive = drive
+        self._base = [core_numbers(drive, release, inf) for release in releases]
+        self._durations = durations
+        self._carried = [release.velocity is None for release in releases]
+        self._still = [_mapped(lambda _: 0.0, base) for base in self._base]
+
+    def places(self, r: int) -> Sequence[int]:
+        """The parameters that change the motion of a recording."""
+        return [*self._own[r].values()]
+
+    def numbers(self, theta: Any, r: int, duration: float | None = None) -> Any:
+        """The core's numbers; with arrays in `theta` arrays in their place."""
+        values = {key: theta[i] for key, i in self._own[r].items()}
+        end = self._durations[r] if duration is None else duration
+        return _assembled(values, self._base[r], self._carried[r], end)
+
+    def drive(self, theta: Any) -> Drive:
+        """The drive with these parameters."""
+        mass, stiffness, damping, *contacts = self.numbers(theta, 0)[:5]
+        made = [
+            _made_contact(numbers, given, f"{name}_static" in self._own[0])
+            for numbers, given, name in zip(
+                contacts, (self._drive.plate, self._drive.finger), ("plate", "finger"), strict=True
+            )
+        ]
+        return Drive(
+            mass=float(mass),
+            stiffness=float(stiffness),
+            damping=float(damping),
+            plate=made[0],
+            finger=made[1],
+        )
+
+    def release(self, theta: Any, r: int) -> Release:
+        """The release of a recording with these parameters."""
+        *_, plate_velocity, load, x, v, stretch, _ = self.numbers(theta, r)
+        carried = self._carried[r] and "velocity" not in self._own[r]
+        return Release(
+            _made_input(plate_velocity),
+            float(x),
+            None if carried else float(v),
+            _made_input(load),
+            None if isnan(stretch) else float(stretch),
+        )
+
+    def along(self, theta: Sequence[float], i: int, r: int) -> CoreNumbers:
+        """The derivative of the core's numbers with respect to parameter i."""
+        values: dict[str, Any] = {key: float(theta[j]) for key, j in self._own[r].items()}
+        key = next(key for key, j in self._own[r].items() if j == i)
+        values[key] = complex(values[key], _STEP)
+        numbers = _assembled(values, self._base[r], self._carried[r], 0.0)
+        base, still = self._base[r], self._still[r]
+        found = [
+            still[j] if part is base[j] else _mapped(lambda y: y.imag / _STEP, part)
+            for j, part in enumerate(numbers)
+        ]
+        return tuple(found)
+
+
+def _made_contact(numbers: Any, given: Contact, static_free: bool) -> Contact:
+    kinetic, static, give, curve = numbers
+    rows = [(float(speed), float(force)) for speed, force in curve] or None
+    known = given.static is not None or static_free
+    return Contact(
+        rows[0][1] if rows else float(kinetic), float(static) if known else None, rows, float(give)
+    )
+
+
+def _made_input(rows: Any) -> float | Profile:
+    if len(rows) == 1:
+        return float(rows[0][1])
+    return Profile([float(t) for t, _ in rows], [float(y) for _, y in rows])
+
+
+def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: float) -> Any:
+    mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, _ = base
+    mass = values.get("mass", mass)
+    stiffness = values.get("stiffness", stiffness)
+    damping = values.get("damping", damping)
+    contacts = []
+    for name, contact in (("plate", plate), ("finger", finger)):
+        touched = any(key.startswith(f"{name}_") and key != "plate_load" for key in values)
+        contacts.append(_contact(values, name, contact) if touched else contact)
+    plate_velocity = _table(values, "mouse_velocity", plate_velocity)
+    load = _table(values, "plate_load", load)
+    x = values.get("displacement", x)
+    if "velocity" in values:
+        v = values["velocity"]
+    elif carried:
+        v = _at_zero(plate_velocity)
+    if "skin_stretch" in values:
+        stretch = values["skin_stretch"]
+    elif stretch == stretch and contacts[1] is not finger:  # it follows the largest
+        stretch = stretch / (finger[1] / finger[2]) * (contacts[1][1] / contacts[1][2])
+    return (
+        *(mass, stiffness, damping, *contacts, plate_velocity, load),
+        *(x, v, stretch, duration),
+    )
+
+
+def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
+    kinetic, static, give, curve = contact
+    ratio = static / kinetic if kinetic else 1.0
+    given = values.get(f"{name}_kinetic")
+    if given is not None:
+        if curve:
+            factor = given / kinetic
+            curve = tuple((speed, force * factor) for speed, force in curve)
+        kinetic = given
+    curve = _table(values, f"{name}_curve", curve)
+    if curve:
+        kinetic = curve[0][1]
+    own = values.get(f"{name}_static")
+    if own is not None:
+        static = np.where(np.real(own) > np.real(kinetic), own, kinetic)[()]
+    elif given is not None or curve:
+        static = ratio * kinetic
+    give = values.get(f"{name}_stiffness", give)
+    return kinetic, static, give, curve
+
+
+def _table(values: Mapping[str, Any], name: str, rows: Any) -> Any:
+    if name in values:
+        return [(rows[0][0], values[name])]
+    own = [(match, value) for key, value in values.items() if (match := ROW.fullmatch(key))]
+    changed = {
+        (int(match[2]), int(match[3] in ("force", "value"))): value
+        for match, value in own
+        if match[1] == name
+    }
+    if not changed:
+        return rows
+    return tuple(
+        tuple(changed.get((i, j), entry) for j, entry in enumerate(row))
+        for i, row in enumerate(rows)
+    )
+
+
+def _at_zero(rows: Any) -> Any:
+    """The value at t = 0 of what is linear between rows."""
+    after = next((i for i, (t, _) in enumerate(rows) if np.real(t) > 0.0), len(rows))
+    if after in (0, len(rows)):
+        return rows[max(after - 1, 0)][1]
+    (t0, y0), (t1, y1) = rows[after - 1], rows[after]
+    return y0 + (y1 - y0) * (-t0 / (t1 - t0))
+
+
+def _mapped(f: Any, numbers: Any) -> Any:
+    if isinstance(numbers, (tuple, list)):
+        return tuple(_mapped(f, part) for part in numbers)
+    return f(complex(numbers))

@@ -1,0 +1,290 @@
+"""Recordings of a pin: what a bench measured of one release, over time, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.motion.drive import Profile
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.quantity import brief, counted
+from pindrive.quantities.table import check, refusal
+from pindrive.quantities.units import quoted, to_si
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["CHANNELS", "Recording", "read_recording"]
+
+CHANNELS: Final = {
+    "position": ("m", "mm"),
+    "velocity": ("m/s", "mm/s"),
+    "acceleration": ("m/s^2", "m/s^2"),
+    "force": ("N", "mN"),
+}
+"""What a recording may hold over time: the SI unit, and a usual unit in a heading."""
+INPUTS: Final = {"mouse_velocity": ("m/s", "mm/s"), "plate_load": ("1", "")}
+"""What it may hold of the inputs of its release."""
+EXAMPLE: Final = "t [s], position [mm]"
+FEWEST: Final = 8
+"""Samples in a recording."""
+INPUT_TOLERANCE: Final = 1e-3
+"""Part of its largest value by which an input with fewer rows may differ from the samples."""
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Recording:
+    """Samples of one release, and what is known of it.
+
+    Position and velocity are those of the pin in the housing at the sample times. Acceleration and
+    force are means over one sample interval, as a sensor delivers them that filters before it
+    samples. Force is the friction force of both contacts together on the pin, positive as x is.
+
+    Args:
+        time: s, shape (n,), n >= 8, increasing; 0 is the release unless `time_offset` is free.
+        position: m, shape (n,).
+        velocity: m/s, shape (n,).
+        acceleration: m/s², shape (n,).
+        force: N, shape (n,).
+        mouse_velocity: of this recording instead of the release's: m/s, a `Profile`, or one value
+            for each time, shape (n,).
+        plate_load: likewise, a factor on the plate's friction.
+        noise: the known standard deviation of the noise by channel, SI; estimated where left out.
+        name: for messages and figures, such as its file.
+
+    Raises:
+        ValueError: no channel, lengths that differ, times that do not increase, a value that is not
+            finite, fewer than 8 samples, a channel that is zero throughout.
+    """
+
+    time: NDArray[np.float64]
+    channels: Mapping[str, NDArray[np.float64]]
+    mouse_velocity: float | Profile | None
+    plate_load: float | Profile | None
+    noise: Mapping[str, float]
+    name: str
+    sources: tuple[Path, ...] = field(default=())
+    """The files that it was read from."""
+
+    def __init__(
+        self,
+        time: ArrayLike,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        force: ArrayLike | None = None,
+        mouse_velocity: ArrayLike | str | Profile | None = None,
+        plate_load: ArrayLike | str | Profile | None = None,
+        noise: Mapping[str, float | str] | None = None,
+        name: str = "recording",
+    ) -> None:
+        """Validate, and keep arrays of floats."""
+        put = object.__setattr__
+        given = {
+            "position": position,
+            "velocity": velocity,
+            "acceleration": acceleration,
+            "force": force,
+        }
+        times = _column(time, "time", name)
+        _check_times(times, name)
+        channels = {
+            channel: _column(values, channel, name, len(times))
+            for channel, values in given.items()
+            if values is not None
+        }
+        if not channels:
+            raise ValueError(refusal("a recording", f"of {' or '.join(CHANNELS)}", "none", name))
+        for channel, values in channels.items():
+            if not values.any():
+                needed = "other than zero somewhere; check the sensor and the heading"
+                raise ValueError(refusal(channel, needed, "0 throughout", name))
+        put(self, "time", times)
+        put(self, "channels", channels)
+        put(self, "mouse_velocity", _input(mouse_velocity, "mouse_velocity", times, name))
+        put(self, "plate_load", _input(plate_load, "plate_load", times, name))
+        put(self, "noise", _noise(noise or {}, channels, name))
+        put(self, "name", name)
+        put(self, "sources", ())
+
+    def __repr__(self) -> str:
+        """Its channels, samples and rate, in a line."""
+        count = counted(len(self.time), "sample")
+        rate = f"{brief(round(1.0 / self.interval, 6))} Hz"
+        return f"<Recording {self.name}: {', '.join(self.channels)}, {count} at {rate}>"
+
+    @property
+    def interval(self) -> float:
+        """The median time between two samples, s."""
+        return float(np.median(np.diff(self.time)))
+
+    def window(self, begin: float | str, end: float | str) -> Recording:
+        """The samples from `begin` to `end` (s, both included); times stay as they are.
+
+        Raises:
+            ValueError: fewer than 8 samples lie in it.
+        """
+        first, last = (check("profile.time", t, label="window") for t in (begin, end))
+        inside = (self.time >= first) & (self.time <= last)
+        if np.count_nonzero(inside) < FEWEST:
+            span = f"{self.time[0]:g} s to {self.time[-1]:g} s"
+            required = f"so wide that {FEWEST} samples of {span} lie in it"
+            found = f"{first:g} s to {last:g} s with {np.count_nonzero(inside)}"
+            raise ValueError(refusal("window", required, found, self.name))
+        channels = {name: values[inside] for name, values in self.channels.items()}
+        return self.with_changes(time=self.time[inside], channels=channels)
+
+    def with_changes(self, **changes: Any) -> Recording:
+        """The same recording with some of its attributes replaced, unchecked."""
+        made = object.__new__(Recording)
+        for name in self.__dataclass_fields__:
+            object.__setattr__(made, name, changes.get(name, getattr(self, name)))
+        return made
+
+
+def read_recording(
+    path: str | PathLike[str],
+    *,
+    mouse_velocity: float | str | Profile | None = None,
+    noise: Mapping[str, float | str] | None = None,
+) -> Recording:
+    """A recording from a CSV file whose header names columns with their units.
+
+    Columns are `t`, at least one of `position`, `velocity`, `acceleration`, `force`, and where the
+    inputs changed `mouse_velocity` and `plate_load`, apart by comma, semicolon or tab: "t [s],
+    position [mm]". Lines that begin with # are skipped; other columns are ignored.
+
+    Args:
+        path: the file, UTF-8.
+        mouse_velocity: where no column gives it, m/s.
+        noise: the known standard deviation of the noise by channel, SI or text with a unit.
+
+    Returns:
+        The recording, named as its file.
+
+    Raises:
+        ValueError: the file cannot be read, lacks a column or a unit, holds what is no number, or
+            as for `Recording`; one line that names file, row and value.
+    """
+    file = str(path)
+    table = CsvTable.read(path, "a recording", EXAMPLE)
+    if "t" not in table or not any(name in table for name in CHANNELS):
+        also = f"with t and at least one of {', '.join(CHANNELS)}, like {quoted(EXAMPLE)}"
+        given = quoted(", ".join(table.headings))
+        raise ValueError(refusal("the header", also, given, file))
+    table.check_rows("a recording", FEWEST)
+    time = np.array(table.column("t", "profile.time", "s", "t [s]"))
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if back.size:
+        row = table.numbers[int(back[0]) + 1]
+        required = f"greater than the one before, {time[back[0]]:g} s; sort the rows, or split it"
+        raise ValueError(refusal(f"row {row}: t", required, f"{time[back[0] + 1]:g} s", file))
+
+    def column(name: str, unit: str, usual: str) -> NDArray[np.float64]:
+        heading = f"{name} [{usual}]" if usual else name
+        return np.array(table.column(name, "profile.value", unit, heading))
+
+    channels = {name: column(name, *units) for name, units in CHANNELS.items() if name in table}
+    inputs: dict[str, Any] = {
+        name: column(name, *units) for name, units in INPUTS.items() if name in table
+    }
+    if mouse_velocity is not None:
+        if "mouse_velocity" in inputs:
+            required = "left out where a column gives it"
+            raise ValueError(refusal("mouse_velocity", required, repr(mouse_velocity), file))
+        inputs["mouse_velocity"] = mouse_velocity
+    made = Recording(time, **channels, **inputs, noise=noise, name=file)
+    return made.with_changes(name=Path(file).name, sources=(Path(path),))
+
+
+# ---- what is checked -----------------------------------------------------------------------------
+
+
+def _column(
+    values: ArrayLike, label: str, where: str, count: int | None = None
+) -> NDArray[np.float64]:
+    try:
+        column = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(refusal(label, "numbers, SI", repr(values)[:60], where)) from None
+    if column.ndim != 1 or (count is not None and len(column) != count):
+        shape = "of one dimension" if count is None else f"one value for each time, ({count},)"
+        raise ValueError(refusal(label, shape, f"shape {column.shape}", where))
+    if not np.isfinite(column).all():
+        at = int(np.flatnonzero(~np.isfinite(column))[0])
+        raise ValueError(refusal(f"{label}[{at}]", "finite", f"{column[at]}", where))
+    return column
+
+
+def _check_times(times: NDArray[np.float64], where: str) -> None:
+    if len(times) < FEWEST:
+        raise ValueError(refusal("a recording", f"of at least {FEWEST} samples", len(times), where))
+    back = np.flatnonzero(np.diff(times) <= 0.0)
+    if back.size:
+        i = int(back[0]) + 1
+        required = f"greater than the one before, {times[i - 1]:g} s"
+        raise ValueError(refusal(f"time[{i}]", required, f"{times[i]:g} s", where))
+
+
+def _noise(
+    given: Mapping[str, float | str], channels: Mapping[str, object], where: str
+) -> dict[str, float]:
+    found = {}
+    for channel, value in given.items():
+        if channel not in channels:
+            raise ValueError(refusal("noise", f"of {' or '.join(channels)}", channel, where))
+        unit = CHANNELS[channel][0]
+        try:
+            size = to_si(value, unit, f"1 {unit}") if isinstance(value, str) else float(value)
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"{where}: noise of {channel} must be {error}, got {value!r}"
+            ) from None
+        if not 0.0 < size < np.inf:
+            raise ValueError(
+                refusal(f"noise of {channel}", "finite and greater than 0", value, where)
+            )
+        found[channel] = size
+    return found
+
+
+# ---- inputs --------------------------------------------------------------------------------------
+
+
+def _input(
+    given: ArrayLike | str | Profile | None, name: str, times: NDArray[np.float64], where: str
+) -> float | Profile | None:
+    """A constant or a profile; samples become the fewest rows that follow them."""
+    if given is None or isinstance(given, Profile):
+        return given
+    if isinstance(given, str) or np.ndim(given) == 0:
+        return check(name, given, where=where)  # type: ignore[arg-type]
+    values = _column(given, name, where, len(times))
+    for i in (int(values.argmin()), int(values.argmax())):
+        check(name, float(values[i]), where=where, label=f"{name}[{i}]")
+    if np.ptp(values) == 0.0:
+        return float(values[0])
+    kept = _corners(times, values, INPUT_TOLERANCE * float(np.abs(values).max()))
+    return Profile(times[kept], values[kept])
+
+
+def _corners(
+    times: NDArray[np.float64], values: NDArray[np.float64], tolerance: float
+) -> NDArray[np.intp]:
+    """Samples through which lines stay within `tolerance` of all (Douglas and Peucker, 1973)."""
+    kept, open_ = [0, len(times) - 1], [(0, len(times) - 1)]
+    while open_:
+        a, b = open_.pop()
+        t, y = times[a : b + 1], values[a : b + 1]
+        off = np.abs(y - (y[0] + (y[-1] - y[0]) * (t - t[0]) / (t[-1] - t[0])))
+        worst = int(off.argmax())
+        if off[worst] > tolerance:
+            kept.append(a + worst)
+            open_ += [(a, a + worst), (a + worst, b)]
+    return np.array(sorted(kept), np.intp)

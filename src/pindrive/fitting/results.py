@@ -1,0 +1,290 @@
+"""What a fit returns: estimates with their intervals, residuals, and the fitted drive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite, log, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pindrive import lazy
+from pindrive.fitting.identifiability import Identifiability
+from pindrive.fitting.model import Model
+from pindrive.fitting.parameters import SENSOR, Parameter
+from pindrive.fitting.profiles import Profile
+from pindrive.fitting.recording import CHANNELS, Recording
+from pindrive.fitting.residuals import Residuals
+from pindrive.lazy import xr
+from pindrive.motion.motion import Motion
+from pindrive.motion.simulate import simulated
+from pindrive.quantities.quantity import counted, significant
+from pindrive.quantities.status import Status
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.release import Release
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Estimate", "Fit"]
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """One fitted parameter.
+
+    Attributes:
+        parameter: its name, unit (SI) and the bounds within which it was searched.
+        value: SI.
+        standard_error: from the derivatives at the optimum; infinite where they tell nothing.
+        interval: its ends by profile likelihood; infinite on a side on which the profile reaches
+            the bound of the search before it ends.
+        identifiability: whether the recordings tell it.
+        hidden_with: parameters of which the recordings tell combinations with this one alone,
+            itself among them.
+        profile: the least cost at other values of it; None where it was not computed.
+    """
+
+    parameter: Parameter
+    value: float
+    standard_error: float
+    interval: tuple[float, float]
+    identifiability: Identifiability
+    hidden_with: tuple[str, ...]
+    profile: Profile | None
+
+    @property
+    def name(self) -> str:
+        """Of the parameter."""
+        return self.parameter.name
+
+    @property
+    def explanation(self) -> str:
+        """What to do where the recordings do not tell it; empty where they do."""
+        match self.identifiability:
+            case Identifiability.identifiable:
+                return ""
+            case Identifiability.structurally_not if len(self.hidden_with) > 1:
+                return f"fix one of {', '.join(self.hidden_with)}"
+            case Identifiability.structurally_not:
+                return "the recordings do not depend on it; fix it"
+        below, above = (not isfinite(end) for end in self.interval)
+        unit, scale = self.parameter.scale
+        low, high = (
+            f"{significant(end * scale, 3)} {unit}".rstrip()
+            for end in (self.parameter.lower, self.parameter.upper)
+        )
+        if below and above:
+            return f"open on both sides, to {low} and {high}; fix it, or record another motion"
+        return f"open below, to {low}" if below else f"open above, to {high}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(lazy.NotebookHtml):
+    """What `fit` found.
+
+    Attributes:
+        model: the recordings as functions of the parameters.
+        theta: the values of all parameters, SI, shape (k,).
+        estimates: each with its interval and whether the recordings tell it.
+        covariance: of the estimates, from the derivatives at the optimum, shape (k, k).
+        correlation: likewise; NaN beside what the derivatives do not tell.
+        residuals: of each channel of each recording.
+        confidence: of the intervals.
+        threshold: the increase of the cost at the end of an interval.
+        converged: whether the last refinement ended at an optimum.
+    """
+
+    model: Model
+    theta: Array
+    estimates: tuple[Estimate, ...]
+    covariance: Array
+    correlation: Array
+    residuals: tuple[Residuals, ...]
+    confidence: float
+    threshold: float
+    converged: bool
+
+    def __getitem__(self, name: str) -> Estimate:
+        """The estimate of a parameter by its name."""
+        for estimate in self.estimates:
+            if estimate.name == name:
+                return estimate
+        raise KeyError(name)
+
+    def __repr__(self) -> str:
+        """How many parameters of how many samples, and which are not told, in a line."""
+        count = counted(len(self.model.data), "sample")
+        unknown = [e.name for e in self.estimates if e.explanation]
+        rest = f", not identifiable: {', '.join(unknown)}" if unknown else ""
+        line = f"Fit of {counted(len(self.estimates), 'parameter')} to {count}{rest}"
+        return f"<{line[:150]}, {self.status.name}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where `warnings` says so."""
+        return Status.incomplete if self.warnings else Status.ok
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about it, a line each."""
+        found = []
+        if not self.converged:
+            found.append("the search did not converge; give narrower bounds, or fewer parameters")
+        found += [
+            f"{e.name} is {e.identifiability} identifiable: {e.explanation}"
+            for e in self.estimates
+            if e.explanation
+        ]
+        for left in self.residuals:
+            name = self.model.recordings[left.recording].name
+            if left.structured:
+                why = (
+                    f"are {left.reduced**0.5:.3g} times the given noise"
+                    if left.excessive
+                    else f"have structure (neighbours correlate by {left.correlation:.2f})"
+                )
+                found.append(
+                    f"{name}: the residuals of the {left.channel} {why}: the drive does what this "
+                    f"model does not, and the intervals are too narrow, by about "
+                    f"{max(left.widening, left.reduced**0.5):.2g} times"
+                )
+        return tuple(found)
+
+    # ---- what was fitted -------------------------------------------------------------------------
+
+    @property
+    def recordings(self) -> tuple[Recording, ...]:
+        """What was fitted to."""
+        return self.model.recordings
+
+    @cached_property
+    def drive(self) -> Drive:
+        """The drive with the fitted values."""
+        return self.model.assembly.drive(self.theta)
+
+    @cached_property
+    def releases(self) -> tuple[Release, ...]:
+        """The release of each recording with the fitted values."""
+        each = range(len(self.recordings))
+        return tuple(self.model.assembly.release(self.theta, r) for r in each)
+
+    @cached_property
+    def motions(self) -> tuple[Motion, ...]:
+        """The fitted motion of each recording, to its last sample."""
+        ends = [
+            float(recording.time[-1]) - float(self.model.offset(self.theta, r))
+            for r, recording in enumerate(self.recordings)
+        ]
+        return tuple(
+            simulated(self.drive, release, duration=max(end, recording.interval))
+            for release, end, recording in zip(self.releases, ends, self.recordings, strict=True)
+        )
+
+    def predicted(self, recording: int, channel: str) -> tuple[Array, Array]:
+        """The fitted channel at the sample times, SI, and its standard error, shapes (n,)."""
+        values, slopes = self.model.linearise(self.theta)
+        place = next(
+            b.place for b in self.model.blocks if (b.recording, b.channel) == (recording, channel)
+        )
+        known = np.isfinite(np.diag(self.covariance))
+        part = slopes[place][:, known]
+        spread = np.einsum("ni,ij,nj->n", part, self.covariance[np.ix_(known, known)], part)
+        return values[place], np.sqrt(np.maximum(spread, 0.0))
+
+    # ---- how good it is --------------------------------------------------------------------------
+
+    @property
+    def log_likelihood(self) -> float:
+        """Of all samples, with normal noise."""
+        total = 0.0
+        for left in self.residuals:
+            square = left.noise**2
+            if not left.known:  # the noise of greatest likelihood
+                square *= 1.0 - len(self.theta) / len(self.model.data)
+            power = left.reduced if left.known else 1.0
+            total -= 0.5 * left.count * (log(2.0 * pi * square) + power)
+        return total
+
+    @property
+    def aicc(self) -> float:
+        """Akaike's information criterion, corrected for few samples (Hurvich and Tsai, 1989)."""
+        n = len(self.model.data)
+        k = len(self.theta) + sum(not left.known for left in self.residuals)
+        return 2.0 * k - 2.0 * self.log_likelihood + 2.0 * k * (k + 1) / max(n - k - 1, 1)
+
+    # ---- for other programs ----------------------------------------------------------------------
+
+    def plot(self) -> Figure:
+        """Recordings and fit, residuals, and the profiles, as a figure."""
+        figure: Figure = lazy.call("pindrive.plot.fit:plot_fit", self)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """All of it as data.
+
+        Returns:
+            Over `parameter`: `value`, `standard_error`, `lower`, `upper` in the SI units of the
+            coordinate `unit`, and `identifiability`; `correlation` over two of them; over `block`,
+            each a channel of a recording, `noise` and the p-values; and over `sample` what was
+            `recorded` and `computed`, with `time` and `block`.
+        """
+        names = [e.name for e in self.estimates]
+        values, _ = self.model.linearise(self.theta)
+        numbers = {
+            "value": [e.value for e in self.estimates],
+            "standard_error": [e.standard_error for e in self.estimates],
+            "lower": [e.interval[0] for e in self.estimates],
+            "upper": [e.interval[1] for e in self.estimates],
+        }
+        data: dict[str, Any] = {
+            name: ("parameter", np.array(column)) for name, column in numbers.items()
+        }
+        data["identifiability"] = ("parameter", [str(e.identifiability) for e in self.estimates])
+        data["correlation"] = (("parameter", "other"), self.correlation, {"units": "1"})
+        data["noise"] = ("block", [left.noise for left in self.residuals])
+        data["ljung_box"] = ("block", [left.ljung_box for left in self.residuals], {"units": "1"})
+        data["runs"] = ("block", [left.runs for left in self.residuals], {"units": "1"})
+        data["recorded"] = ("sample", self.model.data)
+        data["computed"] = ("sample", values)
+        data["aicc"] = ((), self.aicc, {"units": "1", "long_name": "corrected Akaike criterion"})
+        blocks = self.model.blocks
+        times = np.concatenate([self.model.times(b.recording) for b in blocks])
+        data["time"] = ("sample", times, {"units": "s"})
+        which = np.concatenate([np.full(b.size, i) for i, b in enumerate(blocks)])
+        data["block_of"] = ("sample", which)
+        coords = {
+            "parameter": names,
+            "other": names,
+            "unit": ("parameter", [e.parameter.unit for e in self.estimates]),
+            "recording": ("block", [self.recordings[b.recording].name for b in blocks]),
+            "channel": ("block", [b.channel for b in blocks]),
+            "block_unit": ("block", [CHANNELS[b.channel][0] for b in blocks]),
+        }
+        attributes = {"status": self.status.name, "confidence": self.confidence}
+        return xr.Dataset(data, coords=coords, attrs=attributes)
+
+    def table(self) -> list[list[str]]:
+        """A row for each estimate: name, value, error, interval, unit, whether it is told."""
+        rows = []
+        for e in self.estimates:
+            unit, scale = e.parameter.scale
+            ends = [
+                "open" if not isfinite(end) else significant(end * scale, 5) for end in e.interval
+            ]
+            error = (
+                "-" if not isfinite(e.standard_error) else significant(e.standard_error * scale, 2)
+            )
+            verdict = str(e.identifiability) + (f": {e.explanation}" if e.explanation else "")
+            rows.append([e.name, significant(e.value * scale, 5), error, *ends, unit, verdict])
+        return rows
+
+
+def is_of_sensor(estimate: Estimate) -> bool:
+    """Whether it describes the bench and not the drive or its release."""
+    return estimate.parameter.key in SENSOR

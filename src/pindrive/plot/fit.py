@@ -1,0 +1,188 @@
+"""The figure of a fit: recordings with what was fitted, residuals, and the profiles."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.lazy import matplotlib
+from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, event_marker, event_name, plain
+from pindrive.quantities.quantity import DISPLAY, significant
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from pindrive.fitting.comparison import ModelComparison
+    from pindrive.fitting.results import Estimate, Fit
+
+    Array = NDArray[np.float64]
+
+BLOCKS: Final = 4
+"""Channels that are drawn, of the first recordings."""
+DOTS: Final = 1500
+"""Samples that are drawn of each."""
+ACROSS: Final = 1.96
+"""Standard errors on either side of the fit in its band."""
+LEGEND: Final = 0.35
+"""Part of the height of the first panel that is added for the legend."""
+UNITS: Final = {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
+SYMBOLS: Final = {"position": "x", "velocity": "x'", "acceleration": "x''", "force": "F"}
+CURVE: Final = PALETTE["curve"]
+
+
+def plot_fit(found: Fit) -> Figure:
+    """Draw a fit.
+
+    On the left each channel over time, with the fit, its 95 % band and the events, and its
+    residuals below; on the right the profile of each parameter, with its interval.
+    """
+    blocks = found.model.blocks[:BLOCKS]
+    estimates = found.estimates
+    with matplotlib.style.context(STYLE, after_reset=True):
+        rows = -(-len(estimates) // 2)
+        height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * rows))
+        figure = Figure(figsize=(180 / 25.4, height / 25.4), layout="constrained")
+        halves: Any = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
+        left, right = halves
+        _draw_blocks(left, found)
+        panels = right.subplots(rows, 2, squeeze=False).ravel()
+        for axes, estimate in zip(panels, estimates, strict=False):
+            _profile(axes, estimate, found.threshold)
+        for axes in panels[len(estimates) :]:
+            axes.set_axis_off()
+        right.supylabel("increase of the cost", fontsize=8.0)
+        shown = len(blocks) < len(found.model.blocks)
+        more = f", {len(blocks)} of {len(found.model.blocks)} channels" if shown else ""
+        names = ", ".join(dict.fromkeys(each.name for each in found.recordings[:3]))
+        figure.suptitle(plain(f"Fit to {names}{more}"), fontsize=9.0)
+    return figure
+
+
+def _draw_blocks(left: Any, found: Fit) -> None:
+    blocks = found.model.blocks[:BLOCKS]
+    ratios = [ratio for _ in blocks for ratio in (2.4, 1.0)]
+    panels = left.subplots(2 * len(blocks), 1, height_ratios=ratios, squeeze=False)[:, 0]
+    for i, block in enumerate(blocks):
+        axes, below = panels[2 * i : 2 * i + 2]
+        below.sharex(axes)
+        axes.tick_params(labelbottom=False)
+        recording = found.recordings[block.recording]
+        unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
+        times = 1e3 * found.model.times(block.recording)
+        data = scale * found.model.data[block.place]
+        values, spread = (scale * part for part in found.predicted(block.recording, block.channel))
+        step = max(1, len(times) // DOTS)
+        dots = {"marker": ".", "ms": 1.5, "ls": "none", "color": GREY, "rasterized": True}
+        axes.plot(times[::step], data[::step], **dots, label="recorded", gid="recorded")
+        axes.plot(times, values, color=CURVE, label="fit", gid="fit")
+        band = {"color": CURVE, "alpha": 0.25, "lw": 0.0}
+        low, high = values - ACROSS * spread, values + ACROSS * spread
+        axes.fill_between(times, low, high, **band, label="95 % band of the fit", gid="band")
+        if block.channel in ("position", "velocity"):
+            _events(axes, found, block.recording, block.channel, scale)
+        several = len(found.recordings) > 1
+        axes.set_ylabel(f"${SYMBOLS[block.channel]}$ ({unit})")
+        if several:
+            axes.set_title(plain(recording.name), fontsize=SMALL, loc="left")
+        below.plot(times[::step], (data - values)[::step], **dots, gid="residuals")
+        below.axhline(0.0, color=CURVE, lw=0.8)
+        left_over = found.residuals[i]
+        sigma = scale * left_over.noise
+        for way in (-1.0, 1.0):
+            below.axhline(way * ACROSS * sigma, color=GREY, lw=0.6, ls="--", gid="noise")
+        words = f"noise {significant(sigma, 3)} {unit}"
+        words += ", structured" if left_over.structured else ", no structure found"
+        below.set_title(words, fontsize=SMALL, loc="left", pad=2.0)
+        below.set_ylabel(f"rest ({unit})")
+        below.ticklabel_format(axis="y", style="plain")
+        if i == 0:
+            low, high = axes.get_ylim()
+            axes.set_ylim(low, high + LEGEND * (high - low))
+            axes.legend(frameon=False, ncols=2, loc="upper right", handlelength=1.2)
+    panels[-1].set_xlabel("$t$ (ms)")
+
+
+def _events(axes: Axes, found: Fit, r: int, channel: str, scale: float) -> None:
+    """The events of the fitted motion within the recording."""
+    motion = found.motions[r]
+    shift = found.model.offset(found.theta, r)
+    added = found.model.offset(found.theta, r, f"{channel}_offset")
+    marked = set()
+    for event in motion.events_between(0.0, motion.duration):
+        value = event.position if channel == "position" else event.velocity
+        kind = event.kind, event.contact
+        label = None if kind in marked else event_name(*kind)
+        marked.add(kind)
+        look = event_marker(*kind)
+        axes.plot(1e3 * (event.time + shift), scale * (value + added), label=label, **look)
+
+
+def _profile(axes: Axes, estimate: Estimate, threshold: float) -> None:
+    """The profile of one parameter, with its interval and the bound of the excess."""
+    unit, scale = estimate.parameter.scale
+    axes.set_xlabel(f"{estimate.name.replace('_', ' ')}" + (f" ({unit})" if unit else ""))
+    axes.axhline(threshold, color=GREY, lw=0.6, ls="--", gid="threshold")
+    axes.set_ylim(0.0, 1.6 * threshold)
+    axes.ticklabel_format(axis="x", style="plain")
+    axes.locator_params(axis="x", nbins=3, min_n_ticks=2)
+    profile = estimate.profile
+    if profile is None:
+        axes.text(
+            0.5,
+            0.5,
+            str(estimate.identifiability).replace("not", "not\nidentifiable")
+            if estimate.explanation
+            else "no profile",
+            ha="center",
+            va="center",
+            transform=axes.transAxes,
+            fontsize=SMALL,
+        )
+        axes.axvline(scale * estimate.value, color=CURVE, lw=0.8, gid="value")
+        return
+    inside = profile.excess <= 2.0 * threshold
+    look: dict[str, Any] = {"color": CURVE, "marker": ".", "ms": 3.0}
+    axes.plot(scale * profile.values[inside], profile.excess[inside], **look, gid="profile")
+    ends = [
+        scale * (end if isfinite(end) else bound)
+        for end, bound in zip(
+            estimate.interval, (profile.values[0], profile.values[-1]), strict=True
+        )
+    ]
+    axes.axvspan(*ends, color=CURVE, alpha=0.12, lw=0.0, gid="interval")
+    axes.axvline(scale * estimate.value, color=CURVE, lw=0.8, gid="value")
+    open_ = [
+        side
+        for side, end in zip(("below", "above"), estimate.interval, strict=True)
+        if not isfinite(end)
+    ]
+    if open_:
+        words = f"open {' and '.join(open_)}"
+        axes.text(0.97, 0.95, words, ha="right", va="top", transform=axes.transAxes, fontsize=SMALL)
+    margin = 0.25 * (ends[1] - ends[0])
+    axes.set_xlim(ends[0] - margin, ends[1] + margin)
+
+
+def plot_comparison(compared: ModelComparison) -> Figure:
+    """The residuals of each law over time, with its excess of AICc."""
+    fits = compared.fits
+    with matplotlib.style.context(STYLE, after_reset=True):
+        size = (180 / 25.4, (20.0 + 30.0 * len(fits)) / 25.4)
+        figure = Figure(figsize=size, layout="constrained")
+        panels = figure.subplots(len(fits), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for axes, (law, found) in zip(panels, fits.items(), strict=True):
+            block = found.model.blocks[0]
+            unit, scale = DISPLAY.get(UNITS[block.channel], (UNITS[block.channel], 1.0))
+            values, _ = found.predicted(block.recording, block.channel)
+            off = scale * (found.model.data[block.place] - values)
+            times = 1e3 * found.model.times(block.recording)
+            axes.axhline(0.0, color=GREY, lw=0.6)
+            axes.plot(times, off, ".", ms=1.5, color=CURVE, rasterized=True, gid="residuals")
+            words = f"{law}: AICc {compared.excess[law]:+.1f}, {len(found.theta)} parameters"
+            axes.set_title(words, fontsize=SMALL, loc="left")
+            axes.set_ylabel(f"rest ({unit})")
+        panels[-1].set_xlabel("$t$ (ms)")
+    return figure

@@ -1,0 +1,84 @@
+"""The command `pindrive fit`: its table, the device file that it writes, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from command import GOOD, refused, run
+from pindrive import Contact, Drive, Release, load_device
+from recordings import recorded
+
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
+TRUTH = Drive(
+    mass=0.010, stiffness=140.0, damping=0.31, plate=Contact(0.019), finger=Contact(0.006)
+)
+HEAD = "t [ms], position [mm]\n"
+
+
+def write(name: str = "pin.csv", head: str = HEAD, span: float = 0.15) -> None:
+    given = recorded(TRUTH, Release(0.1, 2e-3), rate=2e3, span=span)
+    rows = zip(1e3 * given.time, 1e3 * given.channels["position"], strict=True)
+    Path(name).write_text(head + "".join(f"{t:.6g},{x:.6g}\n" for t, x in rows))
+
+
+@pytest.fixture(autouse=True)
+def inputs(in_empty_folder: None) -> None:
+    Path("device.toml").write_text(GOOD)
+    write()
+
+
+def test_a_fit_prints_its_table_and_writes_a_device_file_with_its_source() -> None:
+    free = "stiffness=50 N/m..300 N/m, damping, plate.kinetic"
+    done = run(
+        *("fit", "device.toml", "pin.csv", "--free", free, "-o", "fitted.toml"),
+        *("--set", "displacement=2 mm", "--set", "mass=10 g", "--set", "finger.kinetic=6 mN"),
+        *("--mouse-velocity", "100 mm/s", "--plot", "fit.png"),
+    )
+    assert done.exit_code == 0, done.output
+    assert "Fit to pin.csv" in done.stdout and "95 % from" in done.stdout
+    assert done.stdout.endswith("Wrote fitted.toml\nWrote fit.png\n")
+    assert Path("fit.png").read_bytes()[:4] == b"\x89PNG"
+    text = Path("fitted.toml").read_text(encoding="utf-8")
+    assert text.startswith("# device.toml, fitted by pindrive to pin.csv.\n# Intervals hold 95 %")
+    assert "# stiffness fitted: " in text and " interval " in text
+    device = load_device("fitted.toml")
+    assert device.drive.stiffness == pytest.approx(140.0, rel=0.01)
+    assert device.drive.plate.kinetic == pytest.approx(0.019, rel=0.1)
+    assert device.release.mouse_velocity == 0.1
+    assert device.drive.mass == 0.010
+    shown = next(line for line in done.stdout.splitlines() if " stiffness " in line)
+    assert f"{device.drive.stiffness:.5g}"[:5] in shown
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--free", "stifness"], "free must be one of mass, stiffness"),
+        (["--free", "stiffness,"], "--free: must be keys apart by commas"),
+        (["--free", "stiffness=5 N/m"], "--free stiffness: must be two values, like"),
+        (["--free", "stiffness", "--window", "5 ms"], "--window: must be two values, like"),
+        (["--free", "stiffness", "--window", "5 ms..6 ms"], "pin.csv: window must be so wide that"),
+        (["--free", "stiffness", "--noise", "5 um"], '--noise must be like "position=5 um"'),
+        (["--free", "stiffness", "--noise", "force=5 N"], "pin.csv: noise must be of position"),
+        (["--free", "force_offset"], "free must be an offset of a recorded channel"),
+        (["--free", "mass", "--plot", "a.doc"], "--plot a.doc: must end in .png"),
+        (["--free", "mass", "-o", "pin.csv"], "-o pin.csv: is read by this command"),
+    ],
+)
+def test_bad_options_are_one_line(arguments: list[str], said: str) -> None:
+    assert said in refused("fit", "device.toml", "pin.csv", *arguments)
+
+
+@pytest.mark.parametrize(
+    ("head", "span", "said"),
+    [
+        ("t, position [mm]\n", 0.15, 'column t must be given with its unit, like "t [s]"'),
+        (HEAD, 0.004, "a recording must be at least"),
+    ],
+)
+def test_bad_recordings_are_one_line(head: str, span: float, said: str) -> None:
+    write("bad.csv", head, span)
+    assert said in refused("fit", "device.toml", "bad.csv", "--free", "stiffness")

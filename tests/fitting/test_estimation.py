@@ -1,0 +1,236 @@
+"""Fits of recordings that were made of known drives, and what is said of what cannot be told."""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pindrive as pd
+from benchmarks.fitting import outcome
+from pindrive import Contact, Drive, Profile, Recording, Release, Status, fit
+from pindrive.fitting import Fit, Identifiability
+from recordings import FREE, RELEASE, START, TRUTH, recorded
+
+TRUE = {
+    "stiffness": TRUTH.stiffness,
+    "damping": TRUTH.damping,
+    "plate_kinetic": TRUTH.plate.kinetic,
+    "finger_kinetic": TRUTH.finger.kinetic,
+    "displacement": RELEASE.displacement,
+}
+
+
+@pytest.fixture(scope="module")
+def found() -> Fit:
+    return fit(recorded(rate=5e3), START, RELEASE, free=FREE)
+
+
+def test_the_truth_is_found_within_its_intervals(found: Fit) -> None:
+    for name, true in TRUE.items():
+        estimate = found[name]
+        low, high = estimate.interval
+        assert low < true < high
+        assert abs(estimate.value - true) < 4.0 * estimate.standard_error
+        assert high - low == pytest.approx(2 * 1.96 * estimate.standard_error, rel=0.15)
+        assert estimate.identifiability == "identifiable"
+    assert found.status is Status.ok and found.converged and found.warnings == ()
+    (left,) = found.residuals
+    assert left.noise == pytest.approx(0.01 * 2.3e-3, rel=0.1)
+    assert not left.structured
+    assert found.drive.stiffness == found["stiffness"].value
+    assert found.releases[0].displacement == found["displacement"].value
+    assert repr(found) == "<Fit of 5 parameters to 750 samples, ok>"
+
+
+def test_a_profile_is_the_least_cost_of_the_others(found: Fit) -> None:
+    """Held at the end of its interval, a parameter costs what the threshold is."""
+    high = found["damping"].interval[1]
+    drive = Drive(
+        mass=TRUTH.mass, stiffness=150.0, damping=high, plate=TRUTH.plate, finger=TRUTH.finger
+    )
+    noise = {"position": found.residuals[0].noise}
+    (recording,) = found.recordings
+    given = Recording(recording.time, position=recording.channels["position"], noise=noise)
+    others = [name for name in FREE if name != "damping"]
+    held = fit(given, drive, RELEASE, free=others, profiles=False)
+    best = fit(given, START, RELEASE, free=FREE, profiles=False)
+    n = len(recording.time)
+    excess = n * (held.residuals[0].reduced - best.residuals[0].reduced)
+    assert excess == pytest.approx(found.threshold, rel=0.02)
+
+
+def test_the_same_seed_gives_the_same_fit(found: Fit) -> None:
+    again = fit(recorded(rate=5e3), START, RELEASE, free=FREE)
+    assert np.array_equal(again.theta, found.theta)
+    assert [e.interval for e in again.estimates] == [e.interval for e in found.estimates]
+
+
+def test_it_is_data_and_a_notebook_shows_it(found: Fit) -> None:
+    data = found.to_dataset()
+    assert data.value.sel(parameter="damping") == found["damping"].value
+    assert data.unit.values.tolist() == ["N/m", "N*s/m", "N", "N", "m"]
+    assert data.lower.values.tolist() == [e.interval[0] for e in found.estimates]
+    assert data.correlation.sel(parameter="damping", other="damping") == pytest.approx(1.0)
+    rest = data.recorded - data.computed
+    assert float(rest.std()) == pytest.approx(float(data.noise[0]), rel=0.01)
+    assert "<table>" in found._repr_html_()
+
+
+def test_all_channels_with_offsets_and_an_unknown_time_of_release() -> None:
+    names = ("position", "velocity", "acceleration", "force")
+    given = recorded(TRUTH, RELEASE, *names, rate=2e3, delay=0.0132, noise=0.02)
+    shifted = {**given.channels, "position": given.channels["position"] + 4e-4}
+    recording = given.with_changes(channels=shifted)
+    free = ["mass", *FREE, "time_offset", "position_offset"]
+    done = fit(recording, START, RELEASE, free=free, profiles=False)
+    truth = {**TRUE, "mass": TRUTH.mass, "time_offset": 0.0132, "position_offset": 4e-4}
+    for estimate in done.estimates:  # a force tells the mass
+        assert abs(estimate.value - truth[estimate.name]) < 4.0 * estimate.standard_error
+    assert len(done.residuals) == 4
+    assert not any(left.structured for left in done.residuals)
+
+
+def test_a_whole_cycle_of_clamping_carrying_and_release() -> None:
+    speed = Profile([0.0, 0.02, 0.1], [0.0, 0.12, 0.12])
+    load = Profile([0.0, 0.05, 0.054], [20.0, 20.0, 1.0])
+    release = Release(speed, 0.0, None, load)
+    given = recorded(TRUTH, release, rate=2e3)
+    free = ["stiffness", "damping", "plate.kinetic", "finger.kinetic", "plate_load[1].time"]
+    done = fit(given, START, release, free=free, profiles=False)
+    truth = {**TRUE, "plate_load[1].time": 0.05}
+    for estimate in done.estimates:
+        assert abs(estimate.value - truth[estimate.name]) < 4.0 * estimate.standard_error
+
+
+def test_two_recordings_share_the_drive() -> None:
+    slow = recorded(rate=2e3, mouse_velocity=0.12)
+    fast_release = Release(0.25, 1.5e-3)
+    fast = recorded(TRUTH, fast_release, "velocity", rate=2e3, mouse_velocity=0.25, seed=2)
+    done = fit([slow, fast], START, RELEASE, free=FREE, profiles=False)
+    truth = {**TRUE, "displacement@0": 2.2e-3, "displacement@1": 1.5e-3}
+    assert [e.name for e in done.estimates][-2:] == ["displacement@0", "displacement@1"]
+    for estimate in done.estimates:
+        assert abs(estimate.value - truth[estimate.name]) < 4.0 * estimate.standard_error
+    assert done.releases[1].mouse_velocity == 0.25
+
+
+# ---- what recordings cannot tell -----------------------------------------------------------------
+
+
+def test_a_free_motion_tells_ratios_alone() -> None:
+    """Of mass, stiffness, damping and force; found by the rank, and said with the fix."""
+    drive = Drive(
+        mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.0), finger=Contact(0.011)
+    )
+    given = recorded(drive, Release(0.0, 2e-3, 0.0), rate=2e3)
+    free = ["mass", "stiffness", "damping", "finger_kinetic", "displacement"]
+    done = fit(given, drive, Release(0.0, 2e-3, 0.0), free=free)
+    hidden = free[:-1]
+    for name in hidden:
+        estimate = done[name]
+        assert estimate.identifiability is Identifiability.structurally_not
+        assert estimate.hidden_with == tuple(hidden)
+        assert estimate.explanation == f"fix one of {', '.join(hidden)}"
+        assert estimate.standard_error == inf and estimate.interval == (-inf, inf)
+    assert done["displacement"].identifiability is Identifiability.identifiable
+    assert done.status is Status.incomplete
+    ratio = done["stiffness"].value / done["mass"].value
+    assert ratio == pytest.approx(drive.stiffness / drive.mass, rel=0.01)
+    force = done["finger_kinetic"].value / done["stiffness"].value
+    assert force == pytest.approx(0.011 / 160.0, rel=0.1)
+
+
+def test_static_friction_that_only_lets_the_pin_stick_is_open_on_one_side() -> None:
+    """It decides at which turn the pin stays: any larger one keeps it there too, or sooner."""
+    drive = Drive(
+        mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.0), finger=Contact(0.011)
+    )
+    release = Release(0.0, 2e-3, 0.0)
+    given = recorded(drive, release, rate=2e3)
+    done = fit(given, drive, release, free=["stiffness", "finger_kinetic", "finger_static"])
+    static = done["finger_static"]
+    assert static.identifiability is Identifiability.practically_not
+    assert static.interval[0] == -inf and isfinite(static.interval[1])
+    assert static.interval[1] > 0.011
+    assert static.explanation == "open below, to 0 mN"
+    assert any("finger_static is practically not" in line for line in done.warnings)
+    assert done["finger_kinetic"].identifiability is Identifiability.identifiable
+
+
+def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
+    size = 0.01 * 2.3e-3
+    given = recorded(rate=2e3)
+    x = given.channels["position"]
+    good = Recording(given.time, position=x, noise={"position": size})
+    done = fit(good, START, RELEASE, free=FREE, profiles=False)
+    assert done.residuals[0].noise == size and done.warnings == ()
+    tight = Recording(given.time, position=x, noise={"position": size / 3.0})
+    doubtful = fit(tight, START, RELEASE, free=FREE, profiles=False)
+    assert "times the given noise" in doubtful.warnings[0]
+    assert doubtful.status is Status.incomplete
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
+    """A sample of `python3 run.py bench fitting`, which does it 500 times."""
+    done = [outcome(1501, 100, i) for i in range(4)]
+    closed = [held for each in done for _, kind, held in each.held if kind == "closed"]
+    assert len(closed) > 10
+    assert sum(closed) >= 0.75 * len(closed)
+    assert all(each.converged and not each.lost for each in done)
+
+
+# ---- bad input -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("span", "free", "more", "said"),
+    [
+        (
+            0.005,
+            FREE,
+            {},
+            "recording: a recording must be at least 0.0122 s long, a quarter of the",
+        ),
+        (
+            0.1,
+            ["damping", "finger_stiffness"],
+            {},
+            "leave out what changes no sample, got finger_st",
+        ),
+        (0.1, FREE, {"confidence": 1.0}, "confidence must be between 0 and 1, got 1.0"),
+        (0.1, FREE, {"seed": -1}, "seed must be a whole number of at least 0"),
+        (0.1, ["plate_static[2]"], {}, "free must be one of mass"),
+    ],
+)
+def test_bad_input_is_one_line(
+    span: float, free: list[str], more: dict[str, Any], said: str
+) -> None:
+    smooth = Drive(
+        mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=Contact(0)
+    )
+    release = Release(1.0, 2e-3, 0.0)
+    with pytest.raises(ValueError, match=said) as error:
+        fit(
+            recorded(smooth, release, span=span),
+            START if span < 0.1 else smooth,
+            release,
+            free=free,
+            **more,
+        )
+    assert "\n" not in str(error.value)
+
+
+def test_times_before_the_release_need_a_free_offset() -> None:
+    given = recorded(rate=2e3)
+    early = Recording(given.time - 0.01, position=given.channels["position"])
+    with pytest.raises(
+        ValueError, match="time must be at least 0 s, the release; free time_offset"
+    ):
+        fit(early, START, RELEASE, free=["damping"])
+
+
+def test_it_is_public() -> None:
+    assert pd.fit is fit

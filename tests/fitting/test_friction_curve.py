@@ -1,0 +1,122 @@
+"""Friction curves from force against speed, and the one of a published result from its motion."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pindrive import Contact, Drive, Recording, Release, fit, fit_friction
+from pindrive.fitting.comparison import LAWS, compare_models
+from recordings import recorded
+
+PUBLISHED = Path(__file__).parents[1] / "published" / "data" / "msl-friction-stop2.csv"
+
+
+def stribeck(u: np.ndarray) -> np.ndarray:
+    return 3.0 + u + 5.0 * np.exp(-2.0 * u)
+
+
+def test_rows_of_a_curve_come_back_with_their_errors() -> None:
+    rng = np.random.default_rng(5)
+    speed = rng.uniform(-0.3, 0.3, 800)
+    true = np.interp(np.abs(speed), [0.0, 0.05, 0.3], [0.022, 0.015, 0.018])
+    found = fit_friction(speed, np.sign(speed) * true + 5e-4 * rng.normal(size=800))
+    at, force = np.array(found.rows).T
+    assert len(found.rows) == 3 == min(found.aicc, key=lambda n: found.aicc[n])
+    assert at[1] == pytest.approx(0.05, abs=0.004)
+    np.testing.assert_allclose(force, [0.022, 0.015, 0.018], atol=3e-4)
+    assert np.abs(found(speed) - true).max() < 5e-4
+    assert found.noise == pytest.approx(5e-4, rel=0.1)
+    assert found.contact(static=0.03).curve == found.rows
+    data = found.to_dataset()
+    assert data.curve_force.values.tolist() == force.tolist()
+    assert data.aicc.sel(row_count=3) == min(found.aicc.values())
+
+
+def test_coulomb_friction_needs_one_row_and_a_smooth_law_more() -> None:
+    rng = np.random.default_rng(6)
+    speed = np.abs(rng.normal(size=300)) * 0.1
+    one = fit_friction(speed, 0.02 + 1e-3 * rng.normal(size=300))
+    assert len(one.rows) == 1
+    smooth = fit_friction(speed * 20.0, stribeck(speed * 20.0) + 0.02 * rng.normal(size=300))
+    assert len(smooth.rows) >= 4
+    off = smooth(speed * 20.0) - stribeck(speed * 20.0)
+    assert np.sqrt(np.mean(off**2)) < 0.02
+    assert len(fit_friction(speed, 0.02 + speed, rows=5).rows) == 5
+
+
+@pytest.mark.parametrize(
+    ("speed", "force", "said"),
+    [
+        ([0.1] * 9, [1.0] * 8, "force must be finite numbers, as many as speeds, got 8 of them"),
+        ([0.1] * 3, [1.0] * 3, "speed must be at least 8 samples, got 3"),
+        ([0.0] * 9, [1.0] * 9, "speed must be other than zero somewhere"),
+        ([0.1] * 9, [0.0] * 9, "force must be other than zero somewhere"),
+    ],
+)
+def test_bad_data_are_refused(speed: list[float], force: list[float], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        fit_friction(speed, force)
+
+
+def test_the_published_motion_gives_its_friction_curve_back() -> None:
+    """Friction 3 + |u| + 5 exp(-2|u|) N, from positions and velocities of the reference result."""
+    with PUBLISHED.open(newline="") as file:
+        rows = [[float(row[name]) for name in ("time", "s", "v")] for row in csv.DictReader(file)]
+    t, s, v = np.array(rows).T
+    stop = 0.060596954058015254
+    after = (t > stop + 1e-9) & (t < 1.2)
+    recordings = [
+        Recording(t[t < stop], position=s[t < stop] + 0.25, velocity=v[t < stop]),
+        Recording(t[after] - stop, position=s[after] + 0.25, velocity=v[after]),
+    ]
+    speeds = np.array([0.0, 0.2, 0.45, 0.8, 1.3, 2.0, 3.0, 5.0, 7.5])
+    drive = Drive(
+        mass=1.0,
+        stiffness=500.0,
+        damping=0.0,
+        plate=Contact(0.0),
+        finger=Contact(curve=[(float(u), 6.0) for u in speeds]),
+    )
+    releases = [Release(0.0, 0.25, -5.0), Release(0.0, -0.15, 0.0)]
+    free = [f"finger_curve[{i}].force" for i in range(len(speeds))]
+    found = fit(recordings, drive, releases, free=free, profiles=False)
+    curve = found.drive.finger.curve
+    assert curve
+    at = np.linspace(0.05, 6.5, 200)
+    force = np.interp(at, *np.array(curve).T)
+    np.testing.assert_allclose(force, stribeck(at), rtol=0.03)
+    assert any(left.structured for left in found.residuals)  # nine rows are not its smooth law
+
+
+def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
+    drive = Drive(
+        mass=0.006,
+        stiffness=160.0,
+        damping=0.19,
+        plate=Contact(0.0),
+        finger=Contact(0.011, stiffness=700.0),
+    )
+    release = Release(0.0, 2.2e-3, 0.0)
+    start = Drive(
+        mass=0.006, stiffness=150.0, damping=0.2, plate=Contact(0.0), finger=Contact(0.01)
+    )
+    given = recorded(drive, release, rate=2e3)
+    found = fit(
+        given, start, release, free=["stiffness", "damping", "finger_kinetic"], profiles=False
+    )
+    assert found.residuals[0].structured
+    compared = compare_models(found)
+    assert [*compared.fits] == [*LAWS]
+    assert compared.best == "compliant skin"
+    assert compared.weights["compliant skin"] > 0.999
+    assert compared.excess["Coulomb"] > 10.0
+    assert compared.to_dataset().parameters.values.tolist() == [3, 4, 6, 4]
+    skin = compared.fits["compliant skin"]["finger_stiffness"]
+    assert abs(skin.value - 700.0) < 4.0 * skin.standard_error
+    panels = compared.plot().axes
+    for axes, law in zip(panels, LAWS, strict=True):
+        assert axes.get_title("left").startswith(f"{law}: AICc {compared.excess[law]:+.1f}")
