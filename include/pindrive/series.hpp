@@ -56,9 +56,9 @@ struct SeriesEquation {
   }
 };
 
-/// One step of such a mode: its series from a state on, as long as they hold to rounding.
+/// One step of such a mode, for as long as its series holds to rounding.
 template <class T>
-class SeriesFlow {
+class SeriesStep {
  public:
   using Real = detail::Real<T>;
 
@@ -69,32 +69,132 @@ class SeriesFlow {
   /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
   Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
 
+  Real span() const { return velocity.span; }
+  SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
+
+ protected:
+  static constexpr int N = series_order;
+  static constexpr Real unit = std::numeric_limits<Real>::epsilon();
+
+  /// Makes them series of the order N over a length of time.
+  void begin(Real step) {
+    each([&](Polynomial<T>& p) {
+      p.span = step;
+      p.degree = N;
+    });
+    position.degree = N + 1;
+  }
+
+  /// The part of the step at which the last terms are rounding of the first ones.
+  Real suggested_part() const {
+    using std::abs;
+    using std::pow;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed})
+      for (int k = 0; k < detail::parts_of<T>(); ++k) {
+        const auto size = [&](int n) { return abs(detail::part(p->c[n], k)); };
+        const Real largest = std::max({size(0), size(1), size(2)});
+        for (int n = N - 2; n <= N; ++n)
+          if (size(n) > 0 && largest > 0)
+            least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
+      }
+    return least;
+  }
+
+  void rescale(Real part) {
+    each([&](Polynomial<T>& p) {
+      p.span *= part;
+      Real factor{1};
+      for (int n = 0; n <= p.degree; ++n, factor *= part) p.c[n] *= factor;
+    });
+  }
+
+  /// Sums of the sizes of coefficients, from each on to the last.
+  using Sums = std::array<Real, N + 2>;
+  static Sums sums_of(const std::array<T, N + 2>& c) {
+    Sums sums{};
+    for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
+    return sums;
+  }
+  /// The most that a product of two series comes to beyond its order N.
+  static Real beyond(const Sums& p, const Sums& q) {
+    Real sum{0};
+    for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
+    return sum;
+  }
+
+  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer.
+  void trim() {
+    using std::abs;
+    int needed = 1;
+    Real dropped{0};
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force})
+      for (int k = 0; k < detail::parts_of<T>(); ++k) {
+        Real total{0}, tail{0};
+        for (int n = 0; n <= N; ++n) total += abs(detail::part(p->c[n], k));
+        int n = N;
+        while (n > needed && tail + abs(detail::part(p->c[n], k)) <= unit / 8 * total)
+          tail += abs(detail::part(p->c[n--], k));
+        needed = std::max(needed, n);
+      }
+    const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {
+      for (dropped = 0; p.degree > degree; --p.degree) {
+        dropped += abs(plain(p.c[p.degree]));
+        p.c[p.degree] = T(0);
+      }
+      bound += dropped;
+    };
+    Real unused{0};
+    drop(position, needed + 1, x_bound);
+    drop(velocity, needed, v_bound);
+    drop(skin, needed, skin_bound);
+    drop(speed, needed, speed_bound);
+    drop(plate_force, needed, unused);
+    drop(stick_force, needed, unused);
+  }
+
+  std::array<Polynomial<T>, 3> inner_;  // what the recurrences need beside these
+
+ private:
+  template <class Visitor>
+  void each(Visitor&& visit) {
+    for (Polynomial<T>* p : {&position, &velocity, &skin, &plate_force, &stick_force, &speed})
+      visit(*p);
+    for (Polynomial<T>& p : inner_) visit(p);
+  }
+};
+
+/// Its Taylor series at a state.
+template <class T>
+class SeriesFlow : public SeriesStep<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
+  using SeriesStep<T>::plate_force, SeriesStep<T>::stick_force, SeriesStep<T>::span;
+  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
+  using SeriesStep<T>::speed_bound;
+
   /// Expands the mode at a state, no farther than the limit (s; may be infinite).
   SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit) {
     const Real farthest = plain(limit);
     Real step = std::min(trial_step(equation, start), farthest);
     expand(equation, start, step);
-    step = std::min({suggested_part(), longest, farthest / step});
+    step = std::min({this->suggested_part(), longest, farthest / step});
     for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
-      rescale(step);
+      this->rescale(step);
       if (bound(equation)) break;
     }
-    trim();
+    this->trim();
   }
 
-  Real span() const { return velocity.span; }
-  SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
-
  private:
-  static constexpr int N = series_order;
-  static constexpr Real unit = std::numeric_limits<Real>::epsilon();
+  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using typename SeriesStep<T>::Sums;
   /// So many trial steps at most, where nothing changes; and so often a step is made shorter.
   static constexpr Real longest = 1000;
   static constexpr int most_tries = 200;
 
-  std::array<Polynomial<T>*, 7> all() {
-    return {&position, &velocity, &skin, &plate_force, &stick_force, &speed, &direction_};
-  }
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
 
   /// About the time of the fastest rate of the equation.
   static Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) {
@@ -120,12 +220,9 @@ class SeriesFlow {
   /// The recurrences, in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     using std::sqrt;
-    for (Polynomial<T>* p : all()) {
-      p->span = step;
-      p->degree = N;
-    }
-    position.degree = N + 1;
-    auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c, &d = direction_.c;
+    this->begin(step);
+    auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
+    auto &d = inner(0).c, &u_ = inner(1).c;
     x[0] = start.x;
     v[0] = e.held ? e.surface.value : start.v;
     y[0] = start.skin;
@@ -162,46 +259,6 @@ class SeriesFlow {
     }
   }
 
-  /// The part of the step at which the last terms are rounding of the first ones.
-  Real suggested_part() const {
-    using std::abs;
-    using std::pow;
-    Real least = std::numeric_limits<Real>::infinity();
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed})
-      for (int k = 0; k < detail::parts_of<T>(); ++k) {
-        const auto size = [&](int n) { return abs(detail::part(p->c[n], k)); };
-        const Real largest = std::max({size(0), size(1), size(2)});
-        for (int n = N - 2; n <= N; ++n)
-          if (size(n) > 0 && largest > 0)
-            least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
-      }
-    return least;
-  }
-
-  void rescale(Real part) {
-    for (Polynomial<T>* p : all()) {
-      p->span *= part;
-      Real factor{1};
-      for (int n = 0; n <= p->degree; ++n, factor *= part) p->c[n] *= factor;
-    }
-    Real factor{1};
-    for (int n = 0; n <= N; ++n, factor *= part) u_[n] *= factor;
-  }
-
-  /// Sums of the sizes of coefficients, from each on to the last.
-  using Sums = std::array<Real, N + 2>;
-  static Sums sums_of(const std::array<T, N + 2>& c) {
-    Sums sums{};
-    for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
-    return sums;
-  }
-  /// The most that a product of two series comes to beyond its order N.
-  static Real beyond(const Sums& p, const Sums& q) {
-    Real sum{0};
-    for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
-    return sum;
-  }
-
   /// Bounds what the series leave out, from what they miss of the equation: the error e of a mode, with
   /// 2 E² = m e_v² + k e_x² + (f/g) e_y², grows by no more than the energy that this puts in, since
   /// friction's own slope takes energy but where it falls. Whether the bound is rounding.
@@ -216,7 +273,7 @@ class SeriesFlow {
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real most_load = max(abs(load), abs(load + load_change));
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
-    const Sums r = sums_of(speed.c), d = sums_of(direction_.c), u = sums_of(u_);
+    const Sums r = sums_of(speed.c), d = sums_of(inner(0).c), u = sums_of(inner(1).c);
 
     Real root{0},
         direction{0};  // what the truncated r and d differ from √(u² + w²) and u/√(u² + w²)
@@ -249,39 +306,6 @@ class SeriesFlow {
            (ratio == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
            speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c));
   }
-
-  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer.
-  void trim() {
-    using std::abs;
-    int needed = 1;
-    Real dropped{0};
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force})
-      for (int k = 0; k < detail::parts_of<T>(); ++k) {
-        Real total{0}, tail{0};
-        for (int n = 0; n <= N; ++n) total += abs(detail::part(p->c[n], k));
-        int n = N;
-        while (n > needed && tail + abs(detail::part(p->c[n], k)) <= unit / 8 * total)
-          tail += abs(detail::part(p->c[n--], k));
-        needed = std::max(needed, n);
-      }
-    const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {
-      for (dropped = 0; p.degree > degree; --p.degree) {
-        dropped += abs(plain(p.c[p.degree]));
-        p.c[p.degree] = T(0);
-      }
-      bound += dropped;
-    };
-    Real unused{0};
-    drop(position, needed + 1, x_bound);
-    drop(velocity, needed, v_bound);
-    drop(skin, needed, skin_bound);
-    drop(speed, needed, speed_bound);
-    drop(plate_force, needed, unused);
-    drop(stick_force, needed, unused);
-  }
-
-  Polynomial<T> direction_;   // d
-  std::array<T, N + 2> u_{};  // m/s
 };
 
 }  // namespace pindrive

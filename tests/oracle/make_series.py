@@ -3,7 +3,8 @@
     cd tests && python -m oracle.make_series 200 14 oracle/series_cases.txt
 
 COUNT of each of three kinds: a friction curve under a changing load, a friction curve on a compliant
-finger, an oblique hand. A draw whose answer is ill-conditioned is discarded. One case a line: the
+finger, an oblique hand; and a quarter as many of a hand that is oblique by little, where the pin
+creeps, which take the oracle some thousand steps each. A draw whose answer is ill-conditioned is discarded. One case a line: the
 numbers of `Case` in order, the number of the guard that ends it, and time, position, velocity and
 force of the skin there, with twenty digits.
 """
@@ -22,7 +23,8 @@ from mpmath import nstr
 from oracle.mp_modes import Answer, Case, DoubtError, solve
 
 NEVER = 1e300  # where a branch ends that has no end
-KINDS = ("curve under a changing load", "curve on a compliant finger", "oblique hand")
+KINDS = ("curve under a changing load", "curve on a compliant finger", "oblique hand", "creep")
+CREEP = 3
 
 
 def short(value: float) -> float:
@@ -101,6 +103,16 @@ def draw(kind: int, rng: random.Random) -> Case:
         plate = 5
         total = math.hypot(v - plate_velocity[0], w)
         plate_branch = branch(rng, size, total) if rng.random() < 0.5 else flat(size)
+    if kind == CREEP:
+        angle = math.radians(10 ** rng.uniform(-0.5, 0.6))
+        w = short(speed * math.tan(angle) * rng.choice([-1, 1]))
+        across = (w, short(rng.choice([0.0, w / duration * rng.uniform(-0.8, 2)])))
+        x = short(x * rng.uniform(0, 0.5))
+        force = stiffness * (abs(x) + speed * duration) * rng.uniform(0.4, 2)
+        plate_branch = flat(force / load[0])
+        if finger in {-1, 1}:
+            finger, finger_branch = 1, flat(finger_static)
+            v = plate_velocity[0]
     return Case(
         mass, damping, stiffness, plate_velocity, load, across, plate, plate_branch, plate_static,
         finger, finger_stiffness, finger_branch, finger_static, x, v, skin, duration,
@@ -141,9 +153,10 @@ def written(case: Case, answer: Answer) -> str:
 
 
 def main(count: int, seed: int, out: Path) -> None:
-    jobs = [(kind, seed + number) for kind in range(len(KINDS)) for number in range(count)]
+    counts = [count] * CREEP + [count // 4]
+    jobs = [(kind, seed + number) for kind, n in enumerate(counts) for number in range(n)]
     with multiprocessing.Pool(2) as pool:
-        answers = pool.starmap(written, pool.map(make, jobs, chunksize=4))
+        answers = pool.starmap(written, pool.map(make, jobs, chunksize=2))
     out.write_text("\n".join(answers) + "\n")
 
 
