@@ -1,4 +1,4 @@
-"""Stored answers of modes without a closed form: what the C++ test reads is what the oracle gives."""
+"""Stored answers of modes without a closed form: what the C++ test reads, the oracle gives."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "pindrive/creep.hpp"
 #include "pindrive/dual.hpp"
+#include "pindrive/series_mode.hpp"
 
 namespace pd = pindrive;
 
@@ -70,103 +70,72 @@ struct Followed {
   int guard{0}, steps{0};
 };
 
-/// The equation of a case: of constant numbers, or of one that carries a derivative.
+/// A case as a drive in a mode: of constant numbers, or of one that carries a derivative.
 template <class T>
 struct Stored {
   const Case& c;
   T mass, stiffness, load, x, v;
 
-  bool soft() const { return c.finger_stiffness > 0 && c.finger != 2; }
-  bool finger_slips() const { return std::abs(c.finger) == 1; }
+  static bool slides(double state) { return abs(state) == 1 || state == 5; }
 
-  pd::SeriesEquation<T> equation() const {
-    pd::SeriesEquation<T> e{mass, T(c.damping), stiffness};
-    e.force = {mass * c.v_p[1], T(0)};
-    e.plate_velocity = {T(c.v_p[0]), T(c.v_p[1])};
-    e.load = {load, T(c.load[1])};
-    e.across = {T(c.across[0]), T(c.across[1])};
-    e.side = c.plate == -1 ? -1 : c.plate == 5 ? 0 : 1;
-    const auto constant = [](const double* b) { return b[0] - b[3] * b[1]; };
-    if (c.plate != 0 && c.plate != 2) {
-      e.plate_force = constant(c.plate_branch);
-      e.plate_slope = c.plate_branch[3];
-    }
-    if (finger_slips()) e.force.value -= c.finger * constant(c.finger_branch);
-    const double slope = c.finger_branch[3];
-    if (soft() && finger_slips()) {
-      e.skin_factor = slope;
-      e.skin_gain = e.skin_decay = c.finger_stiffness / slope;
-    } else if (soft()) {
-      e.skin_factor = 1;
-      e.skin_gain = c.finger_stiffness;
-    } else if (finger_slips()) {
-      e.damping += slope;
-    }
-    e.held = c.plate == 0 || c.finger == 0;
-    if (c.plate == 0) e.surface = e.plate_velocity;
-    return e;
-  }
-
-  T skin_force(T skin) const {
-    const double* b = c.finger_branch;
-    if (!soft()) return T(0);
-    return finger_slips() ? c.finger * (b[0] - b[3] * b[1]) + b[3] * skin : skin;
+  pd::Branch<T> branch(const double* b) const {
+    const T end = b[2] < 1e300 ? T(b[2]) : std::numeric_limits<T>::infinity();
+    return {T(b[1]), end, T(b[0]), T(b[3]), T(0)};
   }
 
   Followed<T> follow() const {
-    pd::SeriesEquation<T> e = equation();
+    using pd::detail::Bound;
+    const pd::Branch<T> of_plate = branch(c.plate_branch), of_finger = branch(c.finger_branch);
+    pd::Drive<T> drive{mass, stiffness, T(c.damping), {}, {}};
+    drive.plate = {T(0), T(c.plate_static), std::numeric_limits<T>::infinity(), &of_plate, 1};
+    drive.finger = {T(0), T(c.finger_static), std::numeric_limits<T>::infinity(), &of_finger, 1};
+    if (c.finger_stiffness > 0) drive.finger.stiffness = c.finger_stiffness;
+    const auto state_of = [](double state) {
+      return static_cast<pd::ContactState>(state == 5 ? 1 : int(state));
+    };
+    const pd::Mode mode{state_of(c.plate), state_of(c.finger)};
+    pd::InputLines<T> inputs{
+        {T(c.v_p[0]), T(c.v_p[1])}, {load, T(c.load[1])}, {T(c.across[0]), T(c.across[1])}};
+    pd::detail::Reached at;
+    const double speed = abs(c.v - c.v_p[0]);  // does it begin at an end of its branch?
+    if (abs(c.plate) == 1 && abs(speed - c.plate_branch[1]) < 1e-14 * speed)
+      at.plate = Bound::lower;
+    if (abs(c.plate) == 1 && abs(speed - c.plate_branch[2]) < 1e-14 * speed)
+      at.plate = Bound::upper;
+
     pd::SeriesState<T> state{x, v, T(c.skin)};
     Followed<T> found{T(0), x, v, T(0)};
-    bool first = true;
     for (;;) {
-      const pd::SeriesStep<T> flow = pd::series_step(e, state, T(c.duration) - found.time);
-      T earliest = std::numeric_limits<T>::infinity();
-      const auto meet = [&](int number, pd::Polynomial<T> guard, T size) {
-        if (first && abs(pd::detail::part(guard.c[0], 0)) < 1e-13 * pd::detail::part(size, 0))
-          guard.c[0] = T(0);
-        const T zero = pd::first_zero(guard);
-        if (!(zero < earliest)) return;
-        earliest = zero;
-        found.guard = number;
-      };
-      const auto between = [&](int number, pd::Polynomial<T> speed, const double* b) {
-        const T size = abs(speed.c[0]);
-        pd::Polynomial<T> above = speed, below = T(-1) * speed;
-        above += pd::Line<T>{T(-b[1]), T(0)};
-        meet(number, above, size);
-        if (!(b[2] < 1e300)) return;
-        below += pd::Line<T>{T(b[2]), T(0)};
-        meet(number + 1, below, size);
-      };
-      const auto within = [&](int number, const pd::Polynomial<T>& force, pd::Line<T> most) {
-        for (const int side : {1, -1}) {
-          pd::Polynomial<T> left = T(-side) * force;
-          left += most;
-          meet(side == 1 ? number : number + 1, left, most.value);
-        }
-      };
-      if (std::abs(c.plate) == 1 || (c.plate == 5 && c.plate_branch[3] != 0))
-        between(1, flow.speed, c.plate_branch);
-      if (finger_slips())
-        between(3, T(c.finger) * (soft() ? flow.skin : flow.velocity), c.finger_branch);
-      if (c.finger == 3) within(5, flow.skin, {T(c.finger_static), T(0)});
-      if (c.plate == 0)
-        within(7, flow.stick_force, {c.plate_static * e.load.value, c.plate_static * e.load.rate});
-      if (c.finger == 0) within(7, flow.stick_force, {T(c.finger_static), T(0)});
-      const bool ends = earliest < std::numeric_limits<T>::infinity();
-      const T tau = ends ? earliest : T(flow.span());
-      state = flow.at(tau);
-      e = e.from(tau);
+      const pd::SeriesMode<T> series(drive, mode, inputs);
+      const bool flat = c.plate_branch[3] == 0 && c.across[0] == 0 && c.finger_stiffness == 0;
+      expect(series.has_closed_form() == flat, "a closed form", double(flat));
+      const pd::SeriesEquation<T> equation = series.equation();
+      const auto step = pd::series_step(equation, state, T(c.duration) - found.time);
+      const auto guards = series.guards(step, at);
+      const auto* ends = guards.earliest();
+      const T tau = ends != nullptr ? ends->zero : T(step.span());
+      state = step.at(tau);
+      inputs = inputs.from(tau);
       found.time += tau;
       ++found.steps;
-      if (ends || !(found.time < c.duration * (1 - 1e-15)) || found.steps > 100000) {
+      if (ends != nullptr || !(found.time < c.duration * (1 - 1e-15)) || found.steps > 100000) {
         found.x = state.x;
         found.v = state.v;
-        found.force = skin_force(state.skin);
+        found.force = series.skin_force(state.skin);
+        if (ends != nullptr) found.guard = number(*ends, mode);
         return found;
       }
-      first = false;
+      at = {};
     }
+  }
+
+  /// As the oracle numbers them.
+  template <class Guard>
+  static int number(const Guard& guard, const pd::Mode& mode) {
+    using pd::detail::Bound;
+    if (guard.bound != Bound::none) return (guard.plate ? 1 : 3) + (guard.bound == Bound::upper);
+    const bool skin = mode.finger == pd::ContactState::elastic_stick;
+    return (skin ? 5 : 7) + (guard.side < 0);
   }
 };
 

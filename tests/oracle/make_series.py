@@ -2,11 +2,11 @@
 
     cd tests && python -m oracle.make_series 200 14 oracle/series_cases.txt
 
-COUNT of each of three kinds: a friction curve under a changing load, a friction curve on a compliant
-finger, an oblique hand; and a quarter as many of a hand that is oblique by little, where the pin
-creeps, which take the oracle some thousand steps each. A draw whose answer is ill-conditioned is discarded. One case a line: the
-numbers of `Case` in order, the number of the guard that ends it, and time, position, velocity and
-force of the skin there, with twenty digits.
+COUNT of each of three kinds: a friction curve under a changing load, a friction curve on a
+compliant finger, an oblique hand; and a quarter as many of a hand that is oblique by little, where
+the pin creeps, which take the oracle some thousand steps each. A draw whose answer is
+ill-conditioned is discarded. One case a line: the numbers of `Case` in order, the number of the
+guard that ends it, and time, position, velocity and force of the skin there, with twenty digits.
 """
 
 from __future__ import annotations
