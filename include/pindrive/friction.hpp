@@ -113,14 +113,19 @@ struct Touch {
     if (elastic()) return -s.skin;
     return sliding() ? -along(does().state, kinetic(s.v)) * load.value : T(0);
   }
-  /// … and how fast it changes on a pin of this acceleration. A slope and a changing load do not come
-  /// together.
+  /// … and how fast it changes on a pin of this acceleration, …
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
     if (!sliding()) return T(0);
     const T slope = branch().slope;
-    return slope != 0 ? -slope * load.value * (acceleration - surface.rate)
-                      : -along(does().state, branch().force) * load.rate;
+    if (slope == 0) return -along(does().state, branch().force) * load.rate;
+    const T by_speed = -slope * load.value * (acceleration - surface.rate);
+    return load.rate == 0 ? by_speed : by_speed - along(does().state, kinetic(v)) * load.rate;
+  }
+  /// … and how fast that changes on one whose acceleration is constant.
+  T force_bend(T acceleration) const {
+    if (!sliding() || load.rate == 0) return T(0);
+    return -2 * branch().slope * load.rate * (acceleration - surface.rate);
   }
   /// How large the terms of that rate are: its slope is known to rounding only.
   T force_rate_size(T rate, T acceleration) const {

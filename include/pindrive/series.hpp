@@ -19,6 +19,8 @@ template <class T>
 struct SeriesState {
   T x, v;     ///< m, m/s
   T skin{0};  ///< N, or m/s
+  /// Of a pin that is not held, where it is known, so that a tangential departure is one exactly; m/s².
+  T acceleration{std::numeric_limits<T>::quiet_NaN()};
 };
 
 /// A mode without a closed form:
@@ -174,12 +176,20 @@ class SeriesFlow : public SeriesStep<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound;
 
-  /// Expands the mode at a state, no farther than the limit (s; may be infinite).
-  SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit) {
-    const Real farthest = plain(limit);
-    Real step = std::min(trial_step(equation, start), farthest);
+  /// Expands the mode at a state, no farther than the limit (s; may be infinite); or as far, where that is
+  /// known to be within a step.
+  SeriesFlow(const SeriesEquation<T>& equation, const SeriesState<T>& start, T limit,
+             bool within_step = false) {
+    const Real farthest = plain(limit), rate = linear_rate(equation);
+    Real step = std::min(1 / (rate + turning_rate(equation, start)), farthest);
     expand(equation, start, step);
-    step = std::min({this->suggested_part(), longest, farthest / step});
+    if (within_step) {
+      this->rescale(farthest / step);
+      bound(equation);
+      this->trim();
+      return;
+    }
+    step = std::min({this->suggested_part(), longest / (rate * step), farthest / step});
     for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
       this->rescale(step);
       if (bound(equation)) break;
@@ -190,35 +200,38 @@ class SeriesFlow : public SeriesStep<T> {
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
-  /// So many trial steps at most, where nothing changes; and so often a step is made shorter.
-  static constexpr Real longest = 1000;
+  /// So many times the time of the fastest rate at most, even where nothing changes: what rounding puts into
+  /// the start is then followed too, and remains rounding. And so often a step is made shorter.
+  static constexpr Real longest = 8;
   static constexpr int most_tries = 200;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
 
-  /// About the time of the fastest rate of the equation.
-  static Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+  /// About the fastest rate of the equation without an across velocity, …
+  static Real linear_rate(const SeriesEquation<T>& e) {
+    using std::abs;
+    using std::sqrt;
+    const Real m = plain(e.mass), coupling = plain(e.skin_factor) * plain(e.skin_gain);
+    return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
+           abs(plain(e.skin_decay)) + sqrt((plain(e.stiffness) + abs(coupling)) / m);
+  }
+  /// … and the one at which that turns the direction of sliding.
+  static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     using std::abs;
     using std::hypot;
-    using std::sqrt;
-    const Real m = plain(e.mass), load = abs(plain(e.load.value)), F = abs(plain(e.plate_force));
-    const Real coupling = plain(e.skin_factor) * plain(e.skin_gain);
-    const Real friction = load * abs(plain(e.plate_slope));
-    Real rate = (abs(plain(e.damping)) + friction) / m + abs(plain(e.skin_decay)) +
-                sqrt((plain(e.stiffness) + abs(coupling)) / m);
-    if (e.side == 0) {
-      const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
-      const Real pull = abs(plain(e.force.value)) + abs(plain(e.stiffness) * plain(s.x)) +
-                        abs(plain(e.damping) * plain(s.v)) + friction * abs(u) +
-                        abs(plain(e.skin_factor) * plain(s.skin)) + load * F;
-      rate +=
-          (pull / m + abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate))) / hypot(u, w);
-    }
-    return 1 / rate;
+    if (e.side != 0) return Real(0);
+    const Real m = plain(e.mass), load = abs(plain(e.load.value));
+    const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
+    const Real pull = abs(plain(e.force.value)) + abs(plain(e.stiffness) * plain(s.x)) +
+                      abs(plain(e.damping) * plain(s.v)) +
+                      abs(plain(e.skin_factor) * plain(s.skin)) +
+                      load * (abs(plain(e.plate_slope) * u) + abs(plain(e.plate_force)));
+    return (pull / m + abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate))) / hypot(u, w);
   }
 
   /// The recurrences, in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    using std::isnan;
     using std::sqrt;
     this->begin(step);
     auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
@@ -254,6 +267,7 @@ class SeriesFlow : public SeriesStep<T> {
       const T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
                        e.skin_factor * y[n] + (n < 2 ? force[n] : T(0));
       v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
+      if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
       if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
       y[n + 1] = part * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/return.hpp"
+#include "pindrive/series_mode.hpp"
 
 namespace pindrive::detail {
 
@@ -136,7 +138,7 @@ class Simulation {
     const T rate = other.force_rate(state_.v, a);
     const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
     size = abs(spring) + abs(damper) + other.force_rate_size(rate, a);
-    return {force, T(0), T(0), spring + damper - rate, stiffness * a};
+    return {force, T(0), T(0), spring + damper - rate, stiffness * a - other.force_bend(a)};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -149,7 +151,7 @@ class Simulation {
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
                        of_on * on.load.rate + of_other * other.load.rate};
     const T force = demand(on, other.force(state_));
-    const int at_limit = continues(limit) ? limit : 0;
+    const int at_limit = at_limit_ = continues(limit) ? limit : 0;
     if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
       return false;
     T size;
@@ -208,6 +210,11 @@ class Simulation {
 
   /// The segment of the mode that was selected, and its guards.
   Segment<T> begin() {
+    if constexpr (!Surface::plain) {
+      const SeriesMode<T> series(drive_, mode(), {plate_.surface, plate_.load});
+      series_.used = !series.has_closed_form();
+      if (series_.used) return begin(series);
+    }
     Segment<T> segment{time_, never, mode(), {}, flow(), {}, plate_.surface, {}, {}};
     segment.plate_force = plate_.stuck() ? stick_force_ : plate_.force_along(segment.flow, state_);
     segment.finger_force = finger_.stuck() && !plate_.stuck()
@@ -216,6 +223,28 @@ class Simulation {
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
     return segment;
+  }
+
+  /// The same of a step of a mode that has no closed form; its flow says where it begins.
+  Segment<T> begin(const SeriesMode<T>& series) {
+    series_.step =
+        SeriesFlow<T>(series.equation(), {state_.x, state_.v, state_.skin, acceleration_},
+                      std::min(row_, inputs_.duration) - time_);
+    const Reached at{plate_.does().at, finger_.does().at, at_limit_};
+    series_.guards = series.guards(series_.step, at);
+    const T x = state_.x, v = series_.step.velocity.c[0];
+    const T stick = series_.step.stick_force.c[0];
+    const T of_plate = plate_.stuck() ? stick : plate_.force(state_);
+    const T of_finger = finger_.stuck() ? (plate_.stuck() ? T(0) : stick) : finger_.force(state_);
+    return {time_,
+            never,
+            mode(),
+            {},
+            {{}, {x, T(0), T(0)}, {v, T(0), T(0)}},
+            {},
+            plate_.surface,
+            {of_plate, T(0), T(0)},
+            {of_finger, T(0), T(0)}};
   }
 
   Flow<T> flow() const {
@@ -250,6 +279,12 @@ class Simulation {
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
+    if constexpr (!Surface::plain)
+      if (series_.used) {
+        const auto* guard = series_.guards.earliest();
+        const T row = row_ - time_, first = guard != nullptr ? guard->zero : T(series_.step.span());
+        return row - first <= rounding<T> * (time_ + row) ? row : first;
+      }
     const T row = row_ - time_, serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     const T first = guards_.earliest(flow.oscillator, time_, limit);
@@ -266,13 +301,23 @@ class Simulation {
     const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-    const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-    state_.x = position.at(moved, tau);
-    state_.v = segment.flow.velocity.at(moved, tau);
-    state_.x_size =
-        std::max(std::max(state_.x_size, abs(state_.x)),
-                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
-    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    if constexpr (!Surface::plain)
+      if (series_.used) {
+        const SeriesState<T> now = series_.step.at(tau);
+        state_.x = now.x;
+        state_.v = now.v;
+        state_.x_size = std::max(state_.x_size, abs(state_.x));
+        if (finger_.elastic()) state_.skin = now.skin;
+      }
+    if (!series_.used) {
+      const Transition<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+      state_.x = position.at(moved, tau);
+      state_.v = segment.flow.velocity.at(moved, tau);
+      state_.x_size =
+          std::max(std::max(state_.x_size, abs(state_.x)),
+                   std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
+      if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    }
     if (finger_.sliding()) state_.skin = along(finger_.does().state, drive_.finger.kinetic);
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
@@ -282,8 +327,8 @@ class Simulation {
     segment.end = time_;
     Reached reached;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
-    for (const Guard<T>& guard : guards_) {
-      if (!(guard.zero <= coincident)) continue;
+    const auto meet = [&](const auto& guard) {
+      if (!(guard.zero <= coincident)) return;
       const Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         (guard.plate ? reached.plate : reached.finger) = guard.bound;
@@ -296,7 +341,12 @@ class Simulation {
       } else if (!row) {
         reached.limit = guard.side;
       }
-    }
+    };
+    if constexpr (!Surface::plain)
+      if (series_.used)
+        for (const auto& guard : series_.guards) meet(guard);
+    if (!series_.used)
+      for (const Guard<T>& guard : guards_) meet(guard);
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
     return reached;
@@ -326,7 +376,19 @@ class Simulation {
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
   bool tangential_{false};
   Path<T> stick_force_{};  ///< … or what carries it
+  int at_limit_{0};        ///< the side on which that is at its limit
   Guards<T> guards_;
+
+  /// A step of a mode that has no closed form, and its guards; contacts without curves have none.
+  struct Series {
+    bool used{false};
+    SeriesStep<T> step;
+    typename SeriesMode<T>::Guards guards;
+  };
+  struct NoSeries {
+    static constexpr bool used = false;
+  };
+  std::conditional_t<Surface::plain, NoSeries, Series> series_;
 
   Return<T> returns_;
   Outcome<T> outcome_{};

@@ -66,10 +66,10 @@ void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, V
 /// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
 /// them.
 template <class T, class Visitor>
-void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visitor&& visit) {
-  visit(from, path.at(segment.after(from), from));
+void extrema(const ClosedForm<T>& along, const Path<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, along.at(path, from));
   if (path.constant() || !(to > from)) return;
-  const Oscillator<T>& oscillator = segment.flow.oscillator;
+  const Oscillator<T>& oscillator = along.oscillator();
   if (path.straight() && oscillator.oscillates()) {
     turns(oscillator, path, from, to, visit);
   } else {
@@ -82,21 +82,39 @@ void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visit
         return true;
       });
   }
-  visit(to, path.at(segment.after(to), to));
+  visit(to, along.at(path, to));
+}
+template <class T, class Visitor>
+void extrema(const BySeries<T>& along, const Polynomial<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, path.at(from));
+  if (!(to > from)) return;
+  const Polynomial<T> slope = path.derivative();
+  const int side = along.side_after_start(slope);
+  if (side != 0)
+    along.each_root(slope, side, to, [&](T tau) {
+      if (tau > from) visit(tau, path.at(tau));
+      return true;
+    });
+  visit(to, path.at(to));
 }
 
 /// The same for a path on which only the highest and the lowest value are asked for: a vibration on
 /// a line has them within a period of an end, so what lies between need not be followed.
 template <class T, class Visitor>
-void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, T to,
+void highest_and_lowest(const ClosedForm<T>& along, const Path<T>& path, T from, T to,
                         Visitor&& visit) {
-  const T period = segment.flow.oscillator.period();
+  const T period = along.oscillator().period();
   if (!path.oscillates() || !(to - from > 2 * period)) {
-    extrema(segment, path, from, to, visit);
+    extrema(along, path, from, to, visit);
     return;
   }
-  extrema(segment, path, from, from + period, visit);
-  extrema(segment, path, to - period, to, visit);
+  extrema(along, path, from, from + period, visit);
+  extrema(along, path, to - period, to, visit);
+}
+template <class T, class Visitor>
+void highest_and_lowest(const BySeries<T>& along, const Polynomial<T>& path, T from, T to,
+                        Visitor&& visit) {
+  extrema(along, path, from, to, visit);
 }
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
@@ -153,17 +171,18 @@ class Measurement {
 
   /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
   /// short it is beside x.
-  static T moved(const Segment<T>& segment, T from, T to) {
-    const Path<T>& x = segment.flow.position;
-    const T change = x.change(segment.after(to), to);
-    return from > 0 ? change - x.change(segment.after(from), from) : change;
+  template <class Trajectory>
+  static T moved(const Trajectory& along, T from, T to) {
+    const T change = along.change(along.position(), to);
+    return from > 0 ? change - along.change(along.position(), from) : change;
   }
 
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
   /// The direction in which the pin moves just after a segment begins; 0 at rest.
-  static int heading(const Flow<T>& flow) {
-    return side_after_start(flow.oscillator, flow.velocity);
+  int heading(const Segment<T>& segment) const {
+    return motion_.along(
+        segment, [](const auto& along) { return along.side_after_start(along.velocity()); });
   }
 
   /// Calls visit(time, position) at each turning point in order until it returns false.
@@ -173,20 +192,21 @@ class Measurement {
     bool more = true;
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_ || !go_on_()) return;
-      const Flow<T>& flow = segment.flow;
-      const int start = heading(flow);
+      const int start = heading(segment);
       if (direction * start < 0 || (direction != 0 && start == 0))
-        if (!visit(segment.begin, flow.position.start)) return;
+        if (!visit(segment.begin, segment.flow.position.start)) return;
       direction = start;
       if (direction == 0 || !may_turn(segment)) continue;
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
       const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
       const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
-      each_root(flow.oscillator, flow.velocity, direction, inside, [&](T tau) {
-        direction = -direction;
-        more = visit(segment.begin + tau, flow.position.at(flow.oscillator, tau));
-        return more;
+      motion_.along(segment, [&](const auto& along) {
+        along.each_root(along.velocity(), direction, inside, [&](T tau) {
+          direction = -direction;
+          more = visit(segment.begin + tau, along.at(along.position(), tau));
+          return more;
+        });
       });
       if (!more) return;
     }
@@ -199,7 +219,7 @@ class Measurement {
     int outward = sign_of(inputs.displacement);
     if (outward == 0) outward = sign_of(inputs.velocity);
     if (outward == 0) outward = sign_of(inputs.mouse_velocity.from(T(0)).value);
-    if (heading(motion_.begin()->flow) != outward) {
+    if (heading(*motion_.begin()) != outward) {
       result.peak_time = T(0);
       result.peak_displacement = inputs.displacement;
     }
@@ -239,7 +259,9 @@ class Measurement {
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
       };
-      highest_and_lowest(segment, segment.flow.velocity, from, to, compare);
+      motion_.along(segment, [&](const auto& along) {
+        highest_and_lowest(along, along.velocity(), from, to, compare);
+      });
     }
   }
 
@@ -277,11 +299,13 @@ class Measurement {
     for (const Segment<T>& segment : motion_) {
       if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
-      highest_and_lowest(segment, segment.flow.position, T(0), segment.end - segment.begin,
-                         [&](T, T position) {
-                           low = std::min(low, position);
-                           high = std::max(high, position);
-                         });
+      motion_.along(segment, [&](const auto& along) {
+        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin,
+                           [&](T, T position) {
+                             low = std::min(low, position);
+                             high = std::max(high, position);
+                           });
+      });
     }
     result.end_position = (low + high) / 2;
     result.amplitude = (high - low) / 2;
@@ -333,13 +357,30 @@ class Measurement {
     T since{0};
     for (const Segment<T>* segment = motion_.end();
          since == 0 && segment != motion_.begin() && go_on_();)
-      since = entry(*--segment, x_end, width);
+      since = motion_.along(
+          *--segment, [&](const auto& along) { return entry(along, *segment, x_end, width); });
     return since;
   }
 
   /// When, in a segment, |x − x_end| comes within the width to stay there, followed from extremum
   /// to extremum: 0 if it is never outside, infinite if it is outside at the end.
-  T entry(const Segment<T>& segment, T x_end, T width) const {
+  T entry(const BySeries<T>& along, const Segment<T>& segment, T x_end, T width) const {
+    T since{0};
+    // Beyond the width on either side: where it comes within for good, or infinite.
+    for (const int side : {1, -1}) {
+      Polynomial<T> beyond = T(side) * along.above(along.position(), x_end + side * width);
+      int sign = along.side_after_start(beyond);
+      T last = sign > 0 ? never : T(0);
+      along.each_root(beyond, sign, segment.end - segment.begin, [&](T tau) {
+        sign = -sign;
+        last = sign > 0 ? never : segment.begin + tau;
+        return true;
+      });
+      since = std::max(since, last);
+    }
+    return since;
+  }
+  T entry(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) const {
     using std::abs;
     using std::isfinite;
     T since{0};
@@ -371,9 +412,9 @@ class Measurement {
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
       if (may_turn(segment)) {
-        const Stretch last = last_stretch_outside(segment, x_end, width);
+        const Stretch last = last_stretch_outside(along, segment, x_end, width);
         before = x.at(segment.after(last.from), last.from) - x_end;
-        extrema(segment, x, last.from, last.to, follow_to);
+        extrema(along, x, last.from, last.to, follow_to);
       } else {
         const T to = segment.end - segment.begin;
         follow_to(to, x.at(segment.after(to), to));
@@ -406,13 +447,14 @@ class Measurement {
   };
   /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
   /// long vibration is halved until the few periods are left in which it leaves the band last.
-  static Stretch last_stretch_outside(const Segment<T>& segment, T x_end, T width) {
+  static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment,
+                                      T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     Stretch last{T(0), segment.end - segment.begin};
     const auto strays = [&](T from, T to) {
       bool outside = false;
-      highest_and_lowest(segment, x, from, to, [&](T, T position) {
+      highest_and_lowest(along, x, from, to, [&](T, T position) {
         using std::abs;
         outside = outside || abs(position - x_end) > width;
       });
@@ -427,49 +469,58 @@ class Measurement {
 
   void contacts(Transient<T>& result) const {
     const Drive<T>& drive = motion_.drive();
-    const bool skin = drive.finger.present() && !drive.finger.rigid();
-    if (skin) result.peak_stretch = result.peak_stretch_rate = T(0);
+    if (drive.finger.present() && !drive.finger.rigid())
+      result.peak_stretch = result.peak_stretch_rate = T(0);
     motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
-      const bool whole = to >= segment.end - segment.begin;
-      const T distance = moved(segment, from, to);
-      use(result.plate, segment, segment.mode.plate, segment.plate_velocity, segment.plate_force,
-          whole && stops(segment.event.plate), from, to, distance, times);
-      use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
-          whole && stops(segment.event.finger), from, to, distance, times);
-      if (segment.mode.both_stuck())
-        for (const T tau : {from, to}) {
-          using std::abs;
-          const auto friction = motion_.friction(segment, tau);
-          result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
-          result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
-        }
-      if (!skin) return go_on_();
-      result.finger.dissipated += times * skin_loss(segment, from, to, whole);
-      const Oscillator<T>& oscillator = segment.flow.oscillator;
-      const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
-      peak(result.peak_stretch, segment, stretch, from, to);
-      peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
+      motion_.along(segment,
+                    [&](const auto& along) { stretch(result, along, segment, from, to, times); });
       return go_on_();
     });
   }
 
-  static void peak(T& largest, const Segment<T>& segment, const Path<T>& path, T from, T to) {
+  template <class Trajectory>
+  void stretch(Transient<T>& result, const Trajectory& along, const Segment<T>& segment, T from,
+               T to, T times) const {
+    const bool whole = to >= segment.end - segment.begin;
+    const T distance = moved(along, from, to);
+    use(result.plate, along, segment, segment.mode.plate, segment.plate_velocity,
+        along.plate_force(), whole && stops(segment.event.plate), from, to, distance, times);
+    use(result.finger, along, segment, segment.mode.finger, {}, along.finger_force(),
+        whole && stops(segment.event.finger), from, to, distance, times);
+    if (segment.mode.both_stuck())
+      for (const T tau : {from, to}) {
+        using std::abs;
+        const auto friction = motion_.friction(segment, tau);
+        result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
+        result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
+      }
+    const Contact<T>& finger = motion_.drive().finger;
+    if (!finger.present() || finger.rigid()) return;
+    result.finger.dissipated += times * skin_loss(along, segment, from, to, whole);
+    const auto in_skin = (-1 / finger.stiffness) * along.finger_force();
+    peak(result.peak_stretch, along, in_skin, from, to);
+    peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
+  }
+
+  template <class Trajectory, class Quantity>
+  static void peak(T& largest, const Trajectory& along, const Quantity& path, T from, T to) {
     const auto compare = [&](T, T value) {
       using std::abs;
       largest = std::max(largest, abs(value));
     };
-    if (path.constant())
-      compare(from, path.start);
+    if (along.constant(path))
+      compare(from, along.start(path));
     else
-      highest_and_lowest(segment, path, from, to, compare);
+      highest_and_lowest(along, path, from, to, compare);
   }
 
-  void use(ContactUse<T>& contact, const Segment<T>& segment, ContactState slide, Line<T> surface,
-           const Path<T>& force, bool came_to_zero, T from, T to, T distance, T times) const {
+  template <class Trajectory, class Quantity>
+  void use(ContactUse<T>& contact, const Trajectory& along, const Segment<T>& segment,
+           ContactState slide, Line<T> surface, const Quantity& force, bool came_to_zero, T from,
+           T to, T distance, T times) const {
     using std::abs;
     if (slide == ContactState::absent) return;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!segment.mode.both_stuck()) peak(contact.peak_force, segment, force, from, to);
+    if (!segment.mode.both_stuck()) peak(contact.peak_force, along, force, from, to);
     if (!slips(slide)) {
       contact.time_stuck += times * (to - from);
       return;
@@ -477,27 +528,26 @@ class Measurement {
     const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
     contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
-    if (force.constant()) {
-      contact.dissipated += times * abs(force.start) * slid;
+    if (along.constant(force)) {
+      contact.dissipated += times * abs(along.start(force)) * slid;
     } else {
-      const Path<T> level = surface;
-      contact.dissipated -=
-          times *
-          product_integral(oscillator, force, segment.flow.velocity + T(-1) * level, from, to);
+      auto sliding = T(-1) * along.line(surface);
+      sliding = along.velocity() + sliding;
+      contact.dissipated -= times * along.product_integral(force, sliding, from, to);
     }
   }
 
   /// What a stretched skin gives to its slider, or takes from it, beside the pin's own sliding, J.
-  T skin_loss(const Segment<T>& segment, T from, T to, bool whole) const {
+  template <class Trajectory>
+  T skin_loss(const Trajectory& along, const Segment<T>& segment, T from, T to, bool whole) const {
     const Contact<T>& finger = motion_.drive().finger;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
     const auto energy = [&](T force) { return force * force / (2 * finger.stiffness); };
-    const T start = energy(segment.finger_force.at(oscillator, from));
-    const T end = energy(segment.finger_force.at(oscillator, to));
+    const T start = energy(along.at(along.finger_force(), from));
+    const T end = energy(along.at(along.finger_force(), to));
     if (slips(segment.mode.finger)) return start - end;
     if (!whole || segment.event.finger != Kind::slip) return T(0);
     using std::abs;
-    const T speed = abs(segment.flow.velocity.at(oscillator, to));
+    const T speed = abs(along.at(along.velocity(), to));
     return end - energy(finger.branch(finger.branch_of(speed)).at(speed));
   }
 

@@ -168,19 +168,10 @@ def check_continuous(
 
 
 def check_skin(finger: Contact, *, where: str = "", label: str = "finger curve") -> None:
-    """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
+    """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
         raise ValueError(refusal(label, required, counted(len(finger.curve or ()), "row"), where))
-
-
-def check_load(
-    plate: Contact, load: float | Profile, *, where: str = "", label: str = "plate_load"
-) -> None:
-    """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
-    if plate.curved and isinstance(load, Profile) and load.changes:
-        required = "constant for a plate with a friction curve"
-        raise ValueError(refusal(label, required, "a profile that changes", where))
 
 
 def check_stretch(
