@@ -46,7 +46,7 @@ class CreepFlow : public SeriesStep<T> {
       const Real part = std::min(this->suggested_part(), farthest / step);
       const bool converged = converged_;
       converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
-      if (!converged) continue;  // the round after: derivatives come to rest one later
+      if (!converged) continue;  // the derivatives of a dual number converge one round later
       this->rescale(part);
       holds_ = bound(e, plain(e.mass) * change(part)) && starts_from(start);
       break;
@@ -210,12 +210,7 @@ class CreepFlow : public SeriesStep<T> {
   /// Whether the pin has the velocity of creep: what it is off by, less than rounding, fades at once.
   bool starts_from(const SeriesState<T>& start) const {
     using std::abs;
-    for (int k = 0; k < detail::parts_of<T>(); ++k) {
-      Real size{0};
-      for (int n = 0; n <= N; ++n) size += abs(detail::part(velocity.c[n], k));
-      if (!(abs(detail::part(start.v - velocity.c[0], k)) <= 16 * unit * size)) return false;
-    }
-    return true;
+    return abs(plain(start.v - velocity.c[0])) <= 16 * unit * sums_of(velocity.c)[0];
   }
 
   T t_{0};                               // at the start

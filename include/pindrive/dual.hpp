@@ -15,8 +15,6 @@ namespace pindrive {
 
 template <class T>
 struct Dual {
-  static constexpr int parts = 2;  ///< numbers in it
-
   T value{0};
   T slope{0};  ///< derivative of the value along the parameter
 

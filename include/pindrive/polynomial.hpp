@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "pindrive/flow.hpp"
 #include "pindrive/model.hpp"
@@ -18,27 +17,9 @@ inline constexpr int series_order = 24;
 
 namespace detail {
 
-/// A number as it is compared, and how many numbers a scalar consists of (a Dual: two).
+/// A number as it is compared.
 template <class T>
 using Real = decltype(plain(T{}));
-template <class T, class = void>
-struct Parts {
-  static constexpr int count = 1;
-  static Real<T> at(T x, int) { return plain(x); }
-};
-template <class T>
-struct Parts<T, std::void_t<decltype(T::parts)>> {
-  static constexpr int count = T::parts;
-  static Real<T> at(T x, int index) { return index == 0 ? x.value : x.slope; }
-};
-template <class T>
-constexpr int parts_of() {
-  return Parts<T>::count;
-}
-template <class T>
-Real<T> part(T x, int index) {
-  return Parts<T>::at(x, index);
-}
 
 }  // namespace detail
 

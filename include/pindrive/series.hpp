@@ -92,14 +92,13 @@ class SeriesStep {
     using std::abs;
     using std::pow;
     Real least = std::numeric_limits<Real>::infinity();
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed})
-      for (int k = 0; k < detail::parts_of<T>(); ++k) {
-        const auto size = [&](int n) { return abs(detail::part(p->c[n], k)); };
-        const Real largest = std::max({size(0), size(1), size(2)});
-        for (int n = N - 2; n <= N; ++n)
-          if (size(n) > 0 && largest > 0)
-            least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
-      }
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
+      const auto size = [&](int n) { return abs(plain(p->c[n])); };
+      const Real largest = std::max({size(0), size(1), size(2)});
+      for (int n = N - 2; n <= N; ++n)
+        if (size(n) > 0 && largest > 0)
+          least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
+    }
     return least;
   }
 
@@ -130,15 +129,14 @@ class SeriesStep {
     using std::abs;
     int needed = 1;
     Real dropped{0};
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force})
-      for (int k = 0; k < detail::parts_of<T>(); ++k) {
-        Real total{0}, tail{0};
-        for (int n = 0; n <= N; ++n) total += abs(detail::part(p->c[n], k));
-        int n = N;
-        while (n > needed && tail + abs(detail::part(p->c[n], k)) <= unit / 8 * total)
-          tail += abs(detail::part(p->c[n--], k));
-        needed = std::max(needed, n);
-      }
+    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {
+      const auto size = [&](int n) { return abs(plain(p->c[n])); };
+      Real total{0}, tail{0};
+      for (int n = 0; n <= N; ++n) total += size(n);
+      int n = N;
+      while (n > needed && tail + size(n) <= unit / 8 * total) tail += size(n--);
+      needed = std::max(needed, n);
+    }
     const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {
       for (dropped = 0; p.degree > degree; --p.degree) {
         dropped += abs(plain(p.c[p.degree]));

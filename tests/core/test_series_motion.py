@@ -55,14 +55,16 @@ def test_core_gives_the_oracle_answers(family: str) -> None:
 
 
 def test_enough_cases() -> None:
-    """Each with a branch of the plate's curve that is sloped while the load changes."""
+    """Most with a plate's curve that is sloped while its load changes."""
     assert len(CASES) == 90
     assert len(DATA["families"]) == 3
-    for case in CASES:
-        pin = case["inputs"]
-        assert any(f != g for (_, f), (_, g) in pairwise(pin["plate"]["curve"]))
-        assert any(y != z for (_, y), (_, z) in pairwise(pin["load"]))
-    assert sum(len(case["events"]) for case in CASES) > 300
+
+    def changes(rows: Rows) -> bool:
+        return any(y != z for (_, y), (_, z) in pairwise(rows))
+
+    pins = [case["inputs"] for case in CASES]
+    assert sum(changes(pin["plate"]["curve"]) and changes(pin["load"]) for pin in pins) > 75
+    assert sum(len(case["events"]) for case in CASES) > 700
 
 
 @pytest.mark.parametrize("family", DATA["families"])
@@ -125,9 +127,10 @@ def test_cut_in_two_it_is_the_same_motion() -> None:
         starts = [0.0, *(e.time for e in whole.events), case["duration"]]
         begin, end = max(pairwise(starts), key=lambda two: two[1] - two[0])
         cut = begin + 0.37 * (end - begin)
-        segment = next(s for s in whole.segments if s.end > cut)
-        slips = abs(segment.finger) == 1 and "stretch" in case
-        if segment.plate == 0 or slips:  # what sticks, or slips with full skin, is not started so
+        segment = next((s for s in whole.segments if s.end > cut), None)
+        if segment is None or segment.plate == 0:  # in a cycle; or it would have to stick at once
+            continue
+        if abs(segment.finger) == 1 and "stretch" in case:  # a given stretch is one that sticks
             continue
         rest = {name: later(pin[name], cut) for name in ("mouse_velocity", "load")}
         at = np.array([cut])

@@ -144,7 +144,9 @@ def main(count: int, seed: int, out: File, series: bool) -> None:
     cases: list[dict[str, Any]] = []
     discarded: Counter[str] = Counter()
     with multiprocessing.Pool(2) as pool:
-        for case, thrown in pool.imap(partial(make, series=series), [(i, seed) for i in range(count)]):
+        for case, thrown in pool.imap(
+            partial(make, series=series), [(i, seed) for i in range(count)]
+        ):
             cases.append(case)
             discarded += thrown
             print(f"\r{len(cases)}/{count} cases", end="", file=sys.stderr, flush=True)

@@ -136,6 +136,8 @@ int main(int argc, char** argv) {
   long long different = 0;
   for (long long number = from; number < from + count; ++number) {
     const fuzz::Case c = fuzz::Draw(seed, static_cast<std::uint64_t>(number)).next();
+    // The core before this one refused a curve under a changing load.
+    if (c.curve[0].at.size() > 1 && c.plate_load.at.size() > 1) continue;
     const fuzz::Given given(c);
     const double unit = std::sqrt(c.mass / c.stiffness);
     const double rounding = 1e-10 * unit;
