@@ -86,11 +86,10 @@ def test_laws() -> None:
         t = np.linspace(0.0, motion.duration, 2001)
         most = np.abs(motion.force("plate", t)).max()
         assert motion.transient.plate.peak_force >= most * (1 - 1e-12)
-        for quantity, values in (
-            ("position", motion.position(t)),
-            ("velocity", motion.velocity(t)),
+        for found, values in (
+            (motion.extrema("position"), motion.position(t)),
+            (motion.extrema("velocity"), motion.velocity(t)),
         ):
-            found = motion.extrema(quantity)
             size = np.abs(values).max()
             assert abs(found.value.max() - values.max()) < 1e-3 * size
             assert found.value.max() >= values.max() - 1e-13 * size
@@ -130,15 +129,13 @@ def test_cut_in_two_it_is_the_same_motion() -> None:
         segment = next((s for s in whole.segments if s.end > cut), None)
         if segment is None or segment.plate == 0:  # in a cycle; or it would have to stick at once
             continue
-        if abs(segment.finger) == 1 and "stretch" in case:  # a given stretch is one that sticks
+        if segment.finger in {-1, 1} and "stretch" in case:  # a given stretch is one that sticks
             continue
-        rest = {name: later(pin[name], cut) for name in ("mouse_velocity", "load")}
         at = np.array([cut])
-        rest |= {
-            "displacement": float(whole.position(at)[0]),
-            "velocity": float(whole.velocity(at)[0]),
-            "skin_stretch": float(whole.stretch(at)[0]) if "stretch" in case else None,
-        }
+        rest: Case = {name: later(pin[name], cut) for name in ("mouse_velocity", "load")}
+        rest["displacement"] = float(whole.position(at)[0])
+        rest["velocity"] = float(whole.velocity(at)[0])
+        rest["skin_stretch"] = float(whole.stretch(at)[0]) if "stretch" in case else None
         second = piecewise.release(
             {"inputs": pin | rest, "duration": case["duration"] - cut, "family": "cut"}
         )

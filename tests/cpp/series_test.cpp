@@ -14,6 +14,10 @@
 #include "pindrive/dual.hpp"
 #include "pindrive/series_mode.hpp"
 
+#ifndef PINDRIVE_SERIES
+#define PINDRIVE_SERIES "tests/oracle/series_cases.txt"  // from the root
+#endif
+
 namespace pd = pindrive;
 
 namespace {
@@ -290,6 +294,7 @@ void zeros() {
   int found = 0, none = 0;
   for (int i = 0; i < 20000; ++i) {
     std::vector<double> roots;
+    roots.reserve(16);
     const int count = 1 + i % 7;
     for (int k = 0; k < count; ++k) roots.push_back(0.02 + 1.6 * uniform(random));
     std::sort(roots.begin(), roots.end());
