@@ -45,7 +45,7 @@ class ClosedForm {
   const Oscillator<T>& oscillator() const { return segment_.flow.oscillator; }
   T start(const Path<T>& path) const { return path.start; }
   T at(const Path<T>& path, T tau) const { return path.at(segment_.after(tau), tau); }
-  /// An instant at which several quantities are asked for.
+  /// An instant at which several quantities are evaluated.
   struct Moment {
     T tau;
     Transition<T> moved;

@@ -62,7 +62,7 @@ class Answer:
 
 @dataclass
 class Series:
-    """Of all that is asked for, over a time h: coefficients of t/h."""
+    """Of every quantity of a mode, over a time h: coefficients of t/h."""
 
     x: Poly
     v: Poly
