@@ -231,9 +231,6 @@ pindrive_error check(const pindrive_drive& drive, const pindrive_release& releas
   if (drive.finger.curve.size() > 1 && std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED,
                 "a compliant finger must have one kinetic friction, not a curve");
-  if (drive.plate.curve.size() > 1 && release.plate_load.size() > 1)
-    return fail(PINDRIVE_UNSUPPORTED,
-                "plate_load must be constant for a plate with a friction curve");
   const double skin = release.skin_stretch, most = drive.finger.static_limit;
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
@@ -295,28 +292,28 @@ pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Number
 template <class T>
 double value_at(const pd::Motion<T>& motion, const pd::Segment<T>& segment, T tau,
                 pindrive_quantity quantity) {
-  const auto& flow = segment.flow;
-  const auto at = [&](const pd::Path<T>& path) { return path.at(flow.oscillator, tau); };
-  const pd::Path<T>& finger = segment.finger_force;
   const T skin = motion.drive().finger.stiffness;
-  switch (quantity) {
-    case PINDRIVE_POSITION:
-      return pd::result(at(flow.position));
-    case PINDRIVE_VELOCITY:
-      return pd::result(at(flow.velocity));
-    case PINDRIVE_ACCELERATION:
-      return pd::result(at(flow.acceleration()));
-    case PINDRIVE_PLATE_FORCE:
-      return pd::result(motion.friction(segment, tau).plate);
-    case PINDRIVE_FINGER_FORCE:
-      return pd::result(motion.friction(segment, tau).finger);
-    case PINDRIVE_SKIN_STRETCH:
-      return pd::result(-at(finger) / skin);
-    case PINDRIVE_SKIN_STRETCH_RATE:
-      return pd::result(-at(finger.derivative(flow.oscillator)) / skin);
-    default:
-      return none;
-  }
+  return motion.along(segment, [&](const auto& along) {
+    const auto at = [&](const auto& path) { return along.at(path, tau); };
+    switch (quantity) {
+      case PINDRIVE_POSITION:
+        return pd::result(at(along.position()));
+      case PINDRIVE_VELOCITY:
+        return pd::result(at(along.velocity()));
+      case PINDRIVE_ACCELERATION:
+        return pd::result(at(along.acceleration()));
+      case PINDRIVE_PLATE_FORCE:
+        return pd::result(motion.friction(segment, tau).plate);
+      case PINDRIVE_FINGER_FORCE:
+        return pd::result(motion.friction(segment, tau).finger);
+      case PINDRIVE_SKIN_STRETCH:
+        return pd::result(-at(along.finger_force()) / skin);
+      case PINDRIVE_SKIN_STRETCH_RATE:
+        return pd::result(-at(along.derivative(along.finger_force())) / skin);
+      default:
+        return none;
+    }
+  });
 }
 
 /// Checks what is asked of a motion alone, over [0, until].
@@ -664,7 +661,8 @@ pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
                 pd::result(s.end),
                 pd::result(s.flow.position.start),
                 pd::result(s.flow.velocity.start),
-                pd::result(s.flow.acceleration().start),
+                pd::result(of.view().along(
+                    s, [](const auto& along) { return along.start(along.acceleration()); })),
                 static_cast<pindrive_contact_state>(s.mode.plate),
                 static_cast<pindrive_contact_state>(s.mode.finger),
                 static_cast<pindrive_transition>(s.event.plate),
@@ -680,11 +678,12 @@ pindrive_error pindrive_events(const pindrive_motion* motion, double from, doubl
   if (const pindrive_error error = check_asked(motion, to, "to")) return error;
   if (!(from >= 0)) return fail(PINDRIVE_BAD_VALUE, "from must be at least 0 s, not %.17g", from);
   Filling filling(capacity, count);
-  pd::events(motion->values->view(), from, to, [&](double time, const pd::Segment<double>& s) {
+  const pd::Motion<double> view = motion->values->view();
+  pd::events(view, from, to, [&](double time, const pd::Segment<double>& s) {
     return filling.add([&](std::size_t i) {
       const double tau = s.end - s.begin;
-      events[i] = {time, s.flow.position.at(s.flow.oscillator, tau),
-                   s.flow.velocity.at(s.flow.oscillator, tau),
+      events[i] = {time, value_at(view, s, tau, PINDRIVE_POSITION),
+                   value_at(view, s, tau, PINDRIVE_VELOCITY),
                    static_cast<pindrive_transition>(s.event.plate),
                    static_cast<pindrive_transition>(s.event.finger)};
     });

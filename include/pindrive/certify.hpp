@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "pindrive/breakaway.hpp"
 #include "pindrive/motion.hpp"
@@ -52,9 +54,11 @@ class Certifier {
     }
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_ || !go_on_()) break;
-      const Stage stage = stage_of(segment);
-      breaks_away(stage);
-      const State last = walk(stage);
+      const Numbers last = motion_.along(segment, [&](const auto& along) -> Numbers {
+        const auto stage = stage_of(segment, along);
+        breaks_away(stage);
+        return walk(stage);
+      });
       if (segment.end > duration_) break;
       const Segment<T>* next = &segment + 1;
       if (next != motion_.end())
@@ -63,7 +67,7 @@ class Certifier {
         next = motion_.locate(motion_.outcome().cycle_begin, Side::right).segment;
       else
         break;
-      junction(segment, last, stage_of(*next));
+      junction(segment, last, start_of(*next));
     }
     const T energy = std::max({stored_, input_, dissipated_});
     worst(result_.energy, unaccounted_, energy);
@@ -78,88 +82,101 @@ class Certifier {
   static constexpr int walked = 2048;
 
   /// A guard, and the law that it breaks where it is negative.
+  template <class Guard>
   struct Watch {
-    PositivityBound<T> guard;
+    Guard guard;
     T Certificate<T>::* law;
     T scale;
   };
+  static PositivityBound<T> guard_of(const ClosedForm<T>& along, const Path<T>& path) {
+    return {along.oscillator(), path};
+  }
+  static Polynomial<T> guard_of(const BySeries<T>&, const Polynomial<T>& path) { return path; }
 
   /// A segment with the inputs as they were given, and its guards.
+  template <class Trajectory>
   struct Stage {
+    using Quantity = std::decay_t<decltype(std::declval<Trajectory>().position())>;
+    using Guard = decltype(guard_of(std::declval<Trajectory>(), std::declval<Quantity>()));
+
     const Segment<T>& segment;
+    const Trajectory& along;
     Line<T> plate_velocity, load;
     T span;
-    bool waves;
-    Path<T> x_rate, acceleration, finger_rate;
-    std::array<Watch, 4> watches;
+    Quantity x_rate, acceleration, finger_rate;
+    std::array<Watch<Guard>, 4> watches;
     int count{0};
   };
 
   /// The motion at an instant.
-  struct State {
-    T tau;
-    Propagator<T> moved;
-    T x, v, a, plate_force, finger_force;
+  struct Numbers {
+    T tau, x, v, a, plate_force, finger_force;
+  };
+  template <class Trajectory>
+  struct State : Numbers {
+    typename Trajectory::Moment moment;
   };
 
-  Stage stage_of(const Segment<T>& segment) const {
-    const Flow<T>& flow = segment.flow;
-    Stage stage{segment,
-                motion_.inputs().mouse_velocity.from(segment.begin),
-                motion_.inputs().plate_load.from(segment.begin),
-                std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
-                flow.position.oscillates() || flow.velocity.oscillates() ||
-                    segment.plate_force.oscillates() || segment.finger_force.oscillates(),
-                flow.position.derivative(flow.oscillator),
-                flow.acceleration(),
-                segment.finger_force.derivative(flow.oscillator),
-                {}};
+  Numbers start_of(const Segment<T>& segment) const {
+    return motion_.along(segment, [&](const auto& along) -> Numbers {
+      return state(stage_of(segment, along), T(0));
+    });
+  }
+
+  template <class Trajectory>
+  Stage<Trajectory> stage_of(const Segment<T>& segment, const Trajectory& along) const {
+    Stage<Trajectory> stage{
+        segment,
+        along,
+        motion_.inputs().mouse_velocity.from(segment.begin),
+        motion_.inputs().plate_load.from(segment.begin),
+        std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
+        along.derivative(along.position()),
+        along.acceleration(),
+        along.derivative(along.finger_force()),
+        {}};
     const Mode mode = segment.mode;
     const Line<T> at_plate{drive_.plate.static_limit * stage.load.value,
                            drive_.plate.static_limit * stage.load.rate};
     const Line<T> at_finger{drive_.finger.static_limit, T(0)};
-    const auto watch = [&](const Path<T>& path, T Certificate<T>::* law, T scale) {
-      stage.watches[stage.count++] = {{flow.oscillator, path}, law, scale};
+    const auto watch = [&](const auto& path, T Certificate<T>::* law, T scale) {
+      stage.watches[stage.count++] = {guard_of(along, path), law, scale};
     };
     const auto slipping = [&](const Contact<T>& contact, ContactState does, int index,
                               Line<T> surface) {
       if (!slips(does)) return;
       const Branch<T> branch =
           contact.branch(std::clamp(index, 0, std::max(contact.branches - 1, 0)));
-      const Path<T> of_surface = surface;
-      Path<T> above = T(sign(does)) * (flow.velocity + T(-1) * of_surface), below = T(-1) * above;
-      above.start -= branch.from;
-      below.start += branch.to;
-      watch(above, &Certificate<T>::sliding_sign, v_scale_);
-      if (branch.to < never) watch(below, &Certificate<T>::sliding_sign, v_scale_);
+      const auto speed = T(sign(does)) * (along.velocity() + T(-1) * along.line(surface));
+      watch(along.above(speed, branch.from), &Certificate<T>::sliding_sign, v_scale_);
+      if (branch.to < never)
+        watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
     };
-    const auto sticking = [&](const Path<T>& force, const Path<T>& limit) {
+    const auto sticking = [&](const auto& force, const Line<T>& most) {
+      const auto limit = along.line(most);
       watch(limit + force, &Certificate<T>::force_bound, force_scale_);
       watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
     };
     slipping(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
     slipping(drive_.finger, mode.finger, mode.finger_branch, {});
     if (mode.both_stuck()) {
-      sticking(segment.plate_force, Path<T>(at_plate) + Path<T>(at_finger));
+      sticking(along.plate_force(), {at_plate.value + at_finger.value, at_plate.rate});
     } else {
-      if (mode.plate == ContactState::stick) sticking(segment.plate_force, at_plate);
+      if (mode.plate == ContactState::stick) sticking(along.plate_force(), at_plate);
       if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
-        sticking(segment.finger_force, at_finger);
+        sticking(along.finger_force(), at_finger);
     }
     return stage;
   }
 
-  State state(const Stage& stage, T tau) const {
-    const Segment<T>& segment = stage.segment;
-    const Flow<T>& flow = segment.flow;
-    const auto moved = stage.waves && tau > 0 ? flow.oscillator.after(tau) : Propagator<T>{};
-    return {tau,
-            moved,
-            flow.position.at(moved, tau),
-            flow.velocity.at(moved, tau),
-            stage.acceleration.at(moved, tau),
-            segment.plate_force.at(moved, tau),
-            segment.finger_force.at(moved, tau)};
+  template <class Trajectory>
+  State<Trajectory> state(const Stage<Trajectory>& stage, T tau) const {
+    const Trajectory& along = stage.along;
+    const auto now = along.moment(tau);
+    return {{tau, along.at(along.position(), now), along.at(along.velocity(), now),
+             along.at(stage.acceleration, now), along.at(along.plate_force(), now),
+             along.at(along.finger_force(), now)},
+            now};
   }
 
   /// Kinetic friction at a sliding speed, from the rows of the contact's curve.
@@ -173,7 +190,7 @@ class Certifier {
 
   bool soft() const { return drive_.finger.present() && !drive_.finger.rigid(); }
 
-  T energy(const State& s) const {
+  T energy(const Numbers& s) const {
     const T skin = soft() ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness) : T(0);
     return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin;
   }
@@ -193,16 +210,18 @@ class Certifier {
   void scales(const Segment<T>& segment) {
     using std::abs;
     using std::sqrt;
-    const Stage stage = stage_of(segment);
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
-    for (const T part : {T(0), T(0.382), T(1)}) {
-      const T tau = part * stage.span;
-      const State s = state(stage, tau);
-      x_scale_ = std::max(
-          {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
-      force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                               abs(s.plate_force), abs(s.finger_force)});
-    }
+    motion_.along(segment, [&](const auto& along) {
+      const auto stage = stage_of(segment, along);
+      for (const T part : {T(0), T(0.382), T(1)}) {
+        const T tau = part * stage.span;
+        const Numbers s = state(stage, tau);
+        x_scale_ = std::max(
+            {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
+        force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                                 abs(s.plate_force), abs(s.finger_force)});
+      }
+    });
     v_scale_ = x_scale_ * omega0;
     force_scale_ = std::max(force_scale_, drive_.stiffness * x_scale_);
   }
@@ -220,49 +239,82 @@ class Certifier {
   };
 
   /// Holds the laws all along a segment; its last state.
-  State walk(const Stage& stage) {
+  Numbers walk(const Stage<ClosedForm<T>>& stage) {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     const T alpha = oscillator.alpha(), fastest = oscillator.fastest_rate();
     const T quick = exact_over / fastest;
+    const bool waves = stage.along.waves();
     Errors errors;
-    State from = state(stage, T(0));
+    auto from = state(stage, T(0));
     laws(stage, from, errors);
     T low{0};
     for (int panels = 0; low < stage.span && go_on_(); ++panels) {
       const bool grows = !oscillator.oscillates() || -alpha * low > 40;
-      const T length = !stage.waves ? stage.span : grows ? std::max(quick, low / 2) : quick;
+      const T length = !waves ? stage.span : grows ? std::max(quick, low / 2) : quick;
       const bool leaps = panels == walked && stage.span - low > (walked + 1) * length;
       T high = leaps ? stage.span - walked * length : std::min(low + length, stage.span);
       if (!(high > low)) high = stage.span;  // so late that a panel is lost in rounding
-      const State to = state(stage, high);
+      const auto to = state(stage, high);
       if (leaps)
         leap(stage, from, to);
       else
-        panel(stage, from, to, !stage.waves || (high - low) * fastest < T(1.2), errors);
+        panel(stage, from, to, !waves || (high - low) * fastest < T(1.2), errors);
       from = to;
       low = high;
     }
+    judge(stage, errors, fastest);
+    return from;
+  }
+
+  /// The same for a step of a series, of which all is smooth.
+  Numbers walk(const Stage<BySeries<T>>& stage) {
+    for (int i = 0; i < stage.count; ++i) {
+      const auto& [guard, law, scale] = stage.watches[i];
+      const T least = lowest(guard, unseen * scale);
+      if (!(least >= 0)) worst(result_.*law, least, scale);
+    }
+    Errors errors;
+    const auto from = state(stage, T(0)), to = state(stage, stage.span);
+    laws(stage, from, errors);
+    Sums sums;
+    gauss_nodes(gauss16, T(0), stage.span, [&](T tau, T weight) {
+      const auto now = state(stage, tau);
+      laws(stage, now, errors);
+      gather(stage, now, weight, sums);
+    });
+    laws(stage, to, errors);
+    balance(stage, from, to, sums);
+    judge(stage, errors, 1 / stage.span);
+    return to;
+  }
+
+  template <class Stage>
+  void judge(const Stage& stage, const Errors& errors, T fastest) {
     worst(result_.motion_law, errors.law, force_scale_);
     // An error in the rate of the position counts by how far it moves the pin in a mode.
     const T moves = x_scale_ * std::max(fastest, 1 / stage.span);
     worst(result_.kinematics, errors.velocity, std::max(v_scale_, moves));
     worst(result_.friction_law, errors.friction, force_scale_);
     worst(result_.sticking, errors.sticking, v_scale_);
-    return from;
   }
 
-  void panel(const Stage& stage, const State& from, const State& to, bool brief, Errors& errors) {
+  using Closed = Stage<ClosedForm<T>>;
+  using ClosedState = State<ClosedForm<T>>;
+
+  void panel(const Closed& stage, const ClosedState& from, const ClosedState& to, bool brief,
+             Errors& errors) {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     std::array<typename PositivityBound<T>::Flatness, 4> flatness;
     for (int i = 0; i < stage.count; ++i)
-      flatness[i] =
-          stage.watches[i].guard.flatness(oscillator, from.moved, from.tau, to.tau - from.tau);
-    State before = from;
-    const auto follow = [&](const State& now) {
+      flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moment.moved, from.tau,
+                                                    to.tau - from.tau);
+    ClosedState before = from;
+    const auto follow = [&](const ClosedState& now) {
       for (int i = 0; i < stage.count; ++i) {
         const auto& [guard, law, scale] = stage.watches[i];
-        const T lowest = guard.lowest(oscillator, guard.at(before.moved, before.tau),
-                                      guard.at(now.moved, now.tau), flatness[i], unseen * scale);
+        const T lowest =
+            guard.lowest(oscillator, guard.at(before.moment.moved, before.tau),
+                         guard.at(now.moment.moved, now.tau), flatness[i], unseen * scale);
         if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
       }
       laws(stage, now, errors);
@@ -270,7 +322,7 @@ class Certifier {
     };
     Sums sums;
     const auto visit = [&](T tau, T weight) {
-      const State now = state(stage, tau);
+      const auto now = state(stage, tau);
       follow(now);
       gather(stage, now, weight, sums);
     };
@@ -279,6 +331,12 @@ class Certifier {
     else
       gauss_nodes(gauss16, from.tau, to.tau, visit);
     follow(to);
+    balance(stage, from, to, sums);
+  }
+
+  /// Changes against the sums of their rates.
+  template <class Stage>
+  void balance(const Stage& stage, const Numbers& from, const Numbers& to, const Sums& sums) {
     worst(result_.kinematics, to.x - from.x - sums.v, x_scale_);
     worst(result_.kinematics, to.v - from.v - sums.a, v_scale_);
     if (stage.segment.mode.finger == ContactState::elastic_stick)
@@ -288,7 +346,7 @@ class Certifier {
   }
 
   /// The same over the middle of a very long oscillation, in closed form and without guards.
-  void leap(const Stage& stage, const State& from, const State& to) {
+  void leap(const Closed& stage, const ClosedState& from, const ClosedState& to) {
     const Segment<T>& segment = stage.segment;
     const Path<T>&v = segment.flow.velocity, plate = segment.plate_force;
     const Path<T> v_plate = stage.plate_velocity;
@@ -305,12 +363,14 @@ class Certifier {
     account(energy(from), energy(to), sums);
   }
 
-  void laws(const Stage& stage, const State& s, Errors& errors) {
+  template <class Trajectory>
+  void laws(const Stage<Trajectory>& stage, const State<Trajectory>& s, Errors& errors) {
     using std::abs;
+    const Trajectory& along = stage.along;
     const Mode mode = stage.segment.mode;
-    raise(errors.velocity, stage.x_rate.at(s.moved, s.tau) - s.v);
+    raise(errors.velocity, along.at(stage.x_rate, s.moment) - s.v);
     if (mode.finger == ContactState::elastic_stick)
-      raise(errors.velocity, stage.finger_rate.at(s.moved, s.tau) / drive_.finger.stiffness + s.v);
+      raise(errors.velocity, along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
                           drive_.stiffness * s.x - s.plate_force - s.finger_force);
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
@@ -324,7 +384,8 @@ class Certifier {
     contact(drive_.finger, mode.finger, s.v, s.finger_force, T(1));
   }
 
-  void gather(const Stage& stage, const State& s, T weight, Sums& sums) const {
+  template <class Stage>
+  void gather(const Stage& stage, const Numbers& s, T weight, Sums& sums) const {
     const T v_plate = stage.plate_velocity.at(s.tau);
     sums.v += weight * s.v;
     sums.a += weight * s.a;
@@ -350,8 +411,7 @@ class Certifier {
 
   // ---- from segment to segment -------------------------------------------------------------------
 
-  void junction(const Segment<T>& before, const State& left, const Stage& after) {
-    const State right = state(after, T(0));
+  void junction(const Segment<T>& before, const Numbers& left, const Numbers& right) {
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, x_scale_);
     worst(result_.continuity, left.v - right.v, v_scale_);
@@ -367,6 +427,7 @@ class Certifier {
 
   /// A contact begins to slip from rest only where it cannot stick. Segments in which nothing has time
   /// to change are one instant with the next.
+  template <class Stage>
   void breaks_away(const Stage& stage) {
     using std::abs;
     const Segment<T>& segment = stage.segment;
@@ -380,7 +441,7 @@ class Certifier {
     const bool plate = began(segment.mode.plate, plate_, plate_since_);
     const bool finger = began(segment.mode.finger, finger_, finger_since_);
     if (brief_) return;
-    const State s = state(stage, T(0));
+    const Numbers s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
     const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
     const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();

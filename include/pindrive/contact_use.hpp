@@ -38,60 +38,67 @@ class ContactMeasurement {
 
   ContactsUse<T> measure() const {
     ContactsUse<T> result;
-    const Drive<T>& drive = motion_.drive();
-    const bool skin = drive.finger.present() && !drive.finger.rigid();
-    if (skin) result.peak_stretch = result.peak_stretch_rate = T(0);
+    if (skin()) result.peak_stretch = result.peak_stretch_rate = T(0);
     motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
-      const bool whole = to >= segment.end - segment.begin;
-      const T distance = moved(segment, from, to);
-      use(result.plate, segment, segment.mode.plate, segment.plate_velocity, segment.plate_force,
-          whole && stops(segment.event.plate), from, to, distance, times);
-      use(result.finger, segment, segment.mode.finger, {}, segment.finger_force,
-          whole && stops(segment.event.finger), from, to, distance, times);
-      if (segment.mode.both_stuck())
-        for (const T tau : {from, to}) {
-          using std::abs;
-          const auto friction = motion_.friction(segment, tau);
-          result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
-          result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
-        }
-      if (!skin) return go_on_();
-      result.finger.dissipated += times * skin_loss(segment, from, to, whole);
-      const Oscillator<T>& oscillator = segment.flow.oscillator;
-      const Path<T> stretch = (-1 / drive.finger.stiffness) * segment.finger_force;
-      peak(result.peak_stretch, segment, stretch, from, to);
-      peak(result.peak_stretch_rate, segment, stretch.derivative(oscillator), from, to);
+      motion_.along(segment, [&](const auto& along) { stretch(result, along, segment, from, to, times); });
       return go_on_();
     });
     return result;
   }
 
  private:
+  bool skin() const { return motion_.drive().finger.present() && !motion_.drive().finger.rigid(); }
+
   /// How far the pin comes between two times of a segment. As a change it keeps its digits, however
   /// short it is beside x.
-  static T moved(const Segment<T>& segment, T from, T to) {
-    const Path<T>& x = segment.flow.position;
-    const T change = x.change(segment.after(to), to);
-    return from > 0 ? change - x.change(segment.after(from), from) : change;
+  template <class Trajectory>
+  static T moved(const Trajectory& along, T from, T to) {
+    const T change = along.change(along.position(), to);
+    return from > 0 ? change - along.change(along.position(), from) : change;
   }
 
-  static void peak(T& largest, const Segment<T>& segment, const Path<T>& path, T from, T to) {
+  template <class Trajectory>
+  void stretch(ContactsUse<T>& result, const Trajectory& along, const Segment<T>& segment, T from,
+               T to, T times) const {
+    const bool whole = to >= segment.end - segment.begin;
+    const T distance = moved(along, from, to);
+    use(result.plate, along, segment, segment.mode.plate, segment.plate_velocity,
+        along.plate_force(), whole && stops(segment.event.plate), from, to, distance, times);
+    use(result.finger, along, segment, segment.mode.finger, {}, along.finger_force(),
+        whole && stops(segment.event.finger), from, to, distance, times);
+    if (segment.mode.both_stuck())
+      for (const T tau : {from, to}) {
+        using std::abs;
+        const auto friction = motion_.friction(segment, tau);
+        result.plate.peak_force = std::max(result.plate.peak_force, abs(friction.plate));
+        result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
+      }
+    if (!skin()) return;
+    result.finger.dissipated += times * skin_loss(along, segment, from, to, whole);
+    const auto in_skin = (-1 / motion_.drive().finger.stiffness) * along.finger_force();
+    peak(result.peak_stretch, along, in_skin, from, to);
+    peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
+  }
+
+  template <class Trajectory, class Quantity>
+  static void peak(T& largest, const Trajectory& along, const Quantity& path, T from, T to) {
     const auto compare = [&](T, T value) {
       using std::abs;
       largest = std::max(largest, abs(value));
     };
-    if (path.constant())
-      compare(from, path.start);
+    if (along.constant(path))
+      compare(from, along.start(path));
     else
-      highest_and_lowest(segment, path, from, to, compare);
+      highest_and_lowest(along, path, from, to, compare);
   }
 
-  void use(ContactUse<T>& contact, const Segment<T>& segment, ContactState does, Line<T> surface,
-           const Path<T>& force, bool came_to_zero, T from, T to, T distance, T times) const {
+  template <class Trajectory, class Quantity>
+  void use(ContactUse<T>& contact, const Trajectory& along, const Segment<T>& segment,
+           ContactState does, Line<T> surface, const Quantity& force, bool came_to_zero, T from,
+           T to, T distance, T times) const {
     using std::abs;
     if (does == ContactState::absent) return;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    if (!segment.mode.both_stuck()) peak(contact.peak_force, segment, force, from, to);
+    if (!segment.mode.both_stuck()) peak(contact.peak_force, along, force, from, to);
     if (!slips(does)) {
       contact.time_stuck += times * (to - from);
       return;
@@ -99,27 +106,26 @@ class ContactMeasurement {
     const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
     contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
-    if (force.constant()) {
-      contact.dissipated += times * abs(force.start) * slid;
+    if (along.constant(force)) {
+      contact.dissipated += times * abs(along.start(force)) * slid;
     } else {
-      const Path<T> of_surface = surface;
-      contact.dissipated -=
-          times *
-          product_integral(oscillator, force, segment.flow.velocity + T(-1) * of_surface, from, to);
+      auto sliding = T(-1) * along.line(surface);
+      sliding = along.velocity() + sliding;
+      contact.dissipated -= times * along.product_integral(force, sliding, from, to);
     }
   }
 
   /// What a stretched skin gives to its slider, or takes from it, beside the pin's own sliding, J.
-  T skin_loss(const Segment<T>& segment, T from, T to, bool whole) const {
+  template <class Trajectory>
+  T skin_loss(const Trajectory& along, const Segment<T>& segment, T from, T to, bool whole) const {
     const Contact<T>& finger = motion_.drive().finger;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
     const auto energy = [&](T force) { return force * force / (2 * finger.stiffness); };
-    const T start = energy(segment.finger_force.at(oscillator, from));
-    const T end = energy(segment.finger_force.at(oscillator, to));
+    const T start = energy(along.at(along.finger_force(), from));
+    const T end = energy(along.at(along.finger_force(), to));
     if (slips(segment.mode.finger)) return start - end;
     if (!whole || segment.event.finger != Transition::slip) return T(0);
     using std::abs;
-    const T speed = abs(segment.flow.velocity.at(oscillator, to));
+    const T speed = abs(along.at(along.velocity(), to));
     return end - energy(finger.branch(finger.branch_of(speed)).at(speed));
   }
 

@@ -13,16 +13,6 @@
 
 namespace pindrive {
 
-/// A quantity of a motion over time.
-enum class Quantity : signed char { position, velocity, acceleration };
-
-/// A quantity along a segment.
-template <class T>
-Path<T> path_of(const Flow<T>& flow, Quantity quantity) {
-  if (quantity == Quantity::position) return flow.position;
-  return quantity == Quantity::velocity ? flow.velocity : flow.acceleration();
-}
-
 namespace detail {
 
 /// Follows the sign of one path, and the value of another, from segment to segment. What comes to zero and
@@ -30,35 +20,34 @@ namespace detail {
 template <class T>
 class SignChanges {
  public:
-  /// Calls visit(time, value, sign after) at each change along the first `span` of a segment that begins at
-  /// a time, until it returns false; returns that.
-  template <class Visitor>
-  bool follow(const Segment<T>& segment, const Path<T>& path, const Path<T>& value, T begin, T span,
+  /// Calls visit(time, value, sign after) at each change along the first `span` of a trajectory that begins
+  /// at a time, until it returns false; returns that.
+  template <class Trajectory, class Path, class Visitor>
+  bool follow(const Trajectory& along, const Path& path, const Path& value, T begin, T span,
               Visitor&& visit) {
     using std::abs;
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    const int start = side_after_start(oscillator, path);
+    const int start = along.side_after_start(path);
     if (start == 0) {
-      if (!zero_) come(begin, value.start);
+      if (!zero_) come(begin, along.start(value));
       return true;
     }
-    if (!zero_) come(begin, value.start);
+    if (!zero_) come(begin, along.start(value));
     const bool changes = side_ * start < 0;
     side_ = start;
     zero_ = false;
     bool more = !changes || visit(zero_time_, zero_value_, side_);
-    const Path<T> slope = path.derivative(oscillator);
-    const T terms = abs(path.start) + abs(path.value) + abs(path.drift) * span;
+    const Path slope = along.derivative(path);
+    const T terms = along.terms(path, span);
     if (more)
-      each_root(oscillator, path, start, span, [&](T tau) {
+      along.each_root(path, start, span, [&](T tau) {
         // What comes to zero where the segment ends, to rounding, is judged by how the next one begins.
-        const T rest = span - tau, rate = slope.at(segment.after(tau), tau);
-        const bool soon = oscillator.hurry_squared() * rest * rest <= T(at_end * at_end);
+        const T rest = span - tau, rate = along.at(slope, tau);
+        const bool soon = along.hurry_squared() * rest * rest <= T(at_end * at_end);
         if (rest <= rounding<T> * (begin + span) ||
             (soon && abs(rate) * rest <= rounding<T> * terms))
           return false;
         side_ = -side_;
-        return more = visit(begin + tau, value.at(segment.after(tau), tau), side_);
+        return more = visit(begin + tau, along.at(value, tau), side_);
       });
     return more;
   }
@@ -82,10 +71,11 @@ template <class T, class Visitor>
 void crossings(const Motion<T>& motion, Quantity quantity, T level, T until, Visitor&& visit) {
   detail::SignChanges<T> changes;
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
-    Path<T> path = path_of(segment.flow, quantity);
-    path.start -= level;
-    return changes.follow(segment, path, path, begin, span,
-                          [&](T time, T, int side) { return goes_on(visit, time, side); });
+    return motion.along(segment, [&](const auto& along) {
+      const auto path = along.above(quantity_of(along, quantity), level);
+      return changes.follow(along, path, path, begin, span,
+                            [&](T time, T, int side) { return goes_on(visit, time, side); });
+    });
   });
 }
 
@@ -111,19 +101,22 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
     return abs(value - end) > 8 * detail::rounding<T> * terms;
   };
   motion.expanded(T(0), until, [&](const Segment<T>& segment, T begin, T span) {
-    const Path<T> path = path_of(segment.flow, quantity);
-    if (!began) {
-      add(begin, path.start);
-    } else if (jumps(segment.flow, path.start)) {
-      changes.restart();
-      if (add(begin, end)) add(begin, path.start);
-    }
-    began = true;
-    if (more)
-      changes.follow(segment, path.derivative(segment.flow.oscillator), path, begin, span,
-                     [&](T at, T value, int) { return add(at, value); });
-    end = path.at(segment.after(span), span);
-    return more;
+    return motion.along(segment, [&](const auto& along) {
+      const auto path = quantity_of(along, quantity);
+      const T start = along.start(path);
+      if (!began) {
+        add(begin, start);
+      } else if (jumps(segment.flow, start)) {
+        changes.restart();
+        if (add(begin, end)) add(begin, start);
+      }
+      began = true;
+      if (more)
+        changes.follow(along, along.derivative(path), path, begin, span,
+                       [&](T at, T value, int) { return add(at, value); });
+      end = along.at(path, span);
+      return more;
+    });
   });
   if (began && more && time < until) add(until, end);
 }

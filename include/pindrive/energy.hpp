@@ -44,27 +44,27 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
   Ledger<T> ledger{};
   const auto state = [&](T t, T& kinetic, T& spring, T& in_skin) {
     const auto [segment, tau] = motion.locate(t, Side::left);
-    const Oscillator<T>& oscillator = segment->flow.oscillator;
-    const T x = segment->flow.position.at(oscillator, tau);
-    const T v = segment->flow.velocity.at(oscillator, tau);
-    const T force = segment->finger_force.at(oscillator, tau);
-    kinetic = drive.mass * v * v / 2;
-    spring = drive.stiffness * x * x / 2;
-    in_skin = skin ? force * force / (2 * drive.finger.stiffness) : T(0);
+    motion.along(*segment, [&, tau = tau](const auto& along) {
+      const T x = along.at(along.position(), tau), v = along.at(along.velocity(), tau);
+      const T force = along.at(along.finger_force(), tau);
+      kinetic = drive.mass * v * v / 2;
+      spring = drive.stiffness * x * x / 2;
+      in_skin = skin ? force * force / (2 * drive.finger.stiffness) : T(0);
+    });
   };
   state(T(0), ledger.kinetic_start, ledger.spring_start, ledger.skin_start);
   state(duration, ledger.kinetic_end, ledger.spring_end, ledger.skin_end);
 
   motion.stretches(duration, [&](const Segment<T>& segment, T from, T to, T times) {
-    const Flow<T>& flow = segment.flow;
-    const Oscillator<T>& oscillator = flow.oscillator;
-    const auto over = [&](const Path<T>& p, const Path<T>& q) {
-      return times * product_integral(oscillator, p, q, from, to);
-    };
-    ledger.damper_dissipated += drive.damping * over(flow.velocity, flow.velocity);
-    ledger.plate_work += over(segment.plate_force, segment.plate_velocity);
-    ledger.inertia_work +=
-        over(Line<T>{drive.mass * segment.plate_velocity.rate, T(0)}, flow.velocity);
+    motion.along(segment, [&](const auto& along) {
+      const auto over = [&](const auto& p, const auto& q) {
+        return times * along.product_integral(p, q, from, to);
+      };
+      const auto inertia = along.line({drive.mass * segment.plate_velocity.rate, T(0)});
+      ledger.damper_dissipated += drive.damping * over(along.velocity(), along.velocity());
+      ledger.plate_work += over(along.plate_force(), along.line(segment.plate_velocity));
+      ledger.inertia_work += over(inertia, along.velocity());
+    });
     return go_on();
   });
   ledger.plate_dissipated = numbers.plate.dissipated;

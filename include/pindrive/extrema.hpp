@@ -5,6 +5,7 @@
 
 #include "pindrive/model.hpp"
 #include "pindrive/roots.hpp"
+#include "pindrive/trajectory.hpp"
 
 namespace pindrive {
 
@@ -30,10 +31,10 @@ void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, V
 /// Calls visit(τ, value) at both ends of a stretch of a path in a segment and at each extremum between
 /// them.
 template <class T, class Visitor>
-void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visitor&& visit) {
-  visit(from, path.at(segment.after(from), from));
+void extrema(const ClosedForm<T>& along, const Path<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, along.at(path, from));
   if (path.constant() || !(to > from)) return;
-  const Oscillator<T>& oscillator = segment.flow.oscillator;
+  const Oscillator<T>& oscillator = along.oscillator();
   if (path.straight() && oscillator.oscillates()) {
     turns(oscillator, path, from, to, visit);
   } else {
@@ -46,21 +47,39 @@ void extrema(const Segment<T>& segment, const Path<T>& path, T from, T to, Visit
         return true;
       });
   }
-  visit(to, path.at(segment.after(to), to));
+  visit(to, along.at(path, to));
+}
+template <class T, class Visitor>
+void extrema(const BySeries<T>& along, const Polynomial<T>& path, T from, T to, Visitor&& visit) {
+  visit(from, path.at(from));
+  if (!(to > from)) return;
+  const Polynomial<T> slope = path.derivative();
+  const int side = along.side_after_start(slope);
+  if (side != 0)
+    along.each_root(slope, side, to, [&](T tau) {
+      if (tau > from) visit(tau, path.at(tau));
+      return true;
+    });
+  visit(to, path.at(to));
 }
 
 /// The same for a path on which only the highest and the lowest value are asked for: a vibration on
 /// a line has them within a period of an end, so what lies between need not be followed.
 template <class T, class Visitor>
-void highest_and_lowest(const Segment<T>& segment, const Path<T>& path, T from, T to,
+void highest_and_lowest(const ClosedForm<T>& along, const Path<T>& path, T from, T to,
                         Visitor&& visit) {
-  const T period = segment.flow.oscillator.period();
+  const T period = along.oscillator().period();
   if (!path.oscillates() || !(to - from > 2 * period)) {
-    extrema(segment, path, from, to, visit);
+    extrema(along, path, from, to, visit);
     return;
   }
-  extrema(segment, path, from, from + period, visit);
-  extrema(segment, path, to - period, to, visit);
+  extrema(along, path, from, from + period, visit);
+  extrema(along, path, to - period, to, visit);
+}
+template <class T, class Visitor>
+void highest_and_lowest(const BySeries<T>& along, const Polynomial<T>& path, T from, T to,
+                        Visitor&& visit) {
+  extrema(along, path, from, to, visit);
 }
 
 }  // namespace pindrive

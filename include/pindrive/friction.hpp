@@ -50,7 +50,7 @@ struct Touch {
   Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
   std::array<Option, 3> options{};
   int count{0};
-  T friction{0};  ///< how large its friction is at its sliding speed, N
+  T friction{0};  ///< how large its friction is at its sliding speed under a load of 1, N
 
   static Option slip(T sense, Bound at, int branch = 0) {
     return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
@@ -89,7 +89,7 @@ struct Touch {
       reached = Bound::none;
       options[0] = does;
       if (does.at == Bound::none) {
-        friction = range.at(speed) * load.value;
+        friction = range.at(speed);
         return;
       }
       if (does.at == Bound::upper || does.branch > 0) {
@@ -98,11 +98,11 @@ struct Touch {
                       does.sense};
         count = 2;
         // At a breakpoint it is one number, whichever branch follows.
-        friction = contact.branch(std::max(does.branch, options[1].branch)).force * load.value;
+        friction = contact.branch(std::max(does.branch, options[1].branch)).force;
         return;
       }
     }
-    friction = contact.branch(0).force * load.value;
+    friction = contact.branch(0).force;
     // A compliant contact sticks with the force that it has.
     if (sliding()) does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
     const T across = does.sense > 0 ? T(-1) : T(1);
@@ -121,14 +121,20 @@ struct Touch {
   }
 
   /// Its force on the pin, unless it sticks, N, …
-  T force(const State<T>& s) const { return elastic() ? -s.skin : -does.sense * friction; }
-  /// … and how fast it changes on a pin of this acceleration; its load changes where no slope is.
+  T force(const State<T>& s) const { return elastic() ? -s.skin : -does.sense * friction * load.value; }
+  /// … and how fast it changes on a pin of this acceleration, …
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
     if (!sliding()) return T(0);
     const T slope = branch().slope;
-    return slope != 0 ? -slope * load.value * (acceleration - surface.rate)
-                      : -does.sense * branch().force * load.rate;
+    if (slope == 0) return -does.sense * branch().force * load.rate;
+    const T by_speed = -slope * load.value * (acceleration - surface.rate);
+    return load.rate == 0 ? by_speed : by_speed - does.sense * friction * load.rate;
+  }
+  /// … and how fast that changes while the acceleration is constant.
+  T force_bend(T acceleration) const {
+    if (!sliding() || load.rate == 0) return T(0);
+    return -2 * branch().slope * load.rate * (acceleration - surface.rate);
   }
   /// How large the terms of that rate are: its slope is known to rounding only.
   T force_rate_size(T rate, T acceleration) const {
@@ -142,7 +148,7 @@ struct Touch {
     using std::abs;
     if (contact.branches == 0 || !sliding()) return contact.static_limit * load.value;
     const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
-    return (contact.static_limit + rounded) * load.value + friction;
+    return (contact.static_limit + rounded) * load.value + friction * load.value;
   }
 
   /// Its force in its mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pindrive/model.hpp"
+#include "pindrive/trajectory.hpp"
 
 namespace pindrive {
 
@@ -58,15 +59,30 @@ class Motion {
     return {low, std::min(std::max(t - low->begin, T(0)), low->end - low->begin)};
   }
 
+  /// Calls visit with the quantities of a segment, a ClosedForm or, where it has none, BySeries; what
+  /// that returns.
+  template <class Visitor>
+  auto along(const Segment<T>& segment, Visitor&& visit) const {
+    if (drive_.plate.branches == 0 || inputs_.plate_load.constant() ||
+        !(segment.end > segment.begin))
+      return visit(ClosedForm<T>(segment));
+    const Line<T> load = inputs_.plate_load.from(segment.begin);
+    const SeriesMode<T> mode(drive_, segment.mode, {segment.plate_velocity, load});
+    if (mode.has_closed_form()) return visit(ClosedForm<T>(segment));
+    return visit(BySeries<T>(drive_, segment, load));
+  }
+
   struct Friction {
     T plate, finger;
   };
   /// Friction of each contact on the pin, N. Two stuck contacts share in proportion to their static
   /// friction: how they really do is not determined.
   Friction friction(const Segment<T>& segment, T tau) const {
-    const Oscillator<T>& oscillator = segment.flow.oscillator;
-    const T plate = segment.plate_force.at(oscillator, tau);
-    if (!segment.mode.both_stuck()) return {plate, segment.finger_force.at(oscillator, tau)};
+    const Friction found = along(segment, [&](const auto& t) {
+      return Friction{t.at(t.plate_force(), tau), t.at(t.finger_force(), tau)};
+    });
+    const T plate = found.plate;
+    if (!segment.mode.both_stuck()) return found;
     const T at_plate = drive_.plate.static_limit * inputs_.plate_load.from(segment.begin).at(tau);
     const T part = at_plate > 0 ? at_plate / (at_plate + drive_.finger.static_limit) : T(0);
     return {part * plate, (1 - part) * plate};

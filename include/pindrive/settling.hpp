@@ -45,7 +45,8 @@ class Settling {
     T since{0};
     for (const Segment<T>* segment = motion_.end();
          since == 0 && segment != motion_.begin() && go_on_();)
-      since = entry(*--segment, x_end, width);
+      since = motion_.along(
+          *--segment, [&](const auto& along) { return entry(along, *segment, x_end, width); });
     return since;
   }
 
@@ -55,7 +56,23 @@ class Settling {
 
   /// When, in a segment, |x − x_end| comes within the width to stay there, followed from extremum
   /// to extremum: 0 if it is never outside, infinite if it is outside at the end.
-  T entry(const Segment<T>& segment, T x_end, T width) const {
+  T entry(const BySeries<T>& along, const Segment<T>& segment, T x_end, T width) const {
+    T since{0};
+    // Beyond the width on either side: where it comes within for good, or infinite.
+    for (const int side : {1, -1}) {
+      Polynomial<T> beyond = T(side) * along.above(along.position(), x_end + side * width);
+      int sign = along.side_after_start(beyond);
+      T last = sign > 0 ? never : T(0);
+      along.each_root(beyond, sign, segment.end - segment.begin, [&](T tau) {
+        sign = -sign;
+        last = sign > 0 ? never : segment.begin + tau;
+        return true;
+      });
+      since = std::max(since, last);
+    }
+    return since;
+  }
+  T entry(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) const {
     using std::abs;
     using std::isfinite;
     T since{0};
@@ -87,9 +104,9 @@ class Settling {
     if (abs(before) > width) since = never;
     if (isfinite(segment.end)) {
       if (may_turn(segment)) {
-        const Stretch last = last_stretch_outside(segment, x_end, width);
+        const Stretch last = last_stretch_outside(along, segment, x_end, width);
         before = x.at(segment.after(last.from), last.from) - x_end;
-        extrema(segment, x, last.from, last.to, follow_to);
+        extrema(along, x, last.from, last.to, follow_to);
       } else {
         const T to = segment.end - segment.begin;
         follow_to(to, x.at(segment.after(to), to));
@@ -122,13 +139,13 @@ class Settling {
   };
   /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
   /// long vibration is halved until the few periods are left in which it leaves the band last.
-  static Stretch last_stretch_outside(const Segment<T>& segment, T x_end, T width) {
+  static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     Stretch last{T(0), segment.end - segment.begin};
     const auto strays = [&](T from, T to) {
       bool outside = false;
-      highest_and_lowest(segment, x, from, to, [&](T, T position) {
+      highest_and_lowest(along, x, from, to, [&](T, T position) {
         using std::abs;
         outside = outside || abs(position - x_end) > width;
       });

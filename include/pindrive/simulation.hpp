@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/return.hpp"
+#include "pindrive/series_segment.hpp"
 
 namespace pindrive::detail {
 
@@ -134,7 +136,7 @@ class Simulation {
     const T rate = other.force_rate(state_.v, a);
     const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
     size = abs(spring) + abs(damper) + other.force_rate_size(rate, a);
-    return {force, T(0), T(0), spring + damper - rate, stiffness * a};
+    return {force, T(0), T(0), spring + damper - rate, stiffness * a - other.force_bend(a)};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -202,14 +204,18 @@ class Simulation {
 
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
-    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.begin = time_;
     segment.end = never;
     segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
     segment.event = {};
-    segment.flow = flow(plate, finger);
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
+    if constexpr (!Surface::plain)
+      if (series_.begin(segment, drive_, plate_, finger_, state_, acceleration_,
+                        continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
+        return;
+    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
+    segment.flow = flow(plate, finger);
     segment.plate_force = plate_.stuck() ? stick_force_ : plate.along(segment.flow);
     segment.finger_force =
         finger_.stuck() && !plate_.stuck() ? stick_force_ : finger.along(segment.flow);
@@ -251,7 +257,10 @@ class Simulation {
   /// The time to the earliest event. What happens at the row of an input to rounding happens there; so does
   /// what a stick force does where a speed comes to a bound: the force may turn there, as the speed is zero.
   T earliest(const Flow<T>& flow) {
-    const T row = row_ - time_, serves = flow.oscillator.serves_for();
+    const T row = row_ - time_;
+    if constexpr (!Surface::plain)
+      if (series_.used()) return series_.earliest(time_, row);
+    const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     const T first = guards_.earliest(flow.oscillator, time_, limit);
     if (row < never && row - first <= rounding<T> * (time_ + row)) return row;
@@ -262,17 +271,8 @@ class Simulation {
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
   void jump(Segment<T>& segment, T tau) {
-    using std::abs;
-    const Path<T>& position = segment.flow.position;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-    const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-    state_.x = position.at(moved, tau);
-    state_.v = segment.flow.velocity.at(moved, tau);
-    state_.x_size =
-        std::max(std::max(state_.x_size, abs(state_.x)),
-                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
-    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    move(segment, tau);
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
@@ -282,8 +282,8 @@ class Simulation {
     segment.end = time_;
     limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
-    for (const Guard<T>& guard : guards_) {
-      if (!(guard.zero <= coincident)) continue;
+    each_guard([&](const auto& guard) {
+      if (!(guard.zero <= coincident)) return;
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
@@ -296,9 +296,32 @@ class Simulation {
       } else if (!row) {
         limit_ = guard.side;
       }
-    }
+    });
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+  }
+
+  /// Brings the state of the pin on by τ.
+  void move(Segment<T>& segment, T tau) {
+    using std::abs;
+    if constexpr (!Surface::plain)
+      if (series_.used()) return series_.move(state_, finger_.elastic(), tau);
+    const Path<T>& position = segment.flow.position;
+    const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
+    const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+    state_.x = position.at(moved, tau);
+    state_.v = segment.flow.velocity.at(moved, tau);
+    state_.x_size =
+        std::max(std::max(state_.x_size, abs(state_.x)),
+                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
+    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+  }
+
+  template <class Visitor>
+  void each_guard(Visitor&& visit) const {
+    if constexpr (!Surface::plain)
+      if (series_.used()) return series_.each_guard(visit);
+    for (const Guard<T>& guard : guards_) visit(guard);
   }
 
   /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
@@ -327,6 +350,7 @@ class Simulation {
   bool tangential_{false};
   Path<T> stick_force_{};  ///< … or what carries it
   Guards<T> guards_;
+  std::conditional_t<Surface::plain, NoSeries, SeriesSegment<T>> series_;
 
   Return<T> returns_;
   Outcome<T> outcome_{};

@@ -94,8 +94,9 @@ class Measurement {
   static int sign_of(T value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
   /// The direction in which the pin moves just after a segment begins; 0 at rest.
-  static int heading(const Flow<T>& flow) {
-    return side_after_start(flow.oscillator, flow.velocity);
+  int heading(const Segment<T>& segment) const {
+    return motion_.along(
+        segment, [](const auto& along) { return along.side_after_start(along.velocity()); });
   }
 
   /// Calls visit(time, position) at each turning point in order until it returns false.
@@ -105,20 +106,21 @@ class Measurement {
     bool more = true;
     for (const Segment<T>& segment : motion_) {
       if (segment.begin > duration_ || !go_on_()) return;
-      const Flow<T>& flow = segment.flow;
-      const int start = heading(flow);
+      const int start = heading(segment);
       if (direction * start < 0 || (direction != 0 && start == 0))
-        if (!visit(segment.begin, flow.position.start)) return;
+        if (!visit(segment.begin, segment.flow.position.start)) return;
       direction = start;
       if (direction == 0 || !may_turn(segment)) continue;
       // A velocity of zero that ends the segment belongs to the next one.
       const Segment<T>* following = &segment + 1;
       const bool turns_at_end = following != motion_.end() && following->flow.velocity.start == 0;
       const T inside = turns_at_end ? length(segment) * (1 - T(1e-9)) : length(segment);
-      each_root(flow.oscillator, flow.velocity, direction, inside, [&](T tau) {
-        direction = -direction;
-        more = visit(segment.begin + tau, flow.position.at(flow.oscillator, tau));
-        return more;
+      motion_.along(segment, [&](const auto& along) {
+        along.each_root(along.velocity(), direction, inside, [&](T tau) {
+          direction = -direction;
+          more = visit(segment.begin + tau, along.at(along.position(), tau));
+          return more;
+        });
       });
       if (!more) return;
     }
@@ -131,7 +133,7 @@ class Measurement {
     int outward = sign_of(inputs.displacement);
     if (outward == 0) outward = sign_of(inputs.velocity);
     if (outward == 0) outward = sign_of(inputs.mouse_velocity.from(T(0)).value);
-    if (heading(motion_.begin()->flow) != outward) {
+    if (heading(*motion_.begin()) != outward) {
       result.peak_time = T(0);
       result.peak_displacement = inputs.displacement;
     }
@@ -171,7 +173,9 @@ class Measurement {
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
       };
-      highest_and_lowest(segment, segment.flow.velocity, from, to, compare);
+      motion_.along(segment, [&](const auto& along) {
+        highest_and_lowest(along, along.velocity(), from, to, compare);
+      });
     }
   }
 
@@ -209,11 +213,13 @@ class Measurement {
     for (const Segment<T>& segment : motion_) {
       if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
-      highest_and_lowest(segment, segment.flow.position, T(0), segment.end - segment.begin,
-                         [&](T, T position) {
-                           low = std::min(low, position);
-                           high = std::max(high, position);
-                         });
+      motion_.along(segment, [&](const auto& along) {
+        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin,
+                           [&](T, T position) {
+                             low = std::min(low, position);
+                             high = std::max(high, position);
+                           });
+      });
     }
     result.end_position = (low + high) / 2;
     result.amplitude = (high - low) / 2;

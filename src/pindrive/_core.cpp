@@ -96,11 +96,14 @@ Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool rig
   }));
 }
 
-/// The position, velocity or acceleration of a flow.
-template <class T, auto path>
+/// The position, velocity or acceleration.
+template <class T, pd::Quantity quantity>
 Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
-  return at_times(motion, times, right, [](const pd::Segment<T>& segment, T tau) {
-    return std::invoke(path, segment.flow).at(segment.flow.oscillator, tau);
+  const auto view = motion.view();
+  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
+    return view.along(segment, [&](const auto& along) {
+      return along.at(pd::quantity_of(along, quantity), tau);
+    });
   });
 }
 
@@ -116,10 +119,12 @@ Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right)
 template <class T, bool rate>
 Array<double> stretch(const CoreMotion<T>& motion, const Times& times, bool right) {
   const T stiffness = motion.drive().finger.stiffness;
-  return at_times(motion, times, right, [=](const pd::Segment<T>& segment, T tau) {
-    const auto& oscillator = segment.flow.oscillator;
-    const auto& force = segment.finger_force;
-    return -(rate ? force.derivative(oscillator) : force).at(oscillator, tau) / stiffness;
+  const auto view = motion.view();
+  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
+    return view.along(segment, [&](const auto& along) {
+      const auto& force = along.finger_force();
+      return -(rate ? along.at(along.derivative(force), tau) : along.at(force, tau)) / stiffness;
+    });
   });
 }
 
@@ -142,8 +147,10 @@ nb::dict segments(const CoreMotion<T>& motion) {
       column<double>(motion, [](const Segment& s) { return result(s.flow.position.start); });
   table["velocity"] =
       column<double>(motion, [](const Segment& s) { return result(s.flow.velocity.start); });
-  table["acceleration"] =
-      column<double>(motion, [](const Segment& s) { return result(s.flow.acceleration().start); });
+  table["acceleration"] = column<double>(motion, [view = motion.view()](const Segment& s) {
+    return result(
+        view.along(s, [](const auto& along) { return along.start(along.acceleration()); }));
+  });
   table["plate"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.plate; });
   table["finger"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.finger; });
   table["plate_branch"] =
@@ -286,12 +293,11 @@ nb::dict certificate(const CoreMotion<double>& motion, double duration) {
 /// What a motion and its derivatives have in common.
 template <class T>
 nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* meaning) {
-  using Flow = pd::Flow<T>;
   using Friction = typename pd::Motion<T>::Friction;
   return nb::class_<CoreMotion<T>>(m, name, meaning)
-      .def("position", &evaluate<T, &Flow::position>, "times"_a, "right"_a)
-      .def("velocity", &evaluate<T, &Flow::velocity>, "times"_a, "right"_a)
-      .def("acceleration", &evaluate<T, &Flow::acceleration>, "times"_a, "right"_a)
+      .def("position", &evaluate<T, pd::Quantity::position>, "times"_a, "right"_a)
+      .def("velocity", &evaluate<T, pd::Quantity::velocity>, "times"_a, "right"_a)
+      .def("acceleration", &evaluate<T, pd::Quantity::acceleration>, "times"_a, "right"_a)
       .def("plate_force", &force<T, &Friction::plate>, "times"_a, "right"_a)
       .def("finger_force", &force<T, &Friction::finger>, "times"_a, "right"_a)
       .def("stretch", &stretch<T, false>, "times"_a, "right"_a)

@@ -307,15 +307,23 @@ def test_rows_are_set_as_toml() -> None:
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ('plate_load=[["0 s", 1], ["1 s", 2]]', "motion.plate_load must be constant for a plate"),
         ('finger.curve=[["0 m/s", "20 mN"], ["1 m/s", "0 N"]]', "finger.curve must be one row"),
         ("skin_stretch=31 µm", "motion.skin_stretch must be at most static friction over"),
         ('mouse_velocity=[["0 s", "1 V"]]', "motion.mouse_velocity[0] value must be in m/s"),
     ],
 )
-def test_what_no_closed_form_solves_is_refused(override: str, problem: str) -> None:
+def test_a_given_value_that_does_not_fit_is_refused(override: str, problem: str) -> None:
     key = override.partition("=")[0]
     assert refused("simulate", SKIN, "--set", override).startswith(f"--set {key}: {problem}")
+
+
+def test_a_curved_plate_under_a_load_that_changes() -> None:
+    """It has no closed form, and is followed as exactly."""
+    load = '--set=plate_load=[["0 ms", 1], ["40 ms", 2]]'
+    result = run("simulate", SKIN, load, "--json=loaded")
+    assert result.exit_code == 0
+    document = json.loads(Path("loaded").read_text(encoding="utf-8"))
+    assert document["certificate"]["worst"] < 1e-12
 
 
 # ---- a quick start -------------------------------------------------------------------------------

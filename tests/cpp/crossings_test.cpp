@@ -31,8 +31,10 @@ struct Course {
   double until;
 
   double at(double time, pd::Side side) const {
-    const auto [segment, tau] = motion.locate(time, side);
-    return pd::path_of(segment->flow, quantity).at(segment->flow.oscillator, tau);
+    const auto place = motion.locate(time, side);
+    return motion.along(*place.segment, [&](const auto& along) {
+      return along.at(pd::quantity_of(along, quantity), place.tau);
+    });
   }
   /// The rounding of a value: of the forces behind an acceleration and of the time at which it is.
   double rounding(double largest) const {
@@ -139,7 +141,7 @@ void judge(const pd::Motion<double>& motion, double until, const std::string& na
 int main() {
   std::vector<pd::Segment<double>> segments;
   int judged = 0, cycles = 0;
-  for (std::uint64_t number = 0; number < cases(3000); ++number) {
+  for (std::uint64_t number = 0; number < cases(5000); ++number) {
     const fuzz::Case c = fuzz::Draw(5, number).next();
     const fuzz::Given given(c);
     const auto outcome = fuzz::run(given, segments);

@@ -59,7 +59,7 @@ class Draw {
     c.mouse_velocity =
         profile([&] { return chance(0.3) ? 0 : tidy(speed_ * uniform(-1, 1)); }, last);
     c.plate_load = {{0}, {1}};
-    if (c.curve[0].at.size() == 1 && chance(0.4))
+    if (chance(0.4))
       c.plate_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.3);
     c.displacement = chance(0.1) ? 0 : tidy(length * uniform(-1, 1));
     c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]

@@ -1,7 +1,9 @@
-"""Draw random piecewise-linear cases and answer them with thirty digits: COUNT SEED OUT.
+"""Draw random piecewise-linear cases and answer them with thirty digits: COUNT SEED OUT [series].
 
     cd tests && python -m oracle.make_piecewise 280 311 oracle/piecewise_cases.json.gz
+    cd tests && python -m oracle.make_piecewise 90 312 oracle/series_motions.json.gz series
 
+The last word takes the families whose modes have no closed form instead.
 As `make_cases`, for everything that `mp_piecewise` can do. A draw is discarded, and counted, also
 where it is too sensitive to be asked to 1e-10: where inputs off by a relative 1e-12 give answers
 off by more than 1e-8.
@@ -16,13 +18,14 @@ import multiprocessing
 import random
 import sys
 from collections import Counter
+from functools import partial
 from pathlib import Path as File
 from typing import Any
 
 from oracle import mp_piecewise
 from oracle.make_cases import MARGIN, frequency, load, short
 from oracle.mp_oracle import DIGITS
-from oracle.piecewise_draws import FAMILIES, SHOWS, Inputs, period
+from oracle.piecewise_draws import FAMILIES, SERIES_FAMILIES, SHOWS, Inputs, period
 
 __all__ = ["FAMILIES", "load", "make"]
 
@@ -118,14 +121,15 @@ def sample_times(rng: random.Random, kinks: list[float], duration: float) -> lis
     return sorted(times)
 
 
-def make(job: tuple[int, int]) -> tuple[dict[str, Any], Counter[str]]:
+def make(job: tuple[int, int], series: bool = False) -> tuple[dict[str, Any], Counter[str]]:
     """Case number `index`: draws until one is kept."""
     index, seed = job
-    family = list(FAMILIES)[index % len(FAMILIES)]
+    families = SERIES_FAMILIES if series else FAMILIES
+    family = list(families)[index % len(families)]
     discarded: Counter[str] = Counter()
     for attempt in range(1000):
         rng = random.Random(f"{seed}-{index}-{attempt}")
-        pin = FAMILIES[family](rng)
+        pin = families[family](rng)
         try:
             case, reason = answer(family, pin, rng)
         except Exception as error:
@@ -136,17 +140,19 @@ def make(job: tuple[int, int]) -> tuple[dict[str, Any], Counter[str]]:
     raise RuntimeError(f"{family}: 1000 draws discarded: {dict(discarded)}")
 
 
-def main(count: int, seed: int, out: File) -> None:
+def main(count: int, seed: int, out: File, series: bool) -> None:
     cases: list[dict[str, Any]] = []
     discarded: Counter[str] = Counter()
     with multiprocessing.Pool(2) as pool:
-        for case, thrown in pool.imap(make, [(index, seed) for index in range(count)]):
+        for case, thrown in pool.imap(
+            partial(make, series=series), [(i, seed) for i in range(count)]
+        ):
             cases.append(case)
             discarded += thrown
             print(f"\r{len(cases)}/{count} cases", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     header = {
-        "made_by": f"oracle.make_piecewise {count} {seed}",
+        "made_by": f"oracle.make_piecewise {count} {seed}" + " series" * series,
         "digits": DIGITS,
         "discarded": dict(sorted(discarded.items())),
         "families": dict(sorted(Counter(case["family"] for case in cases).items())),
@@ -158,6 +164,6 @@ def main(count: int, seed: int, out: File) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if sys.argv[4:] not in ([], ["series"]) or len(sys.argv) < 4:
         sys.exit(__doc__)
-    main(int(sys.argv[1]), int(sys.argv[2]), File(sys.argv[3]))
+    main(int(sys.argv[1]), int(sys.argv[2]), File(sys.argv[3]), series=len(sys.argv) > 4)

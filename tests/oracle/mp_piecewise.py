@@ -228,12 +228,13 @@ class _Simulation:
         if self.side.get("finger") == 0 and "finger" in self.rigid:
             return [self.x]
         push = [self.m * mouse[1] / h, mpf(0)]
-        damping, stiffness = self.b, self.k
+        damping, stiffness, growing = self.b, self.k, mpf(0)
         if plate := self.law.get("plate"):
             band = self.band["plate"]
-            slope = load[0] * plate.slopes[band]
-            damping += slope
-            push = plus(push, times(slope, mouse))
+            slope = plate.slopes[band]
+            damping += load[0] * slope
+            growing = load[1] * slope
+            push = plus(push, times(slope, by_line(load, mouse)))
             push = plus(push, times(-self.side["plate"] * plate.at_zero(band), load))
         if finger := self.law.get("finger"):
             if self.side["finger"] == 0:
@@ -243,10 +244,12 @@ class _Simulation:
                 damping += finger.slopes[self.band["finger"]]
                 push = plus(push, [-self.side["finger"] * finger.at_zero(self.band["finger"])])
         drag, spring, unit = damping * h / self.m, stiffness * h * h / self.m, h * h / self.m
+        ramp = growing * h / self.m
         x = [self.x, self.v * h]
         for n in range(TERMS - 2):
-            force = push[n] * unit if n < 2 else mpf(0)
-            x.append((force - drag * (n + 1) * x[n + 1] - spring * x[n]) / ((n + 2) * (n + 1)))
+            force = push[n] * unit if n < len(push) else mpf(0)
+            drags = drag * (n + 1) * x[n + 1] + ramp * n * x[n]
+            x.append((force - drags - spring * x[n]) / ((n + 2) * (n + 1)))
         return x
 
     def friction(self, x: Poly, h: mpf) -> dict[str, Poly]:

@@ -367,6 +367,31 @@ FAMILIES: dict[str, Callable[[random.Random], Inputs]] = {
 }
 
 
+def curved_plate_under_load(rng: random.Random) -> Inputs:
+    pin = rng.choice([load_falls, load_rises, load_comes_and_goes, load_and_mouse])(rng)
+    bend(rng, pin, "plate", rng.choice(["rising", "falling", "stribeck"]))
+    return pin
+
+
+def curves_and_load(rng: random.Random) -> Inputs:
+    pin = curved_plate_under_load(rng)
+    bend(rng, pin, "finger", rng.choice(["rising", "falling", "stribeck"]))
+    return pin
+
+
+def curved_plate_under_load_and_skin(rng: random.Random) -> Inputs:
+    pin = all_together(rng)
+    bend(rng, pin, "plate", rng.choice(["rising", "stribeck"]))
+    return pin
+
+
+# What the plate does in these has no closed form.
+SERIES_FAMILIES: dict[str, Callable[[random.Random], Inputs]] = {
+    family.__name__: family
+    for family in (curved_plate_under_load, curves_and_load, curved_plate_under_load_and_skin)
+}
+
+
 def has(contact: str, kind: str) -> Callable[[Event], bool]:
     return lambda event: (event.contact, event.kind) == (contact, kind)
 

@@ -30,7 +30,6 @@ from pindrive.motion.drive import (
     Profile,
     check_curve,
     check_increasing,
-    check_load,
     check_skin,
     check_slopes,
     check_static,
@@ -215,12 +214,9 @@ def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
 
 def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together between the tables, each of which fits within itself."""
-    plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
-    load, stretch = over_time(values["motion.plate_load"]), values["motion.skin_stretch"]
+    finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
     problems = Problems(place)
     problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
-    load_keys = ("motion.plate_load", "plate.curve")
-    problems.check(check_load, plate, load, keys=load_keys)
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")
         problems.check(check_stretch, stretch, finger, keys=stretch_keys)

@@ -173,17 +173,10 @@ def check_continuous(velocity: Profile) -> None:
 
 
 def check_skin(finger: Contact) -> None:
-    """Refuse a friction curve at a compliant finger: its stretch would not be piecewise linear."""
+    """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
         raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
-
-
-def check_load(plate: Contact, load: float | Profile) -> None:
-    """Refuse a load that changes at a plate with a friction curve: not piecewise linear either."""
-    if plate.curved and isinstance(load, Profile) and load.changes:
-        required = "constant for a plate with a friction curve"
-        raise ValueError(refusal("plate_load", required, "a profile that changes"))
 
 
 def check_stretch(stretch: float, finger: Contact) -> None:

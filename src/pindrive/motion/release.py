@@ -10,7 +10,6 @@ from pindrive.motion.drive import (
     Drive,
     Profile,
     check_continuous,
-    check_load,
     check_skin,
     check_stretch,
 )
@@ -100,7 +99,7 @@ def check_fits(drive: Drive, release: Release) -> None:
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a friction curve at a compliant finger, or at a plate whose load changes.
+            hold; a friction curve at a compliant finger.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -109,7 +108,6 @@ def check_fits(drive: Drive, release: Release) -> None:
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
     check_skin(drive.finger)
-    check_load(drive.plate, release.plate_load)
     if release.skin_stretch is not None:
         check_stretch(release.skin_stretch, drive.finger)
 

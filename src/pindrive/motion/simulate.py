@@ -49,8 +49,7 @@ def simulate(
 
     Raises:
         ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
-            skin cannot hold; a friction curve at a compliant finger, or at a plate whose load
-            changes: neither is piecewise linear.
+            skin cannot hold; a friction curve at a compliant finger.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.

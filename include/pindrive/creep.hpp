@@ -1,0 +1,249 @@
+/// Creep: the motion of a pin that a plate takes along while it also slides across beneath it.
+///
+/// With a velocity w across, friction λ(F u/ρ + S u), ρ = √(u² + w²), pulls the velocity within a time
+/// ε = m ρ³/(λ F w²) onto the one that carries the force needed. Where ε is short, a Taylor series of the
+/// whole motion would have steps of a few ε. The motion without its fast part is the solution of
+///
+///     λ (F t/√(1 + t²) + S w t) + m a + b v + k x + f y = force,   v = x' = v_p + w t,   a = v',
+///
+/// which is the reduced creep equation where a is left out, and holds through w = 0, where v = v_p. Here a
+/// comes from the series of the round before, and what is still missing is bounded.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/series.hpp"
+
+namespace pindrive {
+
+/// A step of creep, if the pin creeps: if its velocity and the series are those of creep to rounding.
+template <class T>
+class CreepFlow : public SeriesStep<T> {
+ public:
+  using typename SeriesStep<T>::Real;
+  using SeriesStep<T>::position, SeriesStep<T>::velocity, SeriesStep<T>::skin, SeriesStep<T>::speed;
+  using SeriesStep<T>::plate_force, SeriesStep<T>::span;
+  using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
+  using SeriesStep<T>::speed_bound;
+
+  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero.
+  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+    using std::abs;
+    if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
+      e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
+    if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
+    Real farthest = plain(limit);
+    if (e.across.rate < 0)
+      farthest = std::min(farthest, -plain(e.across.value) / plain(e.across.rate));
+    const Real step = std::min(trial_step(e, start), farthest);
+    if (!(step > 0)) return;
+    this->begin(step);
+    for (int round = 0; round < most_rounds && balance(e, start); ++round) {
+      expand(e, start, step);
+      const Real part = std::min(this->suggested_part(), farthest / step);
+      const bool converged = converged_;
+      converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
+      if (!converged) continue;  // the derivatives of a dual number converge one round later
+      this->rescale(part);
+      holds_ = bound(e, plain(e.mass) * change(part)) && starts_from(start);
+      break;
+    }
+    if (holds_) this->trim();
+  }
+
+  /// Whether the pin creeps, so that the step may be taken.
+  bool holds() const { return holds_; }
+
+ private:
+  using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
+  using typename SeriesStep<T>::Sums;
+  static constexpr int most_rounds = 16;
+  /// Where the force needed is so near the most that friction gives, the layer is never thin.
+  static constexpr Real steepest = 50;
+
+  Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
+
+  /// Finds t at the start: whether friction can balance the force needed.
+  bool balance(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+    using std::abs;
+    using std::sqrt;
+    const T needed =
+        (e.force.value - e.mass * acceleration_[0] - e.damping * e.plate_velocity.value -
+         e.stiffness * s.x - e.skin_factor * s.skin) /
+        e.load.value;
+    const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
+    T t = t_;
+    for (int tries = 0; tries < 60; ++tries) {
+      const T root = sqrt(1 + t * t);
+      const T slope = e.plate_force / (root * root * root) + linear;
+      const T move = (needed - e.plate_force * t / root - linear * t) / slope;
+      const T most = 1 + abs(t);  // a longer move overshoots where friction is nearly all used
+      t += move > most ? most : move < -most ? -most : move;
+      if (!(abs(t) < steepest)) return false;
+      if (abs(move) <= unit * abs(t)) break;
+    }
+    t_ = t;
+    return true;
+  }
+
+  /// About the time in which creep changes.
+  Real trial_step(const SeriesEquation<T>& e, const SeriesState<T>& s) const {
+    using std::abs;
+    using std::sqrt;
+    const Real t = plain(t_), load = plain(e.load.value), F = plain(e.plate_force);
+    const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
+    const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
+    const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +
+                         abs(plain(e.skin_factor)) * (abs(plain(e.skin_gain) * v) +
+                                                      abs(plain(e.skin_decay) * plain(s.skin)));
+    const Real left = load * F * (1 - abs(t) / root);
+    return 1 /
+           (changes / left + k * w * root * root * root / (load * F) + abs(plain(e.skin_decay)) +
+            abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
+  }
+
+  /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a.
+  void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    using std::sqrt;
+    auto &x = position.c, &v = velocity.c, &y = skin.c;
+    auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
+    const auto line = [&](const Line<T>& given, int n) {
+      return n == 0 ? given.value : n == 1 ? given.rate * step : T(0);
+    };
+    const T w = e.across.value, w_rate = e.across.rate * step, load_rate = e.load.rate * step;
+    x[0] = start.x;
+    y[0] = start.skin;
+    T before{0};  // F d + S u, of the order before
+    for (int n = 0;; ++n) {
+      // What does not depend on t of this order; then t, and what it adds.
+      T square{0}, product{0};
+      for (int i = 1; i < n; ++i) {
+        square += t[i] * t[n - i] - s[i] * s[n - i];
+        product += s[i] * d[n - i];
+      }
+      t[n] = n == 0 ? t_ : T(0);
+      s[n] = n == 0 ? sqrt(1 + t_ * t_) : square / (2 * s[0]);
+      d[n] = n == 0 ? t_ / s[0] : -(product + s[n] * d[0]) / s[0];
+      T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
+      T friction = e.plate_force * d[n] + e.plate_slope * u;
+      const T v_p = line(e.plate_velocity, n);
+      const T others =
+          e.stiffness * x[n] + e.skin_factor * y[n] - line(e.force, n) + e.mass * acceleration_[n];
+      if (n > 0 && n < N) {
+        const T free = (1 - d[0] * d[0]) / s[0];
+        const T slope = e.plate_force * free + e.plate_slope * w;
+        const T missing =
+            e.load.value * friction + load_rate * before + e.damping * (v_p + u) + others;
+        t[n] = -missing / (e.load.value * slope + e.damping * w);
+        s[n] += d[0] * t[n];
+        d[n] += free * t[n];
+        u += w * t[n];
+        friction += slope * t[n];
+      }
+      v[n] = v_p + u;
+      speed.c[n] = w * s[n] + (n > 0 ? w_rate * s[n - 1] : T(0));
+      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
+      before = friction;
+      x[n + 1] = T(step) / T(n + 1) * v[n];
+      if (n == N) break;
+      y[n + 1] = T(step) / T(n + 1) * (e.skin_gain * v[n] - e.skin_decay * y[n]);
+    }
+    for (int n = 0; n < N; ++n) {
+      const T a = T(n + 1) / T(step) * v[n + 1];
+      changes_[n] = std::abs(plain(a - acceleration_[n]));
+      acceleration_[n] = a;
+    }
+  }
+
+  /// How much the last round has changed a, over a part of the step.
+  Real change(Real part) const {
+    Real sum{0}, power{1};
+    for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
+    return sum;
+  }
+  static Real size(const Polynomial<T>& p, Real part) {
+    Real sum{0}, power{1};
+    for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
+    return sum;
+  }
+
+  /// Bounds what the series leave out, as SeriesFlow does, with friction that takes energy by the slope γ
+  /// of its force: d(2 E²)/dτ <= 2 (missed e_v − γ e_v²) <= missed²/(2 γ). Whether it is rounding.
+  bool bound(const SeriesEquation<T>& e, Real missed) {
+    using std::abs;
+    using std::exp;
+    using std::max;
+    using std::sqrt;
+    const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
+    const Real f = plain(e.skin_factor), g = plain(e.skin_gain), decay = plain(e.skin_decay);
+    const Real F = plain(e.plate_force), S = plain(e.plate_slope);
+    const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
+    const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
+    const Real most_load = max(load, load + load_change), most_w = max(w, w_end);
+    const Real least_load = std::min(load, load + load_change);
+    const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
+    const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
+    const Sums v = sums_of(velocity.c);
+    const Real root = beyond(s, s) + beyond(t, t), direction = beyond(s, d) + d[0] * root;
+    missed += abs(b) * last(velocity, N) + k * (last(position, N) + last(position, N + 1)) +
+              abs(f) * last(skin, N) + most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
+              abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
+    const Real missed_skin = abs(g) * last(velocity, N) + abs(decay) * last(skin, N);
+    const Real steep = sqrt(1 + t[0] * t[0]), ratio = g != 0 ? f / g : Real(0);
+    const Real gamma = b + least_load * F / (most_w * steep * steep * steep) +
+                       std::min(S * load, S * (load + load_change));
+    if (!(gamma > 0)) return false;
+    const Real growth = exp(max(Real(0), -decay) * h);
+    const Real error =  // sqrt(2 E²)
+        growth * (missed * sqrt(h / (2 * gamma)) + h * sqrt(ratio) * missed_skin);
+    v_bound = error / sqrt(m);
+    x_bound = std::min(h * v_bound, error / sqrt(k));
+    skin_bound = ratio > 0 ? error / sqrt(ratio) : Real(0);
+    speed_bound = v_bound + most_w * root;
+    return v_bound <= rounding_of(v) && (ratio == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
+  }
+  static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
+
+  /// Whether the pin has the velocity of creep: what it is off by, less than rounding, fades at once.
+  bool starts_from(const SeriesState<T>& start) const {
+    using std::abs;
+    return abs(plain(start.v - velocity.c[0])) <= 16 * unit * sums_of(velocity.c)[0];
+  }
+
+  T t_{0};                               // at the start
+  std::array<T, N + 1> acceleration_{};  // a, in the time σ, m/s²
+  std::array<Real, N> changes_{};        // of it in the last round
+  bool converged_{false}, holds_{false};
+};
+
+/// The step to take from a state: of creep where the pin creeps, else the Taylor series.
+template <class T>
+SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
+  using std::abs;
+  using std::hypot;
+  using std::pow;
+  if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
+  const auto u = plain(start.v) - plain(e.plate_velocity.value), w = plain(e.across.value);
+  const auto speed = hypot(u, w);
+  SeriesStep<T> step;
+  if (speed > 0) {
+    step = SeriesFlow<T>(e, start, limit);
+    // Its terms tell how much of a fast part is left: at the reach of a series of which only rounding
+    // is, creep is tried.
+    const auto layer = plain(e.mass) * speed * speed * speed /
+                       (plain(e.load.value) * plain(e.plate_force) * w * w);
+    using Real = detail::Real<T>;
+    constexpr Real unit = std::numeric_limits<Real>::epsilon();
+    const Real noise = unit * (1 + (abs(plain(start.v)) + abs(u)) / speed);
+    const Real reach = noise < Real(1e-3) ? 6 * pow(unit / noise, Real(1) / series_order) : Real(0);
+    if (!(step.span() > reach * layer) || !(step.span() < plain(limit))) return step;
+  }
+  const CreepFlow<T> creep(e, start, limit);
+  if (creep.holds() && !(speed > 0 && creep.span() < step.span())) return creep;
+  return step;
+}
+
+}  // namespace pindrive

@@ -1,0 +1,178 @@
+/// A mode of a drive as its series have it: which modes have no closed form, their equation, what ends
+/// them, and when.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pindrive/creep.hpp"
+#include "pindrive/friction.hpp"
+#include "pindrive/model.hpp"
+
+namespace pindrive {
+
+/// The inputs from an instant on, until one has its next row.
+template <class T>
+struct InputLines {
+  Line<T> plate_velocity;          ///< v_p, m/s
+  Line<T> plate_load{T(1), T(0)};  ///< >= 0
+  Line<T> across_velocity{};       ///< w, m/s
+
+  bool oblique() const { return across_velocity.value != 0 || across_velocity.rate != 0; }
+  InputLines from(T tau) const {
+    const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
+    return {later(plate_velocity), later(plate_load), later(across_velocity)};
+  }
+};
+
+/// One mode of a drive between two events, as long as the inputs stay on their lines. Under an oblique
+/// hand the plate slips in every mode, whichever sign is given.
+template <class T>
+class SeriesMode {
+ public:
+  SeriesMode(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs)
+      : drive_(drive), mode_(mode), inputs_(inputs) {}
+
+  /// Whether flow.hpp has it in closed form, so that no series is needed.
+  bool has_closed_form() const {
+    const bool slides = slips(mode_.plate);
+    const bool bilinear = slides && inputs_.plate_load.rate != 0 && plate().slope != 0;
+    return !bilinear && !(slides && inputs_.oblique()) && !sheared();
+  }
+
+  /// Its equation. The state of the skin is its force, or the sliding velocity where the finger slips on
+  /// a sloped branch of its curve.
+  SeriesEquation<T> equation() const {
+    SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
+    e.force.value = drive_.mass * inputs_.plate_velocity.rate;
+    e.plate_velocity = inputs_.plate_velocity;
+    e.load = inputs_.plate_load;
+    if (slips(mode_.plate)) {
+      e.plate_force = at_rest(plate());
+      e.plate_slope = plate().slope;
+    }
+    e.side = sign(mode_.plate) < 0 ? -1 : 1;
+    if (slips(mode_.plate) && inputs_.oblique()) {
+      e.side = 0;
+      e.across = inputs_.across_velocity;
+    }
+    if (slips(mode_.finger)) e.force.value -= along(mode_.finger, at_rest(finger()));
+    if (sheared()) {
+      e.skin_factor = finger().slope;
+      e.skin_gain = e.skin_decay = drive_.finger.stiffness / finger().slope;
+    } else if (mode_.finger == ContactState::elastic_stick) {
+      e.skin_factor = T(1);
+      e.skin_gain = drive_.finger.stiffness;
+    } else if (slips(mode_.finger)) {
+      e.damping += finger().slope;
+    }
+    e.held = mode_.stuck();
+    if (mode_.plate == ContactState::stick) e.surface = inputs_.plate_velocity;
+    return e;
+  }
+
+  /// The force that stretches the skin, from the state of the skin; 0 of a rigid finger, N.
+  T skin_force(T skin) const {
+    if (drive_.finger.rigid()) return T(0);
+    if (sheared()) return along(mode_.finger, at_rest(finger())) + finger().slope * skin;
+    return slips(mode_.finger) ? along(mode_.finger, finger().force) : skin;
+  }
+
+  /// Where the mode begins exactly: the bounds of the speeds, and the side of a stick force at its limit.
+  struct Reached {
+    detail::Bound plate{detail::Bound::none}, finger{detail::Bound::none};
+    int limit{0};
+  };
+
+  /// What stays positive while the mode lasts, along a step of it: the distance of a sliding speed from a
+  /// bound, or (none) what a stick could carry beyond what it does, to a side.
+  struct Guard {
+    Polynomial<T> path;
+    detail::Bound bound;
+    bool plate;
+    int side;
+    T zero;  ///< where it is first negative, s; infinity without
+  };
+
+  class Guards {
+   public:
+    const Guard* begin() const { return list_.data(); }
+    const Guard* end() const { return list_.data() + count_; }
+    /// The earliest; null without one.
+    const Guard* earliest() const {
+      const Guard* first = nullptr;
+      for (const Guard& guard : *this)
+        if (guard.zero < (first == nullptr ? never : first->zero)) first = &guard;
+      return first;
+    }
+
+   private:
+    friend class SeriesMode;
+    void add(Polynomial<T> path, bool at_zero, detail::Bound bound, bool plate, int side) {
+      if (at_zero) path.c[0] = T(0);
+      const T zero = first_zero(path);
+      list_[count_++] = {path, bound, plate, side, zero};
+    }
+    std::array<Guard, 6> list_;
+    int count_{0};
+  };
+  Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
+    Guards found;
+    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
+    if (slips(mode_.finger))
+      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
+              at.finger, false, false);
+    if (mode_.finger == ContactState::elastic_stick) {
+      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
+      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
+    }
+    if (mode_.stuck()) {
+      Line<T> most{T(0), T(0)};
+      if (mode_.plate == ContactState::stick)
+        most = {drive_.plate.static_limit * inputs_.plate_load.value,
+                drive_.plate.static_limit * inputs_.plate_load.rate};
+      if (mode_.finger == ContactState::stick) most.value += drive_.finger.static_limit;
+      within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
+    }
+    return found;
+  }
+
+ private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
+  Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
+  static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
+
+  /// Whether the finger's skin lags behind its slider: it slips on a sloped branch.
+  bool sheared() const {
+    return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0;
+  }
+
+  void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,
+               bool is_plate, bool oblique) const {
+    using detail::Bound;
+    Polynomial<T> above = speed, below = T(-1) * speed;
+    above += Line<T>{-range.from, T(0)};
+    below += Line<T>{range.to, T(0)};
+    if (!oblique || range.from > 0)  // else the plate slides across at least
+      found.add(above, at == Bound::lower, Bound::lower, is_plate, 0);
+    if (range.to < never) found.add(below, at == Bound::upper, Bound::upper, is_plate, 0);
+  }
+  void within(Guards& found, const Polynomial<T>& force, Line<T> most, int at_limit,
+              bool is_plate) const {
+    for (const int side : {1, -1}) {
+      Polynomial<T> left = T(-side) * force;
+      left += most;
+      found.add(left, side == at_limit, detail::Bound::none, is_plate, side);
+    }
+  }
+
+  const Drive<T>& drive_;
+  Mode mode_;
+  InputLines<T> inputs_;
+};
+
+}  // namespace pindrive
