@@ -40,7 +40,8 @@ class ContactMeasurement {
     ContactsUse<T> result;
     if (skin()) result.peak_stretch = result.peak_stretch_rate = T(0);
     motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
-      motion_.along(segment, [&](const auto& along) { stretch(result, along, segment, from, to, times); });
+      motion_.along(segment,
+                    [&](const auto& along) { stretch(result, along, segment, from, to, times); });
       return go_on_();
     });
     return result;

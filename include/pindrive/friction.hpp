@@ -121,7 +121,9 @@ struct Touch {
   }
 
   /// Its force on the pin, unless it sticks, N, …
-  T force(const State<T>& s) const { return elastic() ? -s.skin : -does.sense * friction * load.value; }
+  T force(const State<T>& s) const {
+    return elastic() ? -s.skin : -does.sense * friction * load.value;
+  }
   /// … and how fast it changes on a pin of this acceleration, …
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
@@ -133,7 +135,7 @@ struct Touch {
   }
   /// … and how fast that changes while the acceleration is constant.
   T force_bend(T acceleration) const {
-    if (!sliding() || load.rate == 0) return T(0);
+    if (Surface::plain || !sliding() || load.rate == 0) return T(0);
     return -2 * branch().slope * load.rate * (acceleration - surface.rate);
   }
   /// How large the terms of that rate are: its slope is known to rounding only.

@@ -42,6 +42,10 @@ class Guards {
     if (path.oscillates() || path.drift < 0 || path.curvature < 0)
       list_[count_++] = {path, bound, plate, side};
   }
+  /// Adds one of which only the zero is needed, s.
+  void add_known(T zero, Bound bound, bool plate, int side) {
+    list_[count_++] = {{}, bound, plate, side, zero};
+  }
   /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
   template <class Surface>
   void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pindrive/friction.hpp"
+#include "pindrive/guards.hpp"
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/series_mode.hpp"
@@ -19,15 +20,20 @@ class SeriesSegment {
 
   /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
   /// whether it has none. Its flow says where it begins. `at_limit` is the side on which a stick force is at
-  /// its limit, `span` the time until the next row, s.
+  /// its limit, `span` the time until the next row, s. Its guards come with their zeros.
   template <class Side>
-  bool begin(Segment<T>& segment, const Drive<T>& drive, const Side& plate, const Side& finger,
-             const State<T>& state, T acceleration, int at_limit, T span) {
+  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
+             const Side& finger, const State<T>& state, T acceleration, int at_limit, T span) {
     const SeriesMode<T> mode(drive, segment.mode, {plate.surface, plate.load});
     used_ = !mode.has_closed_form();
     if (!used_) return false;
     step_ = SeriesFlow<T>(mode.equation(), {state.x, state.v, state.skin, acceleration}, span);
-    guards_ = mode.guards(step_, {plate.does.at, finger.does.at, at_limit});
+    guards.clear();
+    first_ = step_.span();
+    for (const auto& guard : mode.guards(step_, {plate.does.at, finger.does.at, at_limit})) {
+      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side);
+      first_ = std::min(first_, guard.zero);
+    }
     const T stick = step_.stick_force.c[0];
     const T of_plate = plate.stuck() ? stick : plate.force(state);
     const T of_finger = !finger.stuck() ? finger.force(state) : plate.stuck() ? T(0) : stick;
@@ -40,14 +46,13 @@ class SeriesSegment {
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
   /// of a time happens there.
   T earliest(T since, T row) const {
-    const auto* guard = guards_.earliest();
-    const T first = guard != nullptr ? guard->zero : T(step_.span());
-    return row - first <= rounding<T> * (since + row) ? row : first;
+    return row - first_ <= rounding<T> * (since + row) ? row : first_;
   }
 
-  /// Brings the state on by τ.
+  /// Brings the state on by τ, unless the mode has a closed form.
   void move(State<T>& state, bool elastic, T tau) const {
     using std::abs;
+    if (!used_) return;
     const SeriesState<T> now = step_.at(tau);
     state.x = now.x;
     state.v = now.v;
@@ -55,18 +60,15 @@ class SeriesSegment {
     if (elastic) state.skin = now.skin;
   }
 
-  template <class Visitor>
-  void each_guard(Visitor&& visit) const {
-    for (const auto& guard : guards_) visit(guard);
-  }
-
  private:
   bool used_{false};
   SeriesStep<T> step_;
-  typename SeriesMode<T>::Guards guards_;
+  T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
 
 /// Contacts without friction curves have closed forms only.
-struct NoSeries {};
+struct NoSeries {
+  static constexpr bool used() { return false; }
+};
 
 }  // namespace pindrive::detail

@@ -139,7 +139,8 @@ class Settling {
   };
   /// What need be followed of a finite segment: until |x − x_end| is within the width for good. A
   /// long vibration is halved until the few periods are left in which it leaves the band last.
-  static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment, T x_end, T width) {
+  static Stretch last_stretch_outside(const ClosedForm<T>& along, const Segment<T>& segment,
+                                      T x_end, T width) {
     const Oscillator<T>& oscillator = segment.flow.oscillator;
     const Path<T>& x = segment.flow.position;
     Stretch last{T(0), segment.end - segment.begin};

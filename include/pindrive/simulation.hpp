@@ -204,6 +204,7 @@ class Simulation {
 
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
+    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.begin = time_;
     segment.end = never;
     segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
@@ -211,10 +212,9 @@ class Simulation {
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
     if constexpr (!Surface::plain)
-      if (series_.begin(segment, drive_, plate_, finger_, state_, acceleration_,
+      if (series_.begin(segment, guards_, drive_, plate_, finger_, state_, acceleration_,
                         continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
         return;
-    const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.flow = flow(plate, finger);
     segment.plate_force = plate_.stuck() ? stick_force_ : plate.along(segment.flow);
     segment.finger_force =
@@ -271,8 +271,20 @@ class Simulation {
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.
   void jump(Segment<T>& segment, T tau) {
+    using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    move(segment, tau);
+    if constexpr (!Surface::plain) series_.move(state_, finger_.elastic(), tau);
+    if (!series_.used()) {
+      const Path<T>& position = segment.flow.position;
+      const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
+      const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+      state_.x = position.at(moved, tau);
+      state_.v = segment.flow.velocity.at(moved, tau);
+      state_.x_size =
+          std::max(std::max(state_.x_size, abs(state_.x)),
+                   std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
+      if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+    }
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
@@ -282,8 +294,8 @@ class Simulation {
     segment.end = time_;
     limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
-    each_guard([&](const auto& guard) {
-      if (!(guard.zero <= coincident)) return;
+    for (const Guard<T>& guard : guards_) {
+      if (!(guard.zero <= coincident)) continue;
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
@@ -296,32 +308,9 @@ class Simulation {
       } else if (!row) {
         limit_ = guard.side;
       }
-    });
+    }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
-  }
-
-  /// Brings the state of the pin on by τ.
-  void move(Segment<T>& segment, T tau) {
-    using std::abs;
-    if constexpr (!Surface::plain)
-      if (series_.used()) return series_.move(state_, finger_.elastic(), tau);
-    const Path<T>& position = segment.flow.position;
-    const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-    const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-    state_.x = position.at(moved, tau);
-    state_.v = segment.flow.velocity.at(moved, tau);
-    state_.x_size =
-        std::max(std::max(state_.x_size, abs(state_.x)),
-                 std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
-    if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
-  }
-
-  template <class Visitor>
-  void each_guard(Visitor&& visit) const {
-    if constexpr (!Surface::plain)
-      if (series_.used()) return series_.each_guard(visit);
-    for (const Guard<T>& guard : guards_) visit(guard);
   }
 
   /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.

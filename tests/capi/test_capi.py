@@ -148,9 +148,10 @@ def drawn(random: np.random.Generator) -> Case:
         for contact in ("plate", "finger"):
             kinetic = n[f"{contact}.kinetic"]
             case.curves[contact] = [(0.0, kinetic), (0.05, kinetic * fall), (0.3, kinetic)]
+    times = [0.0, between(0.01, 0.1), between(0.11, 0.3)]
     if kind == 3:
-        times = [0.0, between(0.01, 0.1), between(0.11, 0.3)]
         case.inputs["mouse_velocity"] = [(t, between(-0.3, 0.3)) for t in times]
+    if kind == 3 or (kind == 2 and random.integers(2)):
         case.inputs["plate_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
