@@ -11,19 +11,16 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isinf, isnan
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from pindrive.fitting.recording import CHANNELS, Recording
 from pindrive.motion.drive import Contact, Drive, Profile
-from pindrive.motion.release import Release, core_numbers
+from pindrive.motion.release import CoreNumbers, Release, core_numbers
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.table import QUANTITIES, check, refusal
-
-if TYPE_CHECKING:
-    from pindrive.motion.results import CoreNumbers
 
 DRIVE: Final = {
     "mass": "mass",
