@@ -23,7 +23,7 @@ from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.table import QUANTITIES, check, refusal
 
 if TYPE_CHECKING:
-    from pindrive.motion.results import CoreNumbers
+    from pindrive.motion.release import CoreNumbers
 
 DRIVE: Final = {
     "mass": "mass",
