@@ -28,7 +28,7 @@ COUNT, SEED = 500, 1501
 SPAN, RATE = 0.2, 10e3
 ALWAYS = ("stiffness", "damping", "displacement")
 SOMETIMES = (
-    *("plate_kinetic", "finger_kinetic", "finger_static", "velocity"),
+    *("plate.kinetic", "finger.kinetic", "finger.static", "velocity"),
     *("time_offset", "position_offset"),
 )
 
@@ -75,9 +75,9 @@ def draw(rng: np.random.Generator) -> Case:
         "stiffness": stiffness,
         "damping": damping,
         "displacement": x0,
-        "plate_kinetic": plate,
-        "finger_kinetic": finger,
-        "finger_static": static,
+        "plate.kinetic": plate,
+        "finger.kinetic": finger,
+        "finger.static": static,
         "velocity": motion.release.initial_velocity,
         "time_offset": rng.uniform(0.001, 0.01) if "time_offset" in free else 0.0,
         "position_offset": 0.1 * x0 * rng.normal() if "position_offset" in free else 0.0,
@@ -98,15 +98,15 @@ def draw(rng: np.random.Generator) -> Case:
     def off(name: str) -> float:
         return truth[name] * (decades(0.5, 2.0) if name in free else 1.0)
 
-    start_finger = off("finger_kinetic")
-    if "finger_static" not in free:  # it keeps its ratio to kinetic friction
-        truth["finger_static"] *= start_finger / truth["finger_kinetic"]
+    start_finger = off("finger.kinetic")
+    if "finger.static" not in free:  # it keeps its ratio to kinetic friction
+        truth["finger.static"] *= start_finger / truth["finger.kinetic"]
     start = Drive(
         mass=mass,
         stiffness=off("stiffness"),
         damping=off("damping"),
-        plate=Contact(off("plate_kinetic")),
-        finger=Contact(start_finger, max(off("finger_static"), start_finger)),
+        plate=Contact(off("plate.kinetic")),
+        finger=Contact(start_finger, max(off("finger.static"), start_finger)),
     )
     start_release = Release(v, off("displacement"), off("velocity") if rest else None)
     return Case(recording, {name: truth[name] for name in free}, start, start_release)

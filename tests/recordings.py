@@ -18,7 +18,7 @@ START = Drive(
     mass=0.006, stiffness=100.0, damping=0.40, plate=Contact(0.020), finger=Contact(0.005)
 )
 RELEASE = Release(mouse_velocity=0.12, displacement=2.2e-3)
-FREE = ["stiffness", "damping", "plate_kinetic", "finger_kinetic", "displacement"]
+FREE = ["stiffness", "damping", "plate.kinetic", "finger.kinetic", "displacement"]
 
 
 def recorded(

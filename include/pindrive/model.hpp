@@ -113,7 +113,7 @@ struct Drive {
 template <class T>
 class Profile {
  public:
-  Profile(T constant) noexcept : constant_(constant) {}  // NOLINT: a number is a profile
+  constexpr Profile(T constant) noexcept : constant_(constant) {}  // NOLINT: a number is a profile
   /// count >= 1 rows, times strictly increasing.
   Profile(const T* times, const T* values, std::size_t count)
       : constant_(values[0]), times_(times), values_(values), count_(count) {}

@@ -262,11 +262,10 @@ class Simulation {
       if (series_.used()) return series_.earliest(time_, row);
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
-    const T first = guards_.earliest(flow.oscillator, time_, limit);
-    if (row < never && row - first <= rounding<T> * (time_ + row)) return row;
-    const T next = std::min(guards_.speed_after_force(first), limit == row ? row : never);
-    const bool there = next < never && guards_.stay_until(flow.oscillator, next, state_.roundoff);
-    return there ? next : first;
+    T end = guards_.earliest(flow.oscillator, time_, limit);
+    const T next = std::min(guards_.speed_after_force(end), limit == row ? row : never);
+    if (next < never && guards_.stay_until(flow.oscillator, next, state_.roundoff)) end = next;
+    return row < never && row - end <= rounding<T> * (time_ + row) ? row : end;
   }
 
   /// Ends a segment and brings the state to the event: what has come to zero is exactly there.

@@ -23,7 +23,7 @@ PROGRAM: Any = typer.main.get_command(app)
 NAMES: list[str] = PROGRAM.list_commands(None)
 SHARED = {
     *("__init__", "app", "errors", "help", "options", "progress"),
-    *("scan_tables", "study_tables", "tables"),
+    *("fit_tables", "scan_tables", "study_tables", "tables"),
 }
 HEADINGS = (
     *("Arguments", "What is written", "What is on the page", "What is asked"),

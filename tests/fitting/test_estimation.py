@@ -17,8 +17,8 @@ from recordings import FREE, RELEASE, START, TRUTH, recorded
 TRUE = {
     "stiffness": TRUTH.stiffness,
     "damping": TRUTH.damping,
-    "plate_kinetic": TRUTH.plate.kinetic,
-    "finger_kinetic": TRUTH.finger.kinetic,
+    "plate.kinetic": TRUTH.plate.kinetic,
+    "finger.kinetic": TRUTH.finger.kinetic,
     "displacement": RELEASE.displacement,
 }
 
@@ -126,7 +126,7 @@ def test_a_free_motion_tells_ratios_alone() -> None:
         mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.0), finger=Contact(0.011)
     )
     given = recorded(drive, Release(0.0, 2e-3, 0.0), rate=2e3)
-    free = ["mass", "stiffness", "damping", "finger_kinetic", "displacement"]
+    free = ["mass", "stiffness", "damping", "finger.kinetic", "displacement"]
     done = fit(given, drive, Release(0.0, 2e-3, 0.0), free=free)
     hidden = free[:-1]
     for name in hidden:
@@ -139,7 +139,7 @@ def test_a_free_motion_tells_ratios_alone() -> None:
     assert done.status is Status.incomplete
     ratio = done["stiffness"].value / done["mass"].value
     assert ratio == pytest.approx(drive.stiffness / drive.mass, rel=0.01)
-    force = done["finger_kinetic"].value / done["stiffness"].value
+    force = done["finger.kinetic"].value / done["stiffness"].value
     assert force == pytest.approx(0.011 / 160.0, rel=0.1)
 
 
@@ -150,14 +150,14 @@ def test_static_friction_that_only_lets_the_pin_stick_is_open_on_one_side() -> N
     )
     release = Release(0.0, 2e-3, 0.0)
     given = recorded(drive, release, rate=2e3)
-    done = fit(given, drive, release, free=["stiffness", "finger_kinetic", "finger_static"])
-    static = done["finger_static"]
+    done = fit(given, drive, release, free=["stiffness", "finger.kinetic", "finger.static"])
+    static = done["finger.static"]
     assert static.identifiability is Identifiability.practically_not
     assert static.interval[0] == -inf and isfinite(static.interval[1])
     assert static.interval[1] > 0.011
     assert static.explanation == "open below, to 0 mN"
-    assert any("finger_static is practically not" in line for line in done.warnings)
-    assert done["finger_kinetic"].identifiability is Identifiability.identifiable
+    assert any("finger.static is practically not" in line for line in done.warnings)
+    assert done["finger.kinetic"].identifiability is Identifiability.identifiable
 
 
 def test_noise_that_was_given_is_kept_and_exceeded_noise_is_told() -> None:
@@ -196,13 +196,13 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
         ),
         (
             0.1,
-            ["damping", "finger_stiffness"],
+            ["damping", "finger.stiffness"],
             {},
-            "leave out what changes no sample, got finger_st",
+            "leave out what changes no sample, got finger.st",
         ),
         (0.1, FREE, {"confidence": 1.0}, "confidence must be between 0 and 1, got 1.0"),
         (0.1, FREE, {"seed": -1}, "seed must be a whole number of at least 0"),
-        (0.1, ["plate_static[2]"], {}, "free must be one of mass"),
+        (0.1, ["plate.static[2]"], {}, "free must be one of mass"),
     ],
 )
 def test_bad_input_is_one_line(

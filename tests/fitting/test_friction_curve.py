@@ -106,7 +106,7 @@ def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
     )
     given = recorded(drive, release, rate=2e3)
     found = fit(
-        given, start, release, free=["stiffness", "damping", "finger_kinetic"], profiles=False
+        given, start, release, free=["stiffness", "damping", "finger.kinetic"], profiles=False
     )
     assert found.residuals[0].structured
     compared = compare_models(found)
@@ -115,7 +115,7 @@ def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
     assert compared.weights["compliant skin"] > 0.999
     assert compared.excess["Coulomb"] > 10.0
     assert compared.to_dataset().parameters.values.tolist() == [3, 4, 6, 4]
-    skin = compared.fits["compliant skin"]["finger_stiffness"]
+    skin = compared.fits["compliant skin"]["finger.stiffness"]
     assert abs(skin.value - 700.0) < 4.0 * skin.standard_error
     panels = compared.plot().axes
     for axes, law in zip(panels, LAWS, strict=True):

@@ -36,17 +36,17 @@ CASES = {
         CURVED,
         RELEASE,
         [
-            *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
+            *("mass", "stiffness", "damping", "plate.kinetic", "finger.kinetic"),
             *("finger_curve[1].force", "displacement", "mouse_velocity", "time_offset"),
         ],
     ),
-    "skin": (SKIN, RELEASE, ["mass", "finger.stiffness", "finger_kinetic", "plate_load"]),
+    "skin": (SKIN, RELEASE, ["mass", "finger.stiffness", "finger.kinetic", "plate_load"]),
     "cycle": (
         SKIN,
         CYCLE,
         [
             *("mass", "stiffness", "damping", "plate_load[1].time", "mouse_velocity[1].value"),
-            *("plate_static", "time_offset", "force_offset"),
+            *("plate.static", "time_offset", "force_offset"),
         ],
     ),
 }
@@ -109,11 +109,11 @@ def test_what_is_not_fitted_keeps_its_ratio_to_kinetic_friction() -> None:
     finger = Contact(0.010, 0.015, [(0.0, 0.010), (0.1, 0.008)])
     drive = Drive(mass=0.006, stiffness=160.0, damping=0.19, plate=Contact(0.03), finger=finger)
     recording = recorded(drive, RELEASE, rate=1e3)
-    found = parameters(["finger_kinetic"], {}, drive, [RELEASE], [recording])
+    found = parameters(["finger.kinetic"], {}, drive, [RELEASE], [recording])
     made = Model(found, drive, [RELEASE], [recording]).assembly.drive(np.array([0.020]))
     assert made.finger == Contact(0.020, 0.030, [(0.0, 0.020), (0.1, 0.016)])
     assert made.plate == drive.plate and made.mass == drive.mass
-    free = ["finger_kinetic", "finger_static"]
+    free = ["finger.kinetic", "finger.static"]
     found = parameters(free, {}, drive, [RELEASE], [recording])
     both = Model(found, drive, [RELEASE], [recording]).assembly
     assert both.drive(np.array([0.020, 0.026])).finger.static == 0.026

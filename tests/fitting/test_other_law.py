@@ -22,7 +22,7 @@ def test_a_smooth_friction_law_of_sundials_is_fitted_and_its_misfit_is_told() ->
     start = Drive(
         mass=MASS, stiffness=120.0, damping=0.3, plate=Contact(0.0), finger=Contact(0.005)
     )
-    free = ["stiffness", "damping", "finger_kinetic", "displacement"]
+    free = ["stiffness", "damping", "finger.kinetic", "displacement"]
     found = fit(Recording(t, position=noisy), start, Release(0.0, 2e-3, 0.0), free=free)
     (left,) = found.residuals
     assert left.structured and left.ljung_box < 1e-6 and left.correlation > 0.9

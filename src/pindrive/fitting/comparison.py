@@ -103,11 +103,11 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
     model = found.model
     bounds = {p.key: (p.lower, p.upper) for p in model.parameters}
     others = [p.key for p in model.parameters if not _of_friction(p.key)]
-    friction = [p.key for p in model.parameters if p.key.endswith("_kinetic")]
+    friction = [p.key for p in model.parameters if p.key.endswith(".kinetic")]
     contacts = [
         name
         for name in ("plate", "finger")
-        if f"{name}_kinetic" in friction or not getattr(found.drive, name).frictionless
+        if f"{name}.kinetic" in friction or not getattr(found.drive, name).frictionless
     ]
     fits, refused = {}, {}
     for law in LAWS:
@@ -136,7 +136,7 @@ def compare_models(found: Fit, seed: int = 1) -> ModelComparison:
 
 
 def _of_friction(key: str) -> bool:
-    return key.startswith(("plate_", "finger_")) and key != "plate_load"
+    return key.startswith(("plate.", "plate_curve", "finger.", "finger_curve"))
 
 
 def _changed(
@@ -145,10 +145,10 @@ def _changed(
     """A drive of another law and what is free of it; None, and why it cannot be."""
     drive = found.drive
     made = {name: _coulomb(getattr(drive, name)) for name in ("plate", "finger")}
-    keys = friction or [f"{name}_kinetic" for name in contacts]
+    keys = friction or [f"{name}.kinetic" for name in contacts]
     match law:
         case "static friction":
-            keys = [*keys, *(f"{name}_static" for name in contacts)]
+            keys = [*keys, *(f"{name}.static" for name in contacts)]
             for name in contacts:
                 kinetic = made[name].kinetic
                 made[name] = Contact(kinetic, 1.2 * kinetic)
@@ -164,7 +164,7 @@ def _changed(
             for name in curved:
                 kinetic = made[name].kinetic
                 made[name] = Contact(curve=[(float(u), kinetic) for u in speeds])
-                keys = [key for key in keys if key != f"{name}_kinetic"]
+                keys = [key for key in keys if key != f"{name}.kinetic"]
                 keys += [f"{name}_curve[{i}].force" for i in range(len(speeds))]
         case "compliant skin":
             if "finger" not in contacts:
@@ -174,7 +174,7 @@ def _changed(
             made["finger"] = Contact(
                 kinetic, stiffness=10.0 * drive.stiffness if skin == inf else skin
             )
-            keys = [*keys, "finger_stiffness"]
+            keys = [*keys, "finger.stiffness"]
     return (
         Drive(mass=drive.mass, stiffness=drive.stiffness, damping=drive.damping, **made),
         keys,

@@ -61,8 +61,8 @@ def fit(
         recordings: what was measured; each may have its own mouse velocity and plate load.
         drive: what is known of the drive, and where the search starts.
         release: the initial state and the inputs, one for all recordings or one for each.
-        free: what is fitted: of the drive `mass`, `stiffness`, `damping`, `plate_kinetic`,
-            `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness`, rows such as
+        free: what is fitted: of the drive `mass`, `stiffness`, `damping`, `plate.kinetic`,
+            `plate.static`, `finger.kinetic`, `finger.static`, `finger.stiffness`, rows such as
             `finger_curve[1].force`; of each release `displacement`, `velocity`, `skin_stretch`,
             `mouse_velocity`, `plate_load`, rows such as `plate_load[1].time`; of each recording
             `time_offset`, its time of the release, and `position_offset` or that of another

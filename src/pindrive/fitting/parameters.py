@@ -22,17 +22,11 @@ from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.table import QUANTITIES, check, refusal
 
-DRIVE: Final = {
-    "mass": "mass",
-    "stiffness": "stiffness",
-    "damping": "damping",
-    "plate_kinetic": "plate.kinetic",
-    "plate_static": "plate.static",
-    "finger_kinetic": "finger.kinetic",
-    "finger_static": "finger.static",
-    "finger_stiffness": "finger.stiffness",
-}
-"""Parameters of the drive, which all recordings share, and their quantities."""
+DRIVE: Final = (
+    *("mass", "stiffness", "damping", "plate.kinetic", "plate.static"),
+    *("finger.kinetic", "finger.static", "finger.stiffness"),
+)
+"""Parameters of the drive, which all recordings share."""
 START: Final = ("displacement", "velocity", "skin_stretch", "mouse_velocity", "plate_load")
 """Parameters of each release."""
 SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
@@ -123,13 +117,12 @@ def parameters(
 def key_of(name: str) -> str:
     """The key of a device file in which a parameter stands."""
     match = ROW.fullmatch(name)
-    return QUANTITIES[_TABLES[match[1]] if match else DRIVE.get(name, name)].key
+    return QUANTITIES[_TABLES[match[1]] if match else name].key
 
 
 def _key(given: str) -> str:
-    """The one name of a parameter: keys of device files are names too."""
+    """The name of a parameter: a key of a device file, with its section or without."""
     name = str(given).strip().removeprefix("motion.").removeprefix("drive.")
-    name = re.sub(r"^(plate|finger)\.", r"\1_", name)
     if name in DRIVE or name in START or name in SENSOR or ROW.fullmatch(name):
         return name
     known = f"one of {', '.join((*DRIVE, *START, *SENSOR))}, or a row like finger_curve[1].force"
@@ -137,8 +130,6 @@ def _key(given: str) -> str:
 
 
 def _quantity(key: str) -> Quantity | None:
-    if key in DRIVE:
-        return QUANTITIES[DRIVE[key]]
     if match := ROW.fullmatch(key):
         table = QUANTITIES[_TABLES[match[1]]]
         across, _ = COLUMNS[table.rows_of]
@@ -202,7 +193,7 @@ def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release)
             required = f"a row of it, like {key}[0].value, where it changes over time"
             raise ValueError(refusal("free", required, key))
         return float(rows[0][1])
-    if key == "finger_stiffness" and isinf(numbers[4][2]):
+    if key == "finger.stiffness" and isinf(numbers[4][2]):
         start = QUANTITIES["finger.stiffness"].example
         assert start
         return start
@@ -210,11 +201,11 @@ def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release)
         "mass": numbers[0],
         "stiffness": numbers[1],
         "damping": numbers[2],
-        "plate_kinetic": numbers[3][0],
-        "plate_static": numbers[3][1],
-        "finger_kinetic": numbers[4][0],
-        "finger_static": numbers[4][1],
-        "finger_stiffness": numbers[4][2],
+        "plate.kinetic": numbers[3][0],
+        "plate.static": numbers[3][1],
+        "finger.kinetic": numbers[4][0],
+        "finger.static": numbers[4][1],
+        "finger.stiffness": numbers[4][2],
         "displacement": numbers[7],
         "velocity": numbers[8],
         "skin_stretch": numbers[9],
@@ -237,7 +228,7 @@ def _searched(
 ) -> tuple[float, float]:
     """From where to where a parameter is searched without bounds."""
     size = abs(start) or _size(quantity.unit, drive, recordings)
-    if key.endswith(("_static",)):
+    if key.endswith(".static"):
         return 0.0, 2.0 * DECADE * size
     if quantity.bounds.lower == 0.0 and not quantity.bounds.lower_closed:
         return size / DECADE, size * DECADE
@@ -316,7 +307,7 @@ class Assembly:
         """The drive with these parameters."""
         mass, stiffness, damping, *contacts = self.numbers(theta, 0)[:5]
         made = [
-            _made_contact(numbers, given, f"{name}_static" in self._own[0])
+            _made_contact(numbers, given, f"{name}.static" in self._own[0])
             for numbers, given, name in zip(
                 contacts, (self._drive.plate, self._drive.finger), ("plate", "finger"), strict=True
             )
@@ -377,7 +368,7 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
     damping = values.get("damping", damping)
     contacts = []
     for name, contact in (("plate", plate), ("finger", finger)):
-        touched = any(key.startswith(f"{name}_") and key != "plate_load" for key in values)
+        touched = any(key.startswith((f"{name}.", f"{name}_curve")) for key in values)
         contacts.append(_contact(values, name, contact) if touched else contact)
     plate_velocity = _table(values, "mouse_velocity", plate_velocity)
     load = _table(values, "plate_load", load)
@@ -399,7 +390,7 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
 def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
     kinetic, static, give, curve = contact
     ratio = static / kinetic if kinetic else 1.0
-    given = values.get(f"{name}_kinetic")
+    given = values.get(f"{name}.kinetic")
     if given is not None:
         if curve:
             factor = given / kinetic
@@ -408,12 +399,12 @@ def _contact(values: Mapping[str, Any], name: str, contact: Any) -> Any:
     curve = _table(values, f"{name}_curve", curve)
     if curve:
         kinetic = curve[0][1]
-    own = values.get(f"{name}_static")
+    own = values.get(f"{name}.static")
     if own is not None:
         static = np.where(np.real(own) > np.real(kinetic), own, kinetic)[()]
     elif given is not None or curve:
         static = ratio * kinetic
-    give = values.get(f"{name}_stiffness", give)
+    give = values.get(f"{name}.stiffness", give)
     return kinetic, static, give, curve
 
 
