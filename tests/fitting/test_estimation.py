@@ -45,6 +45,14 @@ def test_the_truth_is_found_within_its_intervals(found: Fit) -> None:
     assert repr(found) == "<Fit of 5 parameters to 750 samples, ok>"
 
 
+def test_candidates_of_plain_releases_are_simulated_as_a_batch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Friction may be free, too."""
+    monkeypatch.setattr("pindrive.fitting.candidates._single_costs", None)
+    assert fit(recorded(rate=5e3), START, RELEASE, free=FREE, profiles=False).converged
+
+
 def test_a_profile_is_the_least_cost_of_the_others(found: Fit) -> None:
     """Held at the end of its interval, a parameter costs what the threshold is."""
     high = found["damping"].interval[1]

@@ -10,6 +10,7 @@ import numpy as np
 from pindrive.fitting.model import Model
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
+from pindrive.motion.release import PLACES, ROWS, entry
 from pindrive.quantities.table import ImplausibleValueWarning
 
 if TYPE_CHECKING:
@@ -23,20 +24,8 @@ SINGLE: Final = 1024
 """Candidates of what only the general core follows."""
 LOOKS: Final = 40
 """Samples of each recording at which candidates are compared."""
-_ARGUMENTS: Final = {
-    "mass": (0,),
-    "stiffness": (1,),
-    "damping": (2,),
-    "plate_kinetic": (3, 0),
-    "plate_static": (3, 1),
-    "finger_kinetic": (4, 0),
-    "finger_static": (4, 1),
-    "mouse_velocity": (5, 0, 1),
-    "plate_load": (6, 0, 1),
-    "displacement": (7,),
-    "velocity": (8,),
-}
-"""Arguments of `simulate_batch`, and their places among the core's numbers."""
+_PLAIN: Final = tuple(name for name in PLACES if name not in ("finger.stiffness", "skin_stretch"))
+"""What `simulate_batch` can vary."""
 
 
 def candidates(model: Model, weights: Array, seed: int) -> Array:
@@ -75,7 +64,7 @@ def _plain(model: Model) -> bool:
     ]
     channels = {block.channel for block in model.blocks}
     rigid = all(np.isinf(n[4][2]) for n in numbers)
-    free = all(p.key in _ARGUMENTS or p.key.endswith("_offset") for p in model.parameters)
+    free = all(p.key in _PLAIN or p.key.endswith("_offset") for p in model.parameters)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
     coulomb = all(len(contact[3]) <= 1 for n in numbers for contact in n[3:5])
     return channels <= {"position", "velocity"} and rigid and free and constant and coulomb
@@ -89,11 +78,9 @@ def _batched_costs(model: Model, weights: Array, theta: Array) -> Array:
         late = np.maximum(times, 1e-9)
         numbers = model.assembly.numbers(columns, r)
         varied = {}
-        for name, place in _ARGUMENTS.items():
-            value = numbers
-            for i in place:
-                value = value[i]
-            varied[name] = value
+        for name in _PLAIN:
+            value = entry(numbers, PLACES[name])
+            varied[name.replace(".", "_")] = value[0][1] if name in ROWS else value
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImplausibleValueWarning)
             state = simulate_batch(

@@ -17,7 +17,7 @@ import numpy as np
 
 from pindrive.fitting.recording import CHANNELS, Recording
 from pindrive.motion.drive import Contact, Drive, Profile
-from pindrive.motion.release import CoreNumbers, Release, core_numbers
+from pindrive.motion.release import PLACES, ROWS, CoreNumbers, Release, core_numbers, entry
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.table import QUANTITIES, check, refusal
@@ -197,29 +197,14 @@ def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release)
         start = QUANTITIES["finger.stiffness"].example
         assert start
         return start
-    found = {
-        "mass": numbers[0],
-        "stiffness": numbers[1],
-        "damping": numbers[2],
-        "plate.kinetic": numbers[3][0],
-        "plate.static": numbers[3][1],
-        "finger.kinetic": numbers[4][0],
-        "finger.static": numbers[4][1],
-        "finger.stiffness": numbers[4][2],
-        "displacement": numbers[7],
-        "velocity": numbers[8],
-        "skin_stretch": numbers[9],
-    }[key]
+    found = entry(numbers, PLACES[key])
     if isnan(found):
         raise ValueError(refusal("free", "one that the release was given", key))
     return float(found)
 
 
 def _rows(numbers: Any, table: str) -> Sequence[tuple[Any, Any]]:
-    places = {"plate_curve": (3, 3), "finger_curve": (4, 3), "mouse_velocity": (5,)}
-    for i in places.get(table, (6,)):
-        numbers = numbers[i]
-    rows: Sequence[tuple[Any, Any]] = numbers
+    rows: Sequence[tuple[Any, Any]] = entry(numbers, ROWS[table])
     return rows
 
 

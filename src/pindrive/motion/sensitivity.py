@@ -12,6 +12,7 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
+from pindrive.motion.release import PLACES, ROWS, entry
 from pindrive.motion.results import flattened
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
@@ -39,27 +40,7 @@ _KINK = 1e-3
 Place = tuple[int, ...]
 """Where a number stands among the core's numbers (`CoreNumbers`)."""
 
-_PLACES: dict[str, Place] = {
-    "mass": (0,),
-    "stiffness": (1,),
-    "damping": (2,),
-    "plate_kinetic": (3, 0),
-    "plate_static": (3, 1),
-    "finger_kinetic": (4, 0),
-    "finger_static": (4, 1),
-    "finger_stiffness": (4, 2),
-    "mouse_velocity": (5,),
-    "plate_load": (6,),
-    "displacement": (7,),
-    "velocity": (8,),
-    "skin_stretch": (9,),
-}
-_TABLES: dict[str, Place] = {
-    "plate_curve": (3, 3),
-    "finger_curve": (4, 3),
-    "mouse_velocity": (5,),
-    "plate_load": (6,),
-}
+_PLACES: dict[str, Place] = {name.replace(".", "_"): place for name, place in PLACES.items()}
 _ROW = re.compile(
     r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
     r"|(mouse_velocity|plate_load)\[(\d+)\]\.(time|value))"
@@ -312,7 +293,7 @@ def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
     """How the core's numbers change with a parameter, and the size of the parameter."""
     numbers = motion.core_numbers
     places = _places(numbers, given)
-    size = max(abs(_entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
+    size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
     for contact, (kinetic, static, _, curve) in ((3, numbers[3]), (4, numbers[4])):
         first_row = [(contact, 3, 0, 1)] if curve else []
         if not {(contact, 0), *first_row}.isdisjoint(places):
@@ -344,23 +325,23 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
     name = re.sub(r"^(plate|finger)\.", r"\1_", given)  # a device file's key is its name too
     if row := _ROW.fullmatch(name):
         table, index, column = (group for group in row.groups() if group)
-        rows = _entry(numbers, _TABLES[table])
+        rows = entry(numbers, ROWS[table])
         if int(index) >= len(rows):
             one = f"one of {counted(len(rows), 'row')} of {table}"
             raise ValueError(refusal("parameter", one, name))
-        place = (*_TABLES[table], int(index), int(column in ("force", "value")))
+        place = (*ROWS[table], int(index), int(column in ("force", "value")))
         if column != "time":
             return [place]
         # The time of a step is that of both its rows.
         time = rows[int(index)][0]
-        return [(*_TABLES[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
+        return [(*ROWS[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
     if name not in _PLACES:
         known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
     place = _PLACES[name]
-    if name in _TABLES:
-        return [(*place, i, 1) for i in range(len(_entry(numbers, place)))]
-    if not isfinite(_entry(numbers, place)):
+    if name in ROWS:
+        return [(*place, i, 1) for i in range(len(entry(numbers, place)))]
+    if not isfinite(entry(numbers, place)):
         raise ValueError(refusal("parameter", "one that this motion was given", repr(given)))
     return [place]
 
@@ -420,12 +401,6 @@ def _in_range(numbers: CoreNumbers) -> bool:
 
 
 # ---- nested numbers ------------------------------------------------------------------------------
-
-
-def _entry(numbers: Any, place: Place) -> Any:
-    for i in place:
-        numbers = numbers[i]
-    return numbers
 
 
 def _replaced(numbers: Any, place: Place, value: float) -> Any:
