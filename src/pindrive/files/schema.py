@@ -341,7 +341,7 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
         if isinstance(given, float):
             tables[table][name] = written(key, given / old * new)
         elif rows := scaled_rows(given, new):
-            tables[table][name] = _written_rows(key, rows)
+            tables[table][name] = written_rows(key, rows)
 
 
 def written(key: str, value: float) -> str | float:
@@ -381,6 +381,7 @@ def _given(tables: Tables, key: str) -> Value:
         return None
 
 
-def _written_rows(key: str, rows: Rows) -> list[list[Any]]:
+def written_rows(key: str, rows: Rows) -> list[list[Any]]:
+    """The rows of a key in SI as a device file has them, to the last bit."""
     across = QUANTITIES[COLUMNS[DRIVE[key].rows_of][0]]
     return [[f"{x!r} {across.unit}", written(key, y)] for x, y in rows]

@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pindrive.files.recording import files_named
-from pindrive.files.schema import written
+from pindrive.files.schema import written, written_rows
 from pindrive.fitting.parameters import key_of
 from pindrive.fitting.results import Estimate, is_of_sensor
 from pindrive.motion.drive import Profile
-from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import significant
-from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from pindrive.files.device import DeviceFile
@@ -46,8 +44,6 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     for estimate in found.estimates:
         if not is_of_sensor(estimate) and estimate.parameter.recording in (None, 0):
             comments.setdefault(key_of(estimate.parameter.key), []).append(_comment(estimate))
-    for line in tables.pop("device", {}).items():
-        tables.setdefault("device", {})[line[0]] = line[1]
     names = ", ".join(recording.name for recording in found.recordings)
     lines = [
         f"# {device.path.name}, fitted by pindrive to {names}.",
@@ -95,14 +91,10 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
         value = value.rows if isinstance(value, Profile) else value
         if value is None or value == before.get(key):
             continue
-        changed[key] = _rows(key, value) if isinstance(value, tuple) else written(key, float(value))
+        changed[key] = (
+            written_rows(key, value) if isinstance(value, tuple) else written(key, float(value))
+        )
     return changed
-
-
-def _rows(key: str, rows: Any) -> list[list[Any]]:
-    name = key if key in QUANTITIES else key.partition(".")[2]
-    across = QUANTITIES[COLUMNS[QUANTITIES[name].rows_of][0]]
-    return [[f"{x!r} {across.unit}", written(key, y)] for x, y in rows]
 
 
 def _comment(estimate: Estimate) -> str:

@@ -95,17 +95,19 @@ class Problem:
         key = np.asarray(theta, float).tobytes()
         if self._last is None or self._last[0] != key:
             values, slopes = self.model.linearise(theta)
-            off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
             slopes = np.where(np.isfinite(slopes), slopes, 0.0)
-            self._last = key, off * self.weights, slopes * self.weights[:, None]
+            self._last = key, self._off(values), slopes * self.weights[:, None]
         return self._last[1:]
 
     def plain_cost(self, theta: Array) -> float:
         """The sum of their squares, without the derivatives."""
-        values = self.model.predict(theta)
-        off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
-        off *= self.weights
+        off = self._off(self.model.predict(theta))
         return float(off @ off)
+
+    def _off(self, values: Array) -> Array:
+        off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
+        weighted: Array = off * self.weights
+        return weighted
 
     def refined(
         self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-8
@@ -293,6 +295,4 @@ def _apart(ends: list[Optimum], problem: Problem) -> list[Optimum]:
     for end in ends:
         if all(abs(end.cost - other.cost) > 1e-3 * other.cost for other in found):
             found.append(end)
-    return found or [
-        Problem.refined(problem, np.array([p.start for p in problem.model.parameters]))
-    ]
+    return found or [problem.refined(np.array([p.start for p in problem.model.parameters]))]
