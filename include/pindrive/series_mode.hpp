@@ -118,16 +118,9 @@ class SeriesMode {
     std::array<Guard, 6> list_;
     int count_{0};
   };
+  /// Those of a stick force come first.
   Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
     Guards found;
-    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
-    if (slips(mode_.finger))
-      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
-              at.finger, false, false);
-    if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
-      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
-    }
     if (mode_.stuck()) {
       Line<T> most{T(0), T(0)};
       if (mode_.plate == ContactState::stick)
@@ -135,6 +128,14 @@ class SeriesMode {
                 drive_.plate.static_limit * inputs_.plate_load.rate};
       if (mode_.finger == ContactState::stick) most.value += drive_.finger.static_limit;
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
+    }
+    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
+    if (slips(mode_.finger))
+      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
+              at.finger, false, false);
+    if (mode_.finger == ContactState::elastic_stick) {
+      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
+      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
     }
     return found;
   }

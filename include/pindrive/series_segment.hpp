@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
@@ -19,25 +20,35 @@ class SeriesSegment {
   bool used() const { return used_; }
 
   /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
-  /// whether it has none. Its flow says where it begins. `at_limit` is the side on which a stick force is at
-  /// its limit, `span` the time until the next row, s. Its guards come with their zeros.
+  /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
+  /// `at_limit` is the side on which a stick force is at its limit, `span` the time until the next row or the
+  /// end, s. Its guards come with their zeros.
   template <class Side>
   bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
              const Side& finger, const State<T>& state, T acceleration, int at_limit, T span) {
     const SeriesMode<T> mode(drive, segment.mode, {plate.surface, plate.load});
     used_ = !mode.has_closed_form();
     if (!used_) return false;
-    step_ = SeriesFlow<T>(mode.equation(), {state.x, state.v, state.skin, acceleration}, span);
+    const SeriesEquation<T> equation = mode.equation();
+    step_ = SeriesFlow<T>(equation, {state.x, state.v, state.skin, acceleration}, span);
+    const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit});
     guards.clear();
-    first_ = step_.span();
-    for (const auto& guard : mode.guards(step_, {plate.does.at, finger.does.at, at_limit})) {
-      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side);
-      first_ = std::min(first_, guard.zero);
-    }
+    for (const auto& guard : paths)
+      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
+                       segment.mode.stuck() && &guard - paths.begin() < 2);
+    const T row = step_.span() < span ? never : span;
+    first_ = guards.earliest_known(step_.span());
+    first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
+      const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
+      const T roundoff = guard.bound == Bound::none ? state.roundoff : rounding<T> * path.size();
+      const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
+      return stays_at_bound(fall, path.at(tau), roundoff);
+    });
     const T stick = step_.stick_force.c[0];
     const T of_plate = plate.stuck() ? stick : plate.force(state);
     const T of_finger = !finger.stuck() ? finger.force(state) : plate.stuck() ? T(0) : stick;
-    segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0)}};
+    const T rate = equation.held ? equation.surface.rate : acceleration;
+    segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
     return true;
@@ -61,6 +72,8 @@ class SeriesSegment {
   }
 
  private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
   bool used_{false};
   SeriesStep<T> step_;
   T first_{0};  ///< the time to its first guard's zero, or its end, s

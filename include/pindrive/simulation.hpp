@@ -254,8 +254,7 @@ class Simulation {
            (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
   }
 
-  /// The time to the earliest event. What happens at the row of an input to rounding happens there; so does
-  /// what a stick force does where a speed comes to a bound: the force may turn there, as the speed is zero.
+  /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_;
     if constexpr (!Surface::plain)
@@ -263,8 +262,9 @@ class Simulation {
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     T end = guards_.earliest(flow.oscillator, time_, limit);
-    const T next = std::min(guards_.speed_after_force(end), limit == row ? row : never);
-    if (next < never && guards_.stay_until(flow.oscillator, next, state_.roundoff)) end = next;
+    end = guards_.put_off(end, limit == row ? row : never, [&](const Guard<T>& guard, T tau) {
+      return guards_.stays(guard, flow.oscillator, tau, state_.roundoff);
+    });
     return row < never && row - end <= rounding<T> * (time_ + row) ? row : end;
   }
 
@@ -287,9 +287,7 @@ class Simulation {
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
-    plate_.surface.value = plate_.surface.at(tau);
-    plate_.load.value = plate_.load.at(tau);
-    if (row) look_ahead();
+    look_ahead();
     segment.end = time_;
     limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
@@ -312,7 +310,8 @@ class Simulation {
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
   }
 
-  /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
+  /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
+  /// Rows that differ by the rounding of a time are one: the last of them.
   void look_ahead() {
     for (;; time_ = row_) {
       plate_.surface = inputs_.mouse_velocity.from(time_);

@@ -136,12 +136,7 @@ class BySeries {
   bool constant(const Polynomial<T>& p) const {
     return std::all_of(p.c.begin() + 1, p.c.end(), [](T c) { return c == 0; });
   }
-  T terms(const Polynomial<T>& p, T) const {
-    using std::abs;
-    T sum{0};
-    for (const T c : p.c) sum += abs(c);
-    return sum;
-  }
+  T terms(const Polynomial<T>& p, T) const { return p.size(); }
   T hurry_squared() const { return T(1) / (step_.span() * step_.span()); }
 
   int side_after_start(const Polynomial<T>& p) const {
@@ -161,8 +156,9 @@ class BySeries {
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
                               const Line<T>& load) {
     const SeriesMode<T> mode(drive, segment.mode, {segment.plate_velocity, load});
-    const SeriesState<T> start{segment.flow.position.start, segment.flow.velocity.start,
-                               -segment.finger_force.start};
+    const Path<T>& v = segment.flow.velocity;
+    const SeriesState<T> start{segment.flow.position.start, v.start, -segment.finger_force.start,
+                               v.drift};
     return SeriesFlow<T>(mode.equation(), start, segment.end - segment.begin, true);
   }
   /// Of a rigid finger, or skin, that slips.
