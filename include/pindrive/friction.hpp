@@ -2,33 +2,13 @@
 /// (docs/theory.md, section 4).
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
+#include "pindrive/state.hpp"
 
 namespace pindrive::detail {
-
-/// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
-/// stick at its stick limit, the upper one.
-enum class Bound : signed char { none, lower, upper };
-
-/// The pin at an instant.
-template <class T>
-struct State {
-  T x, v;         ///< m, m/s
-  T skin{0};      ///< force in an elastic stick, N
-  T x_size{0};    ///< the largest that the position is a sum of, m
-  T roundoff{0};  ///< forces that differ by less are one, N
-};
-
-/// Whether a guard at its zero dips below it by no more than its roundoff.
-template <class T>
-bool touches(T rate, T curvature, T roundoff) {
-  return rate < 0 && rate * rate <= 2 * curvature * roundoff;
-}
 
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
 /// what it does.
@@ -48,15 +28,14 @@ struct Touch {
   Option does{};
   ContactState before{};       ///< what it did until the last event, …
   Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
-  std::array<Option, 3> options{};
-  int count{0};
+  int count{0};                ///< of its options
   T friction{0};  ///< how large its friction is at its sliding speed under a load of 1, N
 
   static Option slip(T sense, Bound at, int branch = 0) {
     return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
             sense};
   }
-  bool may_stick() const { return options[0].state == ContactState::stick; }
+  bool may_stick() const { return rest_ == ContactState::stick; }
   bool sliding() const { return slips(does.state); }
   bool stuck() const { return does.state == ContactState::stick; }
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
@@ -73,51 +52,59 @@ struct Touch {
     if (!elastic && u != 0) does = slip(u / size, Bound::none, contact.branch_of(size));
   }
 
-  /// Sets out what it may do, the preferred first: to stick, else to go on as it does. A speed that has
-  /// reached no bound and is not inside its branch is at the end of it.
+  /// Finds out what it may do. A speed that has reached no bound and is not inside its branch is at the end
+  /// of it.
   void ask(const State<T>& s) {
     before = does.state;
+    sense_ = does.sense;
+    branch_ = does.branch;
     count = 1;
+    at_ = reached;
+    reached = Bound::none;
+    rest_ = ContactState::absent;
     const T u = s.v - surface.value;
     if (sliding()) {
       const Branch<T> range = branch();
-      const T speed = does.sense * u;
-      does.at = reached != Bound::none ? reached
-                : speed >= range.to    ? Bound::upper
-                : speed > range.from   ? Bound::none
-                                       : Bound::lower;
-      reached = Bound::none;
-      options[0] = does;
-      if (does.at == Bound::none) {
-        friction = range.at(speed);
-        return;
-      }
-      if (does.at == Bound::upper || does.branch > 0) {
-        const bool faster = does.at == Bound::upper;
-        options[1] = {before, faster ? Bound::lower : Bound::upper, does.branch + (faster ? 1 : -1),
-                      does.sense};
-        count = 2;
+      const T speed = sense_ * u;
+      if (at_ == Bound::none && speed >= range.to) at_ = Bound::upper;
+      if (at_ == Bound::none && !(speed > range.from)) at_ = Bound::lower;
+      friction = range.at(speed);
+      if (at_ == Bound::none) return;
+      if (at_ == Bound::upper || branch_ > 0) {
         // At a breakpoint it is one number, whichever branch follows.
-        friction = contact.branch(std::max(does.branch, options[1].branch)).force;
+        friction = contact.branch(at_ == Bound::upper ? branch_ + 1 : branch_).force;
+        count = 2;
         return;
       }
     }
     friction = contact.branch(0).force;
+    if (before == ContactState::absent) return;
+    at_ = Bound::none;
+    parts_ = Bound::lower;
     // A compliant contact sticks with the force that it has.
-    if (sliding()) does.state = contact.rigid() ? ContactState::stick : ContactState::elastic_stick;
-    const T across = does.sense > 0 ? T(-1) : T(1);
-    does = options[0] = {does.state, Bound::none, 0, T(0)};
-    if (does.state == ContactState::stick) {
-      options[1] = slip(across, Bound::lower);
-      options[2] = slip(-across, Bound::lower);
+    const bool sticks = before == ContactState::stick || (sliding() && contact.rigid());
+    rest_ = sticks ? ContactState::stick : ContactState::elastic_stick;
+    if (sticks) {
       count = 3;
-    } else if (elastic()) {
-      const T side = s.skin > 0 ? T(1) : T(-1);
-      if (side * s.skin < contact.static_limit || side * u < 0) return;
-      does.at = options[0].at = Bound::upper;
-      options[1] = slip(side, u == 0 ? Bound::lower : Bound::none);
-      count = 2;
+      return;
     }
+    sense_ = s.skin > 0 ? T(-1) : T(1);  // of the force
+    if (-sense_ * s.skin < contact.static_limit || sense_ * u > 0) return;
+    at_ = Bound::upper;
+    if (u != 0) parts_ = Bound::none;
+    count = 2;
+  }
+
+  /// What it may do, the preferred first: to stick, else to go on as it does.
+  Option option(int index) const {
+    if (rest_ == ContactState::absent) {
+      if (index == 0) return {before, at_, branch_, sense_};
+      const bool faster = at_ == Bound::upper;
+      return {before, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
+    }
+    if (index == 0) return {rest_, at_, 0, T(0)};
+    const bool backward = (index == 1) == (sense_ > 0);
+    return slip(backward ? T(-1) : T(1), parts_);
   }
 
   /// Its force on the pin, unless it sticks, N, …
@@ -158,12 +145,15 @@ struct Touch {
     if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
     if (!sliding()) return {};
     const Branch<T> range = branch();
-    const T force = -does.sense * (range.force - range.slope * range.from);
-    const T drag = range.slope * load.value;
-    return {{force * load.value + drag * surface.value, force * load.rate + drag * surface.rate},
-            drag,
-            T(0),
-            range.rounding * load.value};
+    const T force = -does.sense * range.force;
+    Force<T> law{{force * load.value, force * load.rate}};
+    if (range.slope == 0) return law;
+    const T from = does.sense * range.from;
+    law.drag = range.slope * load.value;
+    law.constant.value += law.drag * (from + surface.value);
+    law.constant.rate += range.slope * load.rate * from + law.drag * surface.rate;
+    law.rounding = range.rounding * load.value;
+    return law;
   }
 
   /// Whether its force goes on without a jump after a stick force has come to its limit on a side.
@@ -188,6 +178,13 @@ struct Touch {
     return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
                                        contact.stiffness * inside * decides, s.roundoff);
   }
+
+ private:
+  T sense_{0};                               ///< in which it slipped until the last event,
+  int branch_{0};                            ///< on which branch,
+  Bound at_{Bound::none};                    ///< and the end of its range that it is at now
+  ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
+  Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
 };
 
 }  // namespace pindrive::detail

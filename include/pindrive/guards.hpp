@@ -23,14 +23,6 @@ struct Guard {
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
 
-/// Whether what has come to zero stays there to its roundoff: by what it would fall at the rate that it has
-/// there, and by its value at the end.
-template <class T>
-bool stays_at_bound(T fall, T value, T roundoff) {
-  using std::abs;
-  return fall >= -2 * roundoff && abs(value) <= roundoff;
-}
-
 /// The guards of a mode; at most two of a sliding contact or an elastic stick, and two of a stick force.
 template <class T>
 class Guards {
@@ -117,8 +109,9 @@ class Guards {
   template <class Stays>
   T put_off(T earliest, T row, Stays&& stays) const {
     T next = row;
-    for (int i = forces_; i < count_ && forces_ > 0; ++i)
-      if (list_[i].zero > earliest) next = std::min(next, list_[i].zero);
+    if (forces_ > 0)
+      for (int i = forces_; i < count_; ++i)
+        if (list_[i].zero > earliest) next = std::min(next, list_[i].zero);
     const bool late =
         earliest < next && next < std::numeric_limits<T>::infinity() &&
         std::all_of(

@@ -35,15 +35,17 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
 template <class T>
 class Return {
  public:
-  /// Meets an event between a segment and the mode that follows; if the state has been there before,
+  /// Whether an event is one that it looks at.
+  static bool watches(const Mode& before, const Mode& after) {
+    return released(before, after) || after.plate_branch > before.plate_branch;
+  }
+  /// Meets such an event between a segment and the mode that follows; if the state has been there before,
   /// says in the outcome what cycle it closes.
   template <class Drive>
   void meet(const Drive& drive, const Segment<T>& ended, const Mode& after, const State<T>& state,
             Outcome<T>& outcome) {
-    const Mode before = ended.mode;
-    const bool release = before.plate == ContactState::stick && after.plate != ContactState::stick;
+    const bool release = released(ended.mode, after);
     if (release) stick_begin_ = ended.begin;
-    if (!release && after.plate_branch <= before.plate_branch) return;
     const Visit now{ended.end, stick_begin_, state, after, release};
     if (visits_ > 0 && same(drive, now)) {
       outcome.end = release || kept_.released ? End::stick_slip : End::limit_cycle;
@@ -62,6 +64,10 @@ class Return {
   }
 
  private:
+  static bool released(const Mode& before, const Mode& after) {
+    return before.plate == ContactState::stick && after.plate != ContactState::stick;
+  }
+
   struct Visit {
     T time, stick_begin;  ///< when, and when the plate last took the pin along, s
     State<T> state;

@@ -51,12 +51,11 @@ class Simulation {
       if (!finished) {
         jump(segment, tau);
         select();
-        const auto &plate = plate_.does, &finger = finger_.does;
-        segment.event = {change(plate_.before, plate.state), change(finger_.before, finger.state)};
-        if (!(row_ < never)) {
-          const Mode after{plate.state, finger.state, plate.branch, finger.branch};
+        const Mode after = mode();
+        segment.event = {change(segment.mode.plate, after.plate),
+                         change(segment.mode.finger, after.finger)};
+        if (Return<T>::watches(segment.mode, after) && !(row_ < never))
           returns_.meet(drive_, segment, after, state_, outcome_);
-        }
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
@@ -85,7 +84,7 @@ class Simulation {
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
   /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
-  void select() {
+  [[gnu::flatten]] void select() {
     using std::abs;
     const T damper = drive_.damping * state_.v;
     plate_.ask(state_);
@@ -103,8 +102,8 @@ class Simulation {
     if (j == 1 && sticks(second, first, i)) return;
     for (int k = i; k < first.count; ++k)
       for (int l = j; l < second.count; ++l) {
-        first.does = first.options[k];
-        second.does = second.options[l];
+        first.does = first.option(k);
+        second.does = second.option(l);
         if (sets_out()) return;
       }
     outcome_.status = Status::inconsistent;
@@ -112,9 +111,9 @@ class Simulation {
 
   /// Whether a contact sticks while the other one does one of its options.
   bool sticks(Side& on, Side& other, int option) {
-    on.does = on.options[0];
+    on.does = on.option(0);
     for (; option < other.count; ++option) {
-      other.does = other.options[option];
+      other.does = other.option(option);
       if (holds(on, other)) return true;
     }
     return false;
@@ -202,12 +201,16 @@ class Simulation {
     return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
   }
 
+  Mode mode() const {
+    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+  }
+
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
     const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.begin = time_;
     segment.end = never;
-    segment.mode = {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+    segment.mode = mode();
     segment.event = {};
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
@@ -216,9 +219,12 @@ class Simulation {
                         continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
         return;
     segment.flow = flow(plate, finger);
-    segment.plate_force = plate_.stuck() ? stick_force_ : plate.along(segment.flow);
-    segment.finger_force =
-        finger_.stuck() && !plate_.stuck() ? stick_force_ : finger.along(segment.flow);
+    segment.plate_force = plate.along(segment.flow);
+    segment.finger_force = finger.along(segment.flow);
+    if (plate_.stuck())
+      segment.plate_force = stick_force_;
+    else if (finger_.stuck())
+      segment.finger_force = stick_force_;
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
   }

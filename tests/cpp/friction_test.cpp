@@ -38,13 +38,13 @@ void options() {
   expect(touch.force(at(0.1)) == -0.2, "... against its sliding");
 
   touch.ask(at(0.02));
-  expect(touch.count == 3 && touch.may_stick() &&
-             touch.options[1].state == ContactState::slip_backward,
-         "one that comes to its surface velocity may stick, cross or turn back, in this order");
+  expect(
+      touch.count == 3 && touch.may_stick() && touch.option(1).state == ContactState::slip_backward,
+      "one that comes to its surface velocity may stick, cross or turn back, in this order");
   Touch lighter = begun(rigid, 0.1, 0.02);
   lighter.load = {0.5, 0};
   lighter.ask(at(0.02));
-  lighter.does = lighter.options[1];
+  lighter.does = lighter.option(1);
   expect(lighter.force(at(0.02)) == 0.1, "its force is in proportion to the load");
 }
 
@@ -57,11 +57,11 @@ void breakpoints() {
          "on a branch the force follows the speed");
   touch.reached = Bound::upper;
   touch.ask(at(-0.1));
-  expect(touch.count == 2 && touch.options[0].branch == 0 && touch.options[1].branch == 1 &&
-             touch.options[1].at == Bound::lower,
+  expect(touch.count == 2 && touch.option(0).branch == 0 && touch.option(1).branch == 1 &&
+             touch.option(1).at == Bound::lower,
          "at a breakpoint it stays on its branch or goes to the next");
   const double one = touch.force(at(-0.1));
-  touch.does = touch.options[1];
+  touch.does = touch.option(1);
   expect(one == 0.2 && touch.force(at(-0.1)) == 0.2, "... with one force");
   expect(touch.goes_inside(at(-0.1), -1.0) && !touch.goes_inside(at(-0.1), 1.0),
          "the branch beyond is entered by a speed that grows");
@@ -76,7 +76,7 @@ void elastic_sticks() {
   touch.ask(at(0.1, 0.25));
   expect(touch.count == 1 && touch.force(at(0.1, 0.25)) == -0.25, "below its limit it stays");
   touch.ask(at(0.1, 0.3));
-  expect(touch.count == 2 && touch.options[1].state == ContactState::slip_forward,
+  expect(touch.count == 2 && touch.option(1).state == ContactState::slip_forward,
          "at its limit and stretching it may slip");
   touch.ask(at(-0.1, 0.3));
   expect(touch.count == 1, "... on its way back it stays");
@@ -89,7 +89,7 @@ void continuity() {
   for (const auto* contact : {&even, &more}) {
     Touch touch = begun(*contact, 0);
     touch.ask(at(0));
-    touch.does = touch.options[2];  // backward
+    touch.does = touch.option(2);  // backward
     expect(touch.continues(1) == (contact == &even) && !touch.continues(-1),
            "a force at its limit goes on where static is kinetic friction, to the other side");
   }

@@ -70,8 +70,8 @@ MUTANTS = (
     Mutant(
         "a changing load acts as if it were constant",
         "friction.hpp",
-        "force * load.rate + drag * surface.rate},",
-        "drag * surface.rate},",
+        "Force<T> law{{force * load.value, force * load.rate}};",
+        "Force<T> law{{force * load.value, T(0)}};",
     ),
     Mutant(
         "of two contacts the first is not asked whether it sticks",
@@ -100,14 +100,14 @@ MUTANTS = (
     Mutant(
         "the force at a breakpoint is that of the wrong branch",
         "friction.hpp",
-        "contact.branch(std::max(does.branch, options[1].branch)).force",
-        "contact.branch(std::min(does.branch, options[1].branch)).force",
+        "contact.branch(at_ == Bound::upper ? branch_ + 1 : branch_).force",
+        "contact.branch(at_ == Bound::upper ? branch_ : branch_ - 1).force",
     ),
     Mutant(
         "a breakpoint is passed without a change",
         "friction.hpp",
-        "does.branch + (faster ? 1 : -1),",
-        "does.branch + (faster ? 1 : 0),",
+        "branch_ + (faster ? 1 : -1),",
+        "branch_ + (faster ? 1 : 0),",
     ),
     Mutant(
         "skin grips with a thousandth more stretch",
@@ -131,8 +131,8 @@ MUTANTS = (
     Mutant(
         "the plate holds for ever",
         "simulation.hpp",
-        "guards_.add(left, Bound::none,",
-        "if (!plate_.stuck()) guards_.add(left, Bound::none,",
+        "guards_.add_force(left,",
+        "if (!plate_.stuck()) guards_.add_force(left,",
     ),
     Mutant(
         "the rows of the load are overlooked",
@@ -200,6 +200,24 @@ MUTANTS = (
         "flow.hpp",
         "n <= 14; ++n",
         "n <= 5; ++n",
+    ),
+    Mutant(
+        "the load of a series falls where it should rise",
+        "series.hpp",
+        "const T load_rate = e.load.rate * step;",
+        "const T load_rate = -e.load.rate * step;",
+    ),
+    Mutant(
+        "a step of a series begins without its acceleration",
+        "series_segment.hpp",
+        "{step_.velocity.c[0], T(0), T(0), rate}",
+        "{step_.velocity.c[0], T(0), T(0), 0 * rate}",
+    ),
+    Mutant(
+        "a step of a series does not wait for a row",
+        "series_segment.hpp",
+        "const T row = step_.span() < span ? never : span;",
+        "const T row = never;",
     ),
 )
 

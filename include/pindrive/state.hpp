@@ -1,0 +1,37 @@
+/// The pin at an instant: what is known of it exactly, and what counts as exact there.
+#pragma once
+
+#include <cmath>
+
+#include "pindrive/model.hpp"
+
+namespace pindrive::detail {
+
+/// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
+/// stick at its stick limit, the upper one.
+enum class Bound : signed char { none, lower, upper };
+
+/// The pin at an instant.
+template <class T>
+struct State {
+  T x, v;         ///< m, m/s
+  T skin{0};      ///< force in an elastic stick, N
+  T x_size{0};    ///< the largest that the position is a sum of, m
+  T roundoff{0};  ///< forces that differ by less are one, N
+};
+
+/// Whether a guard at its zero dips below it by no more than its roundoff.
+template <class T>
+bool touches(T rate, T curvature, T roundoff) {
+  return rate < 0 && rate * rate <= 2 * curvature * roundoff;
+}
+
+/// Whether what has come to zero stays there to its roundoff: by what it would fall at the rate that it has
+/// there, and by its value at the end.
+template <class T>
+bool stays_at_bound(T fall, T value, T roundoff) {
+  using std::abs;
+  return fall >= -2 * roundoff && abs(value) <= roundoff;
+}
+
+}  // namespace pindrive::detail
