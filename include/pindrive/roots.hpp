@@ -61,16 +61,21 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   return root_between(oscillator, path, low, high, side, low);
 }
 
-/// The path with the zeros that its side declares made exact.
+/// The path with the zeros that its side declares made exact, changed as little as that takes: a slope to
+/// the other side was rounded, or the start was and the path turns back within its rounding.
 template <class T>
-Path<T> exact_at_start(Path<T> path, int side) {
+Path<T> exact_at_start(const Oscillator<T>& oscillator, Path<T> path, int side) {
+  using std::sqrt;
   if (!(side * path.start > 0)) path.start = T(0);
-  if (path.start == 0 && !(side * (path.slope + path.drift) > 0)) {
-    if (path.oscillates())
-      path.slope = -path.drift;
-    else
-      path.drift = T(0);
-  }
+  const T slope = path.slope + path.drift;
+  if (path.start != 0 || side * slope > 0) return path;
+  const T bend = side * oscillator.bend(path.value, path.slope);
+  if (!path.oscillates())
+    path.drift = T(0);
+  else if (bend > -side * slope * sqrt(oscillator.omega0_squared()))
+    path.start = side * slope * slope / bend;  // twice as deep as it dips
+  else
+    path.slope = -path.drift;
   return path;
 }
 
@@ -90,8 +95,8 @@ template <class T>
 T parabola_root(Path<T> path, int side) {
   using std::sqrt;
   constexpr T never = std::numeric_limits<T>::infinity();
-  path = exact_at_start(side * path, 1);
-  const T a = path.curvature, b = path.drift, c = path.start;
+  const T a = side * path.curvature, c = std::max(side * path.start, T(0));
+  const T b = c > 0 || side * path.drift > 0 ? side * path.drift : T(0);
   const T square = b * b - 2 * a * c;
   if (a == 0) return b < 0 ? -c / b : never;
   if (!(square > 0)) return never;  // stays, or touches
@@ -110,7 +115,7 @@ class Roots {
  public:
   Roots(const Oscillator<T>& oscillator, const Path<T>& path, int side, T horizon)
       : oscillator_(oscillator),
-        path_(exact_at_start(path, side)),
+        path_(exact_at_start(oscillator, path, side)),
         side_(side),
         horizon_(horizon),
         extrema_(oscillator, path_.derivative(oscillator), side_of_slope(), horizon),

@@ -61,6 +61,8 @@ int main() {
     if (path.start == 0) side = path.slope + path.drift > 0 ? 1 : -1;
     if (path.start == 0 && path.slope + path.drift == 0)
       side = oscillator.bend(path.value, path.slope) > 0 ? 1 : -1;
+    if (i % 30 == 15)  // or so nearly that it dips by rounding
+      path.slope -= side * std::sqrt(2e-15 * std::abs(oscillator.bend(path.value, path.slope)));
 
     const double growth = std::exp(std::max(0.0, oscillator.slowest_rate() * horizon));
     const auto found = line ? isolated<2>(oscillator, path, side, horizon)
