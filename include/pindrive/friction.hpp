@@ -111,26 +111,21 @@ struct Touch {
   T force(const State<T>& s) const {
     return elastic() ? -s.skin : -does.sense * friction * load.value;
   }
-  /// … and how fast it changes on a pin of this acceleration, …
-  T force_rate(T v, T acceleration) const {
-    if (elastic()) return -contact.stiffness * v;
-    if (!sliding()) return T(0);
-    const T slope = branch().slope;
-    if (slope == 0) return -does.sense * branch().force * load.rate;
-    const T by_speed = -slope * load.value * (acceleration - surface.rate);
-    return load.rate == 0 ? by_speed : by_speed - does.sense * friction * load.rate;
-  }
-  /// … and how fast that changes while the acceleration is constant.
-  T force_bend(T acceleration) const {
-    if (Surface::plain || !sliding() || load.rate == 0) return T(0);
-    return -2 * branch().slope * load.rate * (acceleration - surface.rate);
-  }
-  /// How large the terms of that rate are: its slope is known to rounding only.
-  T force_rate_size(T rate, T acceleration) const {
+  /// … how fast it changes on a pin of this acceleration, how large the terms of that rate are, as its slope
+  /// is known to rounding only, and how fast the rate changes while the acceleration is constant.
+  struct Rate {
+    T value{0}, size{0}, bend{0};
+  };
+  Rate force_rate(T v, T acceleration) const {
     using std::abs;
-    if (!sliding() || branch().slope == 0) return abs(rate);
-    const T unsure = branch().rounding * load.value * abs(acceleration - surface.rate);
-    return abs(rate) + unsure / rounding<T>;
+    const T stretching = contact.stiffness * v;
+    if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
+    if (!sliding()) return {};
+    const Branch<T> range = branch();
+    const T faster = acceleration - surface.rate, by_load = does.sense * friction * load.rate;
+    const T rate = -range.slope * load.value * faster - by_load;
+    const T unsure = range.rounding * load.value * abs(faster);
+    return {rate, abs(rate) + unsure / rounding<T>, -2 * range.slope * load.rate * faster};
   }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {

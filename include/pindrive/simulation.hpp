@@ -132,10 +132,9 @@ class Simulation {
   Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
     using std::abs;
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
-    const T rate = other.force_rate(state_.v, a);
-    const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
-    size = abs(spring) + abs(damper) + other.force_rate_size(rate, a);
-    return {force, T(0), T(0), spring + damper - rate, stiffness * a - other.force_bend(a)};
+    const auto rate = other.force_rate(state_.v, a);
+    size = abs(spring) + abs(damper) + rate.size;
+    return {force, T(0), T(0), spring + damper - rate.value, drive_.stiffness * a - rate.bend};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -194,7 +193,7 @@ class Simulation {
         return side.goes_inside(state_, apart);
       T size;
       const Path<T> needed = stick_force_from(T(0), side, other, size);
-      const T own = side.force_rate(state_.v, acceleration_), jerk = own - needed.drift;
+      const T own = side.force_rate(state_.v, acceleration_).value, jerk = own - needed.drift;
       const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
@@ -280,15 +279,9 @@ class Simulation {
     const T coincident = tau + rounding<T> * (time_ + tau);
     if constexpr (!Surface::plain) series_.move(state_, finger_.elastic(), tau);
     if (!series_.used()) {
-      const Path<T>& position = segment.flow.position;
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
-      const Propagator<T> moved = segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-      state_.x = position.at(moved, tau);
-      state_.v = segment.flow.velocity.at(moved, tau);
-      state_.x_size =
-          std::max(std::max(state_.x_size, abs(state_.x)),
-                   std::max(abs(position.value * moved.decline), abs(position.slope * moved.gain)));
-      if (finger_.elastic()) state_.skin = -segment.finger_force.at(moved, tau);
+      segment.moved = turns ? half_turn_ : segment.flow.after(tau);
+      state_.move(segment, finger_.elastic(), tau);
     }
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;

@@ -1,6 +1,7 @@
 /// The pin at an instant: what is known of it exactly, and what counts as exact there.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "pindrive/model.hpp"
@@ -18,6 +19,18 @@ struct State {
   T skin{0};      ///< force in an elastic stick, N
   T x_size{0};    ///< the largest that the position is a sum of, m
   T roundoff{0};  ///< forces that differ by less are one, N
+
+  /// Brings it on by τ along a segment in closed form, whose oscillation has moved on so far.
+  void move(const Segment<T>& along, bool elastic, T tau) {
+    using std::abs;
+    const Path<T>& position = along.flow.position;
+    const Propagator<T> moved = along.moved;
+    x = position.at(moved, tau);
+    v = along.flow.velocity.at(moved, tau);
+    x_size = std::max(std::max(x_size, abs(x)), std::max(abs(position.value * moved.decline),
+                                                         abs(position.slope * moved.gain)));
+    if (elastic) skin = -along.finger_force.at(moved, tau);
+  }
 };
 
 /// Whether a guard at its zero dips below it by no more than its roundoff.

@@ -144,6 +144,19 @@ void hard_drives() {
                                                     s.end - s.begin < 1e-6 && s.begin > 1.5;
                                            }),
          "skin whose vibration reaches its limit by rounding turns there");
+  const Segments row = hard("finger-at-its-limit-as-a-load-falls-to-a-row");
+  expect(!row.empty() && std::all_of(row.begin(), row.end(),
+                                     [](const auto& s) {
+                                       return s.mode.finger == ContactState::stick &&
+                                              s.end > s.begin;
+                                     }),
+         "what a load that falls to its row would break loose to rounding holds on there");
+  const Segments instant = hard("finger-lets-go-at-a-curve-row-under-a-rising-load");
+  expect(std::any_of(instant.begin(), instant.end(),
+                     [](const auto& s) {
+                       return !(s.end > s.begin) && s.flow.acceleration().start < -1e-6;
+                     }),
+         "a step of a series that lasts no time has its acceleration");
 
   // Almost critically damped: at rest against the finger the next zero of the velocity is extinct.
   const pd::Drive<double> drive{0.0010455045324713026,

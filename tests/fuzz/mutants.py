@@ -213,12 +213,6 @@ MUTANTS = (
         "{step_.velocity.c[0], T(0), T(0), rate}",
         "{step_.velocity.c[0], T(0), T(0), 0 * rate}",
     ),
-    Mutant(
-        "a step of a series does not wait for a row",
-        "series_segment.hpp",
-        "const T row = step_.span() < span ? never : span;",
-        "const T row = never;",
-    ),
 )
 
 
