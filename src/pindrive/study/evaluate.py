@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, fields
+from functools import partial
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -23,7 +24,7 @@ from pindrive.quantities.status import End, SimulationError, Status
 from pindrive.quantities.table import Refusal, refused_by, told_by
 from pindrive.study.design import device_at, variable
 from pindrive.study.outputs import MEASURED, SCANNED, scan_numbers, variables
-from pindrive.study.workers import standing
+from pindrive.study.workers import spread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -58,7 +59,7 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     return judge(done, file.whole.criteria())
 
 
-def evaluate_scans(
+def _evaluate_scans(
     plan: Plan, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
 ) -> dict[str, Any]:
     """The outputs at `count` points; arguments as for `evaluate`.
@@ -76,7 +77,7 @@ def evaluate_scans(
     if processes == 1 or len(portions) == 1:
         done = [_rows(plan, portion) for portion in portions]
     else:
-        done = standing(processes).spread(_rows, plan, portions)
+        done = spread(processes, partial(_rows, plan), portions)
     rows = [row for portion in done for row in portion]
     kinds = {"reason": object}
     return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}
@@ -127,9 +128,7 @@ def evaluate(
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
-        from pindrive.study.evaluate import evaluate_scans
-
-        return evaluate_scans(plan, columns, count, outputs, threads)
+        return _evaluate_scans(plan, columns, count, outputs, threads)
     device = plan.device
     inputs = _inputs(device, columns)
     if is_slow(device, columns):

@@ -13,10 +13,10 @@ from pindrive.lazy import optimize, stats, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
+from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, exist, follow, refusals
-from pindrive.study.outputs import attributes
-from pindrive.study.sensitivity import Ranges, ranges_of
+from pindrive.study.outputs import NUMBERS, attributes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -312,12 +312,5 @@ def _worst(
     if plan.page:
         return WorstCase(demand, columns, float(numbers(best)[demand.name][0]), sampled, None)
     motion = follow(plan, columns)
-    value = motion.numbers()[_table_name(demand.name)]
+    value = motion.numbers()[NUMBERS[demand.name].name]
     return WorstCase(demand, columns, value, sampled, motion)
-
-
-def _table_name(name: str) -> str:
-    """The name in the table of quantities of a variable."""
-    from pindrive.study.outputs import NUMBERS
-
-    return NUMBERS[name].name

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import json
 import os
-from math import prod
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
@@ -28,10 +27,8 @@ from pindrive.lazy import h5netcdf, h5py
 from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.study import outputs
 from pindrive.study.design import variable
-from pindrive.study.evaluate import evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -48,21 +45,13 @@ class Piece(NamedTuple):
     values: NDArray[Any]
 
 
-def work_out(plan: Plan, chunk: int) -> list[Piece]:
-    """The numbers of a chunk's points, and of each coordinate the part that appears there first."""
-    begin, end = plan.bounds(chunk)
-    table = evaluate(plan, plan.columns(begin, end), end - begin, plan.outputs)
-    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in plan.outputs]
-    return [*_coordinates(plan, begin, end), *numbers]
-
-
 def extents(plan: Plan, chunk: int) -> list[tuple[str, int, int]]:
     """Name, start and length of the pieces of a chunk, in their order."""
     begin, end = plan.bounds(chunk)
     coordinates = [
         (variable(key), first, last - first)
-        for dimension, first, last in _first_seen(plan, begin, end)
-        for key in plan.dimensions[dimension].axes
+        for dimension, first, last in plan.first_seen(chunk)
+        for key in dimension.axes
     ]
     return [*coordinates, *((name, begin, end - begin) for name in plan.outputs)]
 
@@ -73,22 +62,6 @@ def checksum(pieces: list[Piece]) -> int:
     for piece in pieces:
         found = crc32(piece.values.data.cast("B"), found)
     return found
-
-
-def _coordinates(plan: Plan, begin: int, end: int) -> Iterator[Piece]:
-    for dimension, first, last in _first_seen(plan, begin, end):
-        values = plan.dimensions[dimension].at(np.arange(first, last))
-        for key in plan.dimensions[dimension].axes:
-            yield Piece(variable(key), first, np.ascontiguousarray(values[key], "<f8"))
-
-
-def _first_seen(plan: Plan, begin: int, end: int) -> Iterator[tuple[int, int, int]]:
-    """For each dimension, the places along it that no point before `begin` has."""
-    for i, size in enumerate(plan.shape):
-        stride = prod(plan.shape[i + 1 :])
-        first, last = (min(-(-point // stride), size) for point in (begin, end))
-        if first < last:
-            yield i, first, last
 
 
 class Store:
@@ -136,7 +109,7 @@ class Store:
             with self._lock:
                 self._file.seek(offset + start * kind.itemsize)
                 content = self._file.read(length * kind.itemsize)
-            found.append(Piece(name, start, np.frombuffer(content, np.uint8)))
+            found.append(Piece(name, start, np.frombuffer(content, kind)))
         return found
 
     def sync(self) -> None:

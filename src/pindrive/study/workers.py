@@ -18,40 +18,26 @@ from pindrive.files.output import OutputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from pindrive.study.design import Plan
-
 Given = TypeVar("Given")
 Done = TypeVar("Done")
 DIED = "a process that worked on the study died"
 
 
-def workers(plan: Plan, count: int) -> Executor:
-    """So many workers for a plan. One alone is a thread of this process in any case."""
-    return ThreadPoolExecutor(count) if plan.page is None or count == 1 else _processes(count)
+def workers(count: int, *, processes: bool) -> Executor:
+    """So many workers. One alone is a thread of this process in any case."""
+    return _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
 
 
-class Standing:
-    """Processes that stand by for one batch of points after the other."""
+def spread(count: int, work: Callable[[Given], Done], portions: Sequence[Given]) -> list[Done]:
+    """The work of each portion, in their order, done by so many processes.
 
-    def __init__(self, count: int) -> None:
-        """Begin them at the first batch."""
-        self._pool = _processes(count)
-
-    def spread(
-        self, work: Callable[[Plan, Given], Done], plan: Plan, portions: Sequence[Given]
-    ) -> list[Done]:
-        """The work of each portion, in their order."""
-        try:
-            return list(self._pool.map(work, [plan] * len(portions), portions))
-        except BrokenProcessPool:
-            standing.cache_clear()
-            raise OutputError(DIED) from None
-
-
-@cache
-def standing(count: int) -> Standing:
-    """The processes of this process, as long as it lives."""
-    return Standing(count)
+    They begin at the first call and stand by for the next, as long as this process lives.
+    """
+    try:
+        return list(_standing(count).map(work, portions))
+    except BrokenProcessPool:
+        _standing.cache_clear()
+        raise OutputError(DIED) from None
 
 
 def stop_at_once(status: int) -> NoReturn:
@@ -62,6 +48,11 @@ def stop_at_once(status: int) -> NoReturn:
     for process in active_children():
         process.kill()
     sys.exit(status)  # so that what they shared is given back
+
+
+@cache
+def _standing(count: int) -> ProcessPoolExecutor:
+    return _processes(count)
 
 
 def _processes(count: int) -> ProcessPoolExecutor:
