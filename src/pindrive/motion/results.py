@@ -23,7 +23,7 @@ ContactName = Literal["plate", "finger"]
 
 
 def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
-    """The numbers of one part of the table of quantities, such as "ending.", by their last names."""
+    """The numbers of one part of the table of quantities, such as "ending.", without it."""
     return {
         name.removeprefix(table): number
         for name, number in numbers.items()
