@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from html import escape
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
@@ -21,6 +22,7 @@ from pindrive.cli.app import app
 from pindrive.paper import formulas, maps, population, report
 from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
 from pindrive.paper.exhibit import markdown as as_markdown
+from pindrive.paper.page import anchor
 from pindrive.paper.page import page as as_page
 from pindrive.paper.population import Claim
 from pindrive.paper.report import Report
@@ -142,7 +144,8 @@ def test_the_page_holds_every_figure_and_its_own_links(page: str, made: Report) 
     assert len(found.ids) == len(set(found.ids))
     assert set(found.links) <= set(found.ids)
     assert set(re.findall(r"url\(#([^)]+)\)", page)) <= set(found.ids)
-    assert {e.name for e in made.exhibits} <= set(found.ids)
+    assert {anchor(as_markdown(e.title)) for e in made.exhibits} <= set(found.ids)
+    assert all(f'aria-label="{escape(e.title)}"' in page for e in made.exhibits)
     assert found.tags.count("math") > 40
 
 

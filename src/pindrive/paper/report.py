@@ -102,9 +102,8 @@ class Report:
         """What else is wrong with the text around the equations."""
         return (
             "Beside these: (1) gives F_1 to the plate and F_2 to the finger, the analysis then "
-            "says "
-            "F_1 = 0 and keeps the plate's friction as F_2; (22) is said to follow from (17) and "
-            "follows from (21); v_p is defined twice."
+            "says F_1 = 0 and keeps the plate's friction as F_2; (22) is said to follow from (17) "
+            "and follows from (21); v_p is defined twice."
         )
 
     def trials(self) -> xr.Dataset:

@@ -14,7 +14,7 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import refusal
 from pindrive.study.design import Ranges, ranges_of
-from pindrive.study.evaluate import RefusedPoints, evaluate, exist, refusals
+from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
 
@@ -282,26 +282,18 @@ def sobol(
     keys = tuple(ranges.scatter)
     usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
     asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
-    outputs = (*asked, "status", "reason")
     if rows is None:
         rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
     varied = len(keys)
-    each = (varied + 2) * (varied + len(outputs)) + 3 * (varied + 1) * len(outputs)
-    of = f"{rows} rows of {each}, for {varied} keys and {len(outputs)} results"
+    results = len(asked) + 2  # status and reason
+    each = (varied + 2) * (varied + results) + 3 * (varied + 1) * results
+    of = f"{rows} rows of {each}, for {varied} keys and {results} results"
     budgets.DESIGN_VALUES.check(rows * each, of)
     refused: tuple[RefusedPoints, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
-        total = points.shape[1]
-        parts = []
-        for begin in range(0, total, plan.at_a_time):
-            part = points[:, begin : begin + plan.at_a_time]
-            columns = ranges.columns(plan, part)
-            parts.append(evaluate(plan, columns, part.shape[1], outputs, threads))
-            progress(min(begin + plan.at_a_time, total), total)
-        found = {name: np.concatenate([part[name] for part in parts]) for name in outputs}
-        refused = refusals(plan, ranges.columns(plan, points), found.pop("reason"))
+        found, refused = evaluate_all(plan, ranges, points, asked, threads, progress)
         designs = exist(found.pop("status"))
         if _SETTLED in found:
             found[_SETTLED] = np.where(designs, found[_SETTLED].astype(float), np.nan)
