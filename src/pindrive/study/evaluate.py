@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, fields
-from functools import partial
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -24,7 +23,7 @@ from pindrive.quantities.status import End, SimulationError, Status
 from pindrive.quantities.table import Refusal, refused_by, told_by
 from pindrive.study.design import device_at, variable
 from pindrive.study.outputs import MEASURED, SCANNED, scan_numbers, variables
-from pindrive.study.workers import spread
+from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -78,7 +77,7 @@ def _evaluate_scans(
     if processes == 1 or len(portions) == 1:
         done = [_rows(plan, portion) for portion in portions]
     else:
-        done = spread(processes, partial(_rows, plan), portions)
+        done = standing(processes).spread(_rows, plan, portions)
     rows = [row for portion in done for row in portion]
     kinds = {"reason": object}
     return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in outputs}

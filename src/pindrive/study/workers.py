@@ -18,6 +18,7 @@ from pindrive.files.output import OutputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+Shared = TypeVar("Shared")
 Given = TypeVar("Given")
 Done = TypeVar("Done")
 DIED = "a process that worked on the study died"
@@ -28,16 +29,28 @@ def workers(count: int, *, processes: bool) -> Executor:
     return _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
 
 
-def spread(count: int, work: Callable[[Given], Done], portions: Sequence[Given]) -> list[Done]:
-    """The work of each portion, in their order, done by so many processes.
+class Standing:
+    """Processes that stand by for one batch of points after the other."""
 
-    They begin at the first call and stand by for the next, as long as this process lives.
-    """
-    try:
-        return list(_standing(count).map(work, portions))
-    except BrokenProcessPool:
-        _standing.cache_clear()
-        raise OutputError(DIED) from None
+    def __init__(self, count: int) -> None:
+        """Begin them at the first batch."""
+        self._pool = _processes(count)
+
+    def spread(
+        self, work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given]
+    ) -> list[Done]:
+        """The work of each portion, in their order; `shared` is the same for all."""
+        try:
+            return list(self._pool.map(work, [shared] * len(portions), portions))
+        except BrokenProcessPool:
+            standing.cache_clear()
+            raise OutputError(DIED) from None
+
+
+@cache
+def standing(count: int) -> Standing:
+    """The processes of this process, as long as it lives."""
+    return Standing(count)
 
 
 def stop_at_once(status: int) -> NoReturn:
@@ -48,11 +61,6 @@ def stop_at_once(status: int) -> NoReturn:
     for process in active_children():
         process.kill()
     sys.exit(status)  # so that what they shared is given back
-
-
-@cache
-def _standing(count: int) -> ProcessPoolExecutor:
-    return _processes(count)
 
 
 def _processes(count: int) -> ProcessPoolExecutor:
