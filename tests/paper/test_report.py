@@ -376,6 +376,8 @@ def test_a_page_is_made_from_markdown() -> None:
     assert shown.startswith("φ′<sub>0</sub> &lt; x<sub>m,a</sub>: <math")
     assert "<mtext>sign</mtext>" in shown
     assert shown.endswith("<code>first_time</code> &amp; more")
+    for verdict, kind in (("holds", "holds"), ("holds when x", "part"), ("does not hold", "not")):
+        assert as_html(f"**{verdict}**") == f'<strong class="{kind}">{verdict}</strong>'
     svg = b'<?xml?><svg id="a"><use href="#a"/></svg>'
     page = as_page("# Title\n\n## A _part_, (1)\n\n![what](folder/name.png)\n", {"name": svg})
     assert '<nav><a href="#a-part-1">A <em>part</em>, (1)</a></nav>\n<h2 id="a-part-1">' in page
