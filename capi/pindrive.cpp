@@ -374,78 +374,18 @@ pindrive_error check_band(double band) {
   return check("settling_band", band, band > 0 && band <= 1, "above 0 and at most 1");
 }
 
-constexpr const char* number_names[] = {"transient.peak_displacement",
-                                        "transient.peak_time",
-                                        "transient.trough_displacement",
-                                        "transient.trough_time",
-                                        "transient.swing",
-                                        "transient.return_velocity",
-                                        "transient.return_velocity_time",
-                                        "transient.first_reversal_time",
-                                        "transient.settling_time",
-                                        "transient.rest_time",
-                                        "transient.last_event_time",
-                                        "transient.peak_stretch",
-                                        "transient.peak_stretch_rate",
-                                        "transient.plate.reversals",
-                                        "transient.plate.time_stuck",
-                                        "transient.plate.distance_slid",
-                                        "transient.plate.dissipated",
-                                        "transient.plate.peak_force",
-                                        "transient.finger.reversals",
-                                        "transient.finger.time_stuck",
-                                        "transient.finger.distance_slid",
-                                        "transient.finger.dissipated",
-                                        "transient.finger.peak_force",
-                                        "ending.position",
-                                        "ending.steady_since",
-                                        "ending.amplitude",
-                                        "ending.period"};
-constexpr std::size_t number_count = sizeof number_names / sizeof *number_names;
-
-template <class T>
-void write(const pd::Transient<T>& t, const pd::Outcome<T>& outcome, double* values) {
-  const T all[] = {t.peak_displacement,
-                   t.peak_time,
-                   t.trough_displacement,
-                   t.trough_time,
-                   t.swing,
-                   t.return_velocity,
-                   t.return_velocity_time,
-                   t.first_reversal_time,
-                   t.settling_time,
-                   t.rest_time,
-                   t.last_event_time,
-                   t.peak_stretch,
-                   t.peak_stretch_rate,
-                   t.plate.reversals,
-                   t.plate.time_stuck,
-                   t.plate.distance_slid,
-                   t.plate.dissipated,
-                   t.plate.peak_force,
-                   t.finger.reversals,
-                   t.finger.time_stuck,
-                   t.finger.distance_slid,
-                   t.finger.dissipated,
-                   t.finger.peak_force,
-                   t.end_position,
-                   outcome.steady_since,
-                   t.amplitude,
-                   outcome.period};
-  static_assert(sizeof all / sizeof *all == number_count);
-  for (const T& number : all) *values++ = pd::result(number);
+/// Writes the numbers of a result in the order of their list.
+template <class T, class Result, std::size_t count>
+void write(const pd::NamedNumber<T, Result> (&numbers)[count], const Result& of, double* values) {
+  for (const auto& number : numbers) *values++ = pd::result(number.of(of));
 }
 
-constexpr const char* energy_names[] = {
-    "kinetic_start",     "kinetic_end",      "spring_start",      "spring_end",
-    "skin_start",        "skin_end",         "plate_work",        "inertia_work",
-    "damper_dissipated", "plate_dissipated", "finger_dissipated", "residual"};
-constexpr std::size_t energy_count = sizeof energy_names / sizeof *energy_names;
+template <class Numbers>
+const char* name_of(const Numbers& numbers, std::size_t index) {
+  return index < std::size(numbers) ? numbers[index].name : nullptr;
+}
 
-constexpr const char* certificate_names[] = {
-    "motion_law", "kinematics", "friction_law", "force_bound", "sliding_sign",
-    "sticking",   "continuity", "transitions",  "energy",      "dissipation"};
-constexpr std::size_t certificate_count = sizeof certificate_names / sizeof *certificate_names;
+constexpr std::size_t number_count = std::size(pd::transient_numbers<double>);
 
 }  // namespace
 
@@ -726,7 +666,7 @@ pindrive_error pindrive_crossings(const pindrive_motion* motion, pindrive_quanti
 
 size_t pindrive_number_count(void) { return number_count; }
 const char* pindrive_number_name(size_t index) {
-  return index < number_count ? number_names[index] : nullptr;
+  return name_of(pd::transient_numbers<double>, index);
 }
 
 pindrive_error pindrive_numbers(const pindrive_motion* motion, double duration,
@@ -737,8 +677,9 @@ pindrive_error pindrive_numbers(const pindrive_motion* motion, double duration,
   return motion->ask([&](const auto& of) -> pindrive_error {
     if (const auto error = duration_in(of, settling_band, duration)) return error;
     const auto view = of.view();
-    write(pd::Measurement(view, decltype(view.known_until())(duration)).transient(settling_band),
-          of.outcome(), values);
+    using T = decltype(view.known_until());
+    write(pd::transient_numbers<T>, pd::Measurement(view, T(duration)).transient(settling_band),
+          values);
     return PINDRIVE_OK;
   });
 }
@@ -754,9 +695,9 @@ pindrive_error pindrive_duration(const pindrive_motion* motion, double settling_
   return PINDRIVE_OK;
 }
 
-size_t pindrive_energy_count(void) { return energy_count; }
+size_t pindrive_energy_count(void) { return std::size(pd::ledger_numbers<double>); }
 const char* pindrive_energy_name(size_t index) {
-  return index < energy_count ? energy_names[index] : nullptr;
+  return name_of(pd::ledger_numbers<double>, index);
 }
 
 pindrive_error pindrive_energy(const pindrive_motion* motion, double duration, double* values) {
@@ -765,21 +706,15 @@ pindrive_error pindrive_energy(const pindrive_motion* motion, double duration, d
   return motion->ask([&](const auto& of) -> pindrive_error {
     if (const auto error = duration_in(of, pd::settling_band, duration)) return error;
     const auto view = of.view();
-    const auto ledger = pd::energy_ledger(view, decltype(view.known_until())(duration));
-    const decltype(ledger.residual()) entries[] = {
-        ledger.kinetic_start,    ledger.kinetic_end,       ledger.spring_start,
-        ledger.spring_end,       ledger.skin_start,        ledger.skin_end,
-        ledger.plate_work,       ledger.inertia_work,      ledger.damper_dissipated,
-        ledger.plate_dissipated, ledger.finger_dissipated, ledger.residual()};
-    static_assert(sizeof entries / sizeof *entries == energy_count);
-    for (const auto& entry : entries) *values++ = pd::result(entry);
+    using T = decltype(view.known_until());
+    write(pd::ledger_numbers<T>, pd::energy_ledger(view, T(duration)), values);
     return PINDRIVE_OK;
   });
 }
 
-size_t pindrive_certificate_count(void) { return certificate_count; }
+size_t pindrive_certificate_count(void) { return std::size(pd::certificate_numbers<double>); }
 const char* pindrive_certificate_name(size_t index) {
-  return index < certificate_count ? certificate_names[index] : nullptr;
+  return name_of(pd::certificate_numbers<double>, index);
 }
 
 pindrive_error pindrive_certificate(const pindrive_motion* motion, double duration,
@@ -789,11 +724,7 @@ pindrive_error pindrive_certificate(const pindrive_motion* motion, double durati
   if (const pindrive_error error = duration_in(*motion->values, pd::settling_band, duration))
     return error;
   const auto view = motion->values->view();
-  const auto c = pd::Certifier<double>(view, duration).certify();
-  const double laws[] = {c.motion_law, c.kinematics, c.friction_law, c.force_bound, c.sliding_sign,
-                         c.sticking,   c.continuity, c.transitions,  c.energy,      c.dissipation};
-  static_assert(sizeof laws / sizeof *laws == certificate_count);
-  std::copy(std::begin(laws), std::end(laws), values);
+  write(pd::certificate_numbers<double>, pd::Certifier<double>(view, duration).certify(), values);
   return PINDRIVE_OK;
 }
 
@@ -838,7 +769,8 @@ pindrive_error pindrive_batch(const pindrive_drive* drive, const pindrive_releas
       double duration = none;
       duration_in(*motion, settling_band, duration);
       const auto view = motion->view();
-      write(pd::Measurement(view, duration).transient(settling_band), motion->outcome(), row);
+      write(pd::transient_numbers<double>, pd::Measurement(view, duration).transient(settling_band),
+            row);
       if (status) status[i] = static_cast<pindrive_status>(motion->outcome().status);
       if (end) end[i] = static_cast<pindrive_end>(motion->outcome().end);
     }

@@ -14,6 +14,7 @@
 
 #include "pindrive/breakaway.hpp"
 #include "pindrive/motion.hpp"
+#include "pindrive/named_number.hpp"
 #include "pindrive/positivity.hpp"
 #include "pindrive/quadrature.hpp"
 
@@ -39,6 +40,21 @@ struct Certificate {
     return std::max({motion_law, kinematics, friction_law, force_bound, sliding_sign, sticking,
                      continuity, transitions, energy, dissipation});
   }
+};
+
+/// Its laws, by their names in the table of quantities, after "certificate.".
+template <class T>
+inline constexpr NamedNumber<T, Certificate<T>> certificate_numbers[] = {
+    {"motion_law", [](const Certificate<T>& c) { return c.motion_law; }},
+    {"kinematics", [](const Certificate<T>& c) { return c.kinematics; }},
+    {"friction_law", [](const Certificate<T>& c) { return c.friction_law; }},
+    {"force_bound", [](const Certificate<T>& c) { return c.force_bound; }},
+    {"sliding_sign", [](const Certificate<T>& c) { return c.sliding_sign; }},
+    {"sticking", [](const Certificate<T>& c) { return c.sticking; }},
+    {"continuity", [](const Certificate<T>& c) { return c.continuity; }},
+    {"transitions", [](const Certificate<T>& c) { return c.transitions; }},
+    {"energy", [](const Certificate<T>& c) { return c.energy; }},
+    {"dissipation", [](const Certificate<T>& c) { return c.dissipation; }},
 };
 
 template <class T, class GoOn = Unattended>

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "pindrive/motion.hpp"
+#include "pindrive/named_number.hpp"
 #include "pindrive/quadrature.hpp"
 #include "pindrive/transient.hpp"
 
@@ -34,6 +35,23 @@ struct Ledger {
                      abs(plate_work), abs(inertia_work), damper_dissipated, plate_dissipated,
                      finger_dissipated, exchanged});
   }
+};
+
+/// Its terms, by their names in the table of quantities, after "energy.".
+template <class T>
+inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
+    {"kinetic_start", [](const Ledger<T>& l) { return l.kinetic_start; }},
+    {"kinetic_end", [](const Ledger<T>& l) { return l.kinetic_end; }},
+    {"spring_start", [](const Ledger<T>& l) { return l.spring_start; }},
+    {"spring_end", [](const Ledger<T>& l) { return l.spring_end; }},
+    {"skin_start", [](const Ledger<T>& l) { return l.skin_start; }},
+    {"skin_end", [](const Ledger<T>& l) { return l.skin_end; }},
+    {"plate_work", [](const Ledger<T>& l) { return l.plate_work; }},
+    {"inertia_work", [](const Ledger<T>& l) { return l.inertia_work; }},
+    {"damper_dissipated", [](const Ledger<T>& l) { return l.damper_dissipated; }},
+    {"plate_dissipated", [](const Ledger<T>& l) { return l.plate_dissipated; }},
+    {"finger_dissipated", [](const Ledger<T>& l) { return l.finger_dissipated; }},
+    {"residual", [](const Ledger<T>& l) { return l.residual(); }},
 };
 
 /// The ledger over [0, duration] of a motion whose numbers are known.

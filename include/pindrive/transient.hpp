@@ -9,6 +9,7 @@
 #include "pindrive/contact_use.hpp"
 #include "pindrive/extrema.hpp"
 #include "pindrive/motion.hpp"
+#include "pindrive/named_number.hpp"
 #include "pindrive/roots.hpp"
 #include "pindrive/settling.hpp"
 
@@ -33,7 +34,42 @@ struct Transient {
   T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
   T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
   T amplitude{none};     ///< of the final oscillation, m
+  T period{none};        ///< of the final oscillation, s
   ContactUse<T> plate, finger;
+};
+
+/// Its numbers, by their names in the table of quantities.
+template <class T>
+inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
+    {"transient.peak_displacement", [](const Transient<T>& t) { return t.peak_displacement; }},
+    {"transient.peak_time", [](const Transient<T>& t) { return t.peak_time; }},
+    {"transient.trough_displacement", [](const Transient<T>& t) { return t.trough_displacement; }},
+    {"transient.trough_time", [](const Transient<T>& t) { return t.trough_time; }},
+    {"transient.swing", [](const Transient<T>& t) { return t.swing; }},
+    {"transient.return_velocity", [](const Transient<T>& t) { return t.return_velocity; }},
+    {"transient.return_velocity_time",
+     [](const Transient<T>& t) { return t.return_velocity_time; }},
+    {"transient.first_reversal_time", [](const Transient<T>& t) { return t.first_reversal_time; }},
+    {"transient.settling_time", [](const Transient<T>& t) { return t.settling_time; }},
+    {"transient.rest_time", [](const Transient<T>& t) { return t.rest_time; }},
+    {"transient.last_event_time", [](const Transient<T>& t) { return t.last_event_time; }},
+    {"transient.peak_stretch", [](const Transient<T>& t) { return t.peak_stretch; }},
+    {"transient.peak_stretch_rate", [](const Transient<T>& t) { return t.peak_stretch_rate; }},
+    {"transient.plate.reversals", [](const Transient<T>& t) { return t.plate.reversals; }},
+    {"transient.plate.time_stuck", [](const Transient<T>& t) { return t.plate.time_stuck; }},
+    {"transient.plate.distance_slid", [](const Transient<T>& t) { return t.plate.distance_slid; }},
+    {"transient.plate.dissipated", [](const Transient<T>& t) { return t.plate.dissipated; }},
+    {"transient.plate.peak_force", [](const Transient<T>& t) { return t.plate.peak_force; }},
+    {"transient.finger.reversals", [](const Transient<T>& t) { return t.finger.reversals; }},
+    {"transient.finger.time_stuck", [](const Transient<T>& t) { return t.finger.time_stuck; }},
+    {"transient.finger.distance_slid",
+     [](const Transient<T>& t) { return t.finger.distance_slid; }},
+    {"transient.finger.dissipated", [](const Transient<T>& t) { return t.finger.dissipated; }},
+    {"transient.finger.peak_force", [](const Transient<T>& t) { return t.finger.peak_force; }},
+    {"ending.position", [](const Transient<T>& t) { return t.end_position; }},
+    {"ending.steady_since", [](const Transient<T>& t) { return t.steady_since; }},
+    {"ending.amplitude", [](const Transient<T>& t) { return t.amplitude; }},
+    {"ending.period", [](const Transient<T>& t) { return t.period; }},
 };
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
@@ -230,6 +266,7 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.end == End::moving) return;
     result.steady_since = outcome.steady_since;
+    result.period = outcome.period;
     result.rest_time = outcome.end == End::resting ? rest_begin() : never;
     result.last_event_time = T(0);
     const Segment<T>* segment = motion_.end();

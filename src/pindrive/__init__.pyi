@@ -20,8 +20,8 @@ from pindrive.motion.release import Release as Release
 from pindrive.motion.simulate import simulate as simulate
 from pindrive.quantities.status import Status as Status
 from pindrive.quantities.table import ImplausibleValueWarning as ImplausibleValueWarning
+from pindrive.study.local_sensitivity import local_sensitivity as local_sensitivity
 from pindrive.study.robustness import robustness as robustness
-from pindrive.study.sensitivity import local_sensitivity as local_sensitivity
 from pindrive.study.sensitivity import sobol as sobol
 from pindrive.study.study import Study as Study
 from pindrive.study.study import load_study as load_study

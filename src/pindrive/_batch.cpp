@@ -36,7 +36,7 @@ using nb::literals::operator""_a;
 
 namespace {
 
-using pe::Column, pe::Ledger, pe::no_column, pe::Number, pe::Row, pe::Rows, pe::Summary;
+using pe::Column, pe::Ledger, pe::no_column, pe::Row, pe::Rows, pe::Summary;
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
 
@@ -290,12 +290,11 @@ class Batch {
     block.output[Block::rest_time] = space.rest_time;
     if (events_.size() > 0) block.output[PlainNumber::events] = space.events;
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].number && rows_[k].number->column != no_column)
-        block.output[rows_[k].number->column] = numbers_[k] + first;
+      if (rows_[k].column != no_column) block.output[rows_[k].column] = numbers_[k] + first;
     kernel_.follow(block, static_cast<int>(count), asked_);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      if (!rows_[k].number) continue;
-      const int column = rows_[k].number->column;
+      if (rows_[k].energy) continue;
+      const int column = rows_[k].column;
       if (column == no_column)
         std::fill_n(numbers_[k] + first, count, std::numeric_limits<double>::quiet_NaN());
       else if (block.output[column] != numbers_[k] + first)  // two rows of one column
@@ -342,10 +341,10 @@ class Batch {
       summary.final_position = segment->flow.position.at(moved, tau);
       summary.final_velocity = segment->flow.velocity.at(moved, tau);
       for (std::size_t k = 0; k < rows_.size(); ++k) {
-        const Number<Summary>* number = rows_[k].number;
-        if (!number) continue;
-        if (left == Left::all || number->column == PlainNumber::settling_time)
-          numbers_[k][i] = number->of(summary);
+        const Row& row = rows_[k];
+        if (row.energy) continue;
+        if (left == Left::all || row.column == PlainNumber::settling_time)
+          numbers_[k][i] = row.of(summary);
       }
     }
     if (left == Left::all) {
@@ -356,7 +355,7 @@ class Batch {
     if (!energy_) return;
     const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].energy) numbers_[k][i] = rows_[k].energy->of(ledger);
+      if (rows_[k].energy) numbers_[k][i] = rows_[k].energy(ledger);
   }
 
   const Inputs& inputs_;

@@ -164,67 +164,31 @@ nb::dict segments(const CoreMotion<T>& motion) {
   return table;
 }
 
-template <class T>
-nb::dict contact_use(const pd::ContactUse<T>& use) {
+/// The numbers of a result by their names.
+template <class T, class Result, std::size_t count>
+nb::dict named(const pd::NamedNumber<T, Result> (&numbers)[count], const Result& of) {
   nb::dict d;
-  d["reversals"] = static_cast<long long>(result(use.reversals));
-  d["time_stuck"] = result(use.time_stuck);
-  d["distance_slid"] = result(use.distance_slid);
-  d["dissipated"] = result(use.dissipated);
-  d["peak_force"] = result(use.peak_force);
+  for (const auto& number : numbers) d[number.name] = result(number.of(of));
   return d;
 }
 
 template <class T>
 nb::dict transient(const CoreMotion<T>& motion, double duration, double band) {
   const auto view = motion.view();
-  const pd::Transient<T> t = interruptible([&](auto go_on) {
-    return pd::Measurement<T, decltype(go_on)>(view, duration, go_on).transient(band);
-  });
-  nb::dict d;
-  d["peak_displacement"] = result(t.peak_displacement);
-  d["peak_time"] = result(t.peak_time);
-  d["trough_displacement"] = result(t.trough_displacement);
-  d["trough_time"] = result(t.trough_time);
-  d["swing"] = result(t.swing);
-  d["return_velocity"] = result(t.return_velocity);
-  d["return_velocity_time"] = result(t.return_velocity_time);
-  d["first_reversal_time"] = result(t.first_reversal_time);
-  d["settling_time"] = result(t.settling_time);
-  d["rest_time"] = result(t.rest_time);
-  d["last_event_time"] = result(t.last_event_time);
-  d["peak_stretch"] = result(t.peak_stretch);
-  d["peak_stretch_rate"] = result(t.peak_stretch_rate);
-  d["end_position"] = result(t.end_position);
-  d["amplitude"] = result(t.amplitude);
-  d["plate"] = contact_use(t.plate);
-  d["finger"] = contact_use(t.finger);
-  return d;
+  return named(pd::transient_numbers<T>, interruptible([&](auto go_on) {
+                 return pd::Measurement<T, decltype(go_on)>(view, duration, go_on).transient(band);
+               }));
 }
 
 template <class T>
 nb::dict ledger(const CoreMotion<T>& motion, double duration) {
-  const auto l = interruptible([&](auto go_on) {
-    const auto view = motion.view();
-    const T band(pd::settling_band);
-    const auto numbers =
-        pd::Measurement<T, decltype(go_on)>(view, T(duration), go_on).transient(band);
-    return pd::energy_ledger(view, T(duration), numbers, go_on);
-  });
-  nb::dict d;
-  d["kinetic_start"] = result(l.kinetic_start);
-  d["kinetic_end"] = result(l.kinetic_end);
-  d["spring_start"] = result(l.spring_start);
-  d["spring_end"] = result(l.spring_end);
-  d["skin_start"] = result(l.skin_start);
-  d["skin_end"] = result(l.skin_end);
-  d["plate_work"] = result(l.plate_work);
-  d["inertia_work"] = result(l.inertia_work);
-  d["damper_dissipated"] = result(l.damper_dissipated);
-  d["plate_dissipated"] = result(l.plate_dissipated);
-  d["finger_dissipated"] = result(l.finger_dissipated);
-  d["residual"] = result(l.residual());
-  return d;
+  return named(pd::ledger_numbers<T>, interruptible([&](auto go_on) {
+                 const auto view = motion.view();
+                 const T band(pd::settling_band);
+                 const auto numbers =
+                     pd::Measurement<T, decltype(go_on)>(view, T(duration), go_on).transient(band);
+                 return pd::energy_ledger(view, T(duration), numbers, go_on);
+               }));
 }
 
 /// Times and what is seen there, as far as a motion hands them over, but no more than so many.
@@ -273,21 +237,9 @@ double duration(const CoreMotion<double>& motion, double band) {
 
 nb::dict certificate(const CoreMotion<double>& motion, double duration) {
   const auto view = motion.view();
-  const pd::Certificate<double> c = interruptible([&](auto go_on) {
-    return pd::Certifier<double, decltype(go_on)>(view, duration, go_on).certify();
-  });
-  nb::dict d;
-  d["motion_law"] = c.motion_law;
-  d["kinematics"] = c.kinematics;
-  d["friction_law"] = c.friction_law;
-  d["force_bound"] = c.force_bound;
-  d["sliding_sign"] = c.sliding_sign;
-  d["sticking"] = c.sticking;
-  d["continuity"] = c.continuity;
-  d["transitions"] = c.transitions;
-  d["energy"] = c.energy;
-  d["dissipation"] = c.dissipation;
-  return d;
+  return named(pd::certificate_numbers<double>, interruptible([&](auto go_on) {
+                 return pd::Certifier<double, decltype(go_on)>(view, duration, go_on).certify();
+               }));
 }
 
 /// What a motion and its derivatives have in common.
@@ -304,10 +256,7 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
       .def("stretch_rate", &stretch<T, true>, "times"_a, "right"_a)
       .def("segments", &segments<T>, "Columns, one row a segment.")
       .def("transient", &transient<T>, "duration"_a, "band"_a)
-      .def("ledger", &ledger<T>, "duration"_a)
-      .def_prop_ro("steady_since",
-                   [](const CoreMotion<T>& c) { return result(c.outcome().steady_since); })
-      .def_prop_ro("period", [](const CoreMotion<T>& c) { return result(c.outcome().period); });
+      .def("ledger", &ledger<T>, "duration"_a);
 }
 
 }  // namespace

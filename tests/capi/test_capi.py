@@ -275,23 +275,12 @@ def c(prefix: Path) -> Interface:
     return Interface(prefix)
 
 
-def numbers_of_core(core: Any, duration: float) -> list[float]:
-    """Those of C, in its order, from the extension."""
-    transient = core.transient(duration, 0.05)
-    uses = [transient.pop("plate"), transient.pop("finger")]
-    position, amplitude = transient.pop("end_position"), transient.pop("amplitude")
-    return [
-        *transient.values(),
-        *(number for use in uses for number in use.values()),
-        *(position, core.steady_since, amplitude, core.period),
-    ]
-
-
 def test_numbers_have_their_names_of_the_table(c: Interface) -> None:
     assert c.names("number") == [
         number.name for number in (*TRANSIENT, *ENDING) if number.name != "transient.settled"
     ]
     core = Case().core()
+    assert c.names("number") == [*core.transient(0.1, 0.05)]
     assert c.names("energy") == [*core.ledger(0.1)]
     assert c.names("certificate") == [*core.certificate(0.1)]
 
@@ -317,7 +306,9 @@ def compare(c: Interface, number: int, motion: c_void_p, core: Any) -> float:
     """Values, segments and numbers of a motion, or their derivatives; the duration looked at."""
     outcome = Outcome()
     c("outcome_of", motion, byref(outcome))
-    same((outcome.steady_since, outcome.period), (core.steady_since, core.period), number)
+    numbers = core.transient(0.1, 0.05)
+    ending = [numbers[f"ending.{name}"] for name in ("steady_since", "period")]
+    same((outcome.steady_since, outcome.period), ending, number)
     table = core.segments()
     assert outcome.segments == len(table["begin"])
     for i in range(0, outcome.segments, max(outcome.segments // 7, 1)):
@@ -359,7 +350,7 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
         for quantity, name in enumerate(QUANTITIES):
             same(evaluated(c, motion, quantity, at, 1), getattr(core, name)(at, True), number)
         for of, expected in (
-            ("numbers", numbers_of_core(core, duration)),
+            ("numbers", [*core.transient(duration, 0.05).values()]),
             ("energy", [*core.ledger(duration).values()]),
             ("certificate", [*core.certificate(duration).values()]),
         ):
@@ -416,7 +407,7 @@ def test_derivatives_have_the_bits_of_python(c: Interface) -> None:
             same(evaluated(c, derivative, quantity, at, 1), getattr(core, name)(at, True), number)
         row = np.empty(len(c.names("number")))
         c("numbers", derivative, c_double(duration), c_double(0.05), doubles(row))
-        same(row, numbers_of_core(core, duration), number)
+        same(row, [*core.transient(duration, 0.05).values()], number)
         c.free(drive=drive, release=release, motion=derivative)
         c.free(drive=of_drive, release=of_release)
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from html import escape
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -19,8 +21,9 @@ from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
 from pindrive.paper import formulas, maps, population, report
 from pindrive.paper.exhibit import Exhibit, at_most, by_case, listed, share, summary, trend
-from pindrive.paper.exhibit import html as as_html
 from pindrive.paper.exhibit import markdown as as_markdown
+from pindrive.paper.page import anchor
+from pindrive.paper.page import page as as_page
 from pindrive.paper.population import Claim
 from pindrive.paper.report import Report
 from pindrive.paper.sensitivity import PARAMETERS
@@ -122,7 +125,7 @@ class Reader(HTMLParser):
                 self.ids.append(value)
             elif name in ("src", "href", "xlink:href", "data", "action"):
                 if value.startswith("#"):
-                    self.links.append(value[1:])
+                    self.links.append(unquote(value[1:]))
                 elif not value.startswith("data:"):
                     self.foreign.append(value)
 
@@ -141,14 +144,18 @@ def test_the_page_holds_every_figure_and_its_own_links(page: str, made: Report) 
     assert len(found.ids) == len(set(found.ids))
     assert set(found.links) <= set(found.ids)
     assert set(re.findall(r"url\(#([^)]+)\)", page)) <= set(found.ids)
-    assert {e.name for e in made.exhibits} <= set(found.ids)
+    assert {anchor(as_markdown(e.title)) for e in made.exhibits} <= set(found.ids)
+    assert all(f'aria-label="{escape(e.title)}"' in page for e in made.exhibits)
     assert found.tags.count("math") > 40
 
 
 def test_the_page_has_every_equation_and_every_sentence(page: str, made: Report) -> None:
     numbers = {int(n) for row in made.rows for n in re.findall(r"\d+", row.number)}
     assert numbers == set(range(1, 27))
-    assert page.count('class="place"') == len(made.claims)
+    for claim in made.claims:
+        assert f"“{as_html(claim.sentence)}” <em>{claim.place}</em>" in page
+        assert as_html(claim.verdict) in page
+    assert len(set(re.findall(r'<strong class="(\w+)">', page))) == 3
     for e in made.exhibits:
         assert all(as_html(sentence) in page for sentence in (*e.readings, e.caption))
 
@@ -354,15 +361,27 @@ def test_words_of_numbers() -> None:
     assert by_case({"1": "rises", "3": "falls", "2": "rises"}) == "rises at 1 and 2, falls at 3"
 
 
-def test_one_notation_two_faces() -> None:
+def as_html(text: str) -> str:
+    """A sentence as the page has it."""
+    body = as_page(f"# title\n\n{as_markdown(text)}\n", {}).partition("<p>")[2]
+    return body.partition("</p>")[0]
+
+
+def test_a_page_is_made_from_markdown() -> None:
     text = r"φ′_0 < x_m,a: $\mathrm{sign}\,\dot x$, `first_time` & more"
     assert as_markdown(text) == (
         r"φ′<sub>0</sub> < x<sub>m,a</sub>: $\mathrm{sign} \dot x$, `first_time` & more"
     )
-    page = as_html(text)
-    assert page.startswith("φ′<sub>0</sub> &lt; x<sub>m,a</sub>: <math")
-    assert "<mtext>sign</mtext>" in page
-    assert page.endswith("<code>first_time</code> &amp; more")
+    shown = as_html(text)
+    assert shown.startswith("φ′<sub>0</sub> &lt; x<sub>m,a</sub>: <math")
+    assert "<mtext>sign</mtext>" in shown
+    assert shown.endswith("<code>first_time</code> &amp; more")
+    for verdict, kind in (("holds", "holds"), ("holds when x", "part"), ("does not hold", "not")):
+        assert as_html(f"**{verdict}**") == f'<strong class="{kind}">{verdict}</strong>'
+    svg = b'<?xml?><svg id="a"><use href="#a"/></svg>'
+    page = as_page("# Title\n\n## A _part_, (1)\n\n![what](folder/name.png)\n", {"name": svg})
+    assert '<nav><a href="#a-part-1">A <em>part</em>, (1)</a></nav>\n<h2 id="a-part-1">' in page
+    assert 'aria-label="what"><svg id="name-a"><use href="#name-a"/></svg>' in page
 
 
 # ---- the command ---------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ import xarray as xr
 
 from command import run
 from pindrive import Contact, Drive, Release, Status, _core, simulate, simulate_batch
-from pindrive.quantities.status import End, SimulationError, flag_attributes
+from pindrive.quantities.status import End, SimulationError, outcome_attributes
 
 SOURCES = sorted(Path(__file__).parents[2].joinpath("src", "pindrive").rglob("*.py"))
 
@@ -35,9 +35,9 @@ def test_each_code_has_words_of_its_own() -> None:
     assert all("\n" not in text and text for text in words)
 
 
-@pytest.mark.parametrize("kind", [Status, End])
-def test_a_flag_says_what_its_values_mean(kind: type[Status | End]) -> None:
-    flags = flag_attributes(kind)
+@pytest.mark.parametrize(("name", "kind"), [("status", Status), ("ending", End)])
+def test_a_flag_says_what_its_values_mean(name: str, kind: type[Status | End]) -> None:
+    flags = outcome_attributes(name)
     names = flags["flag_meanings"].split()
     values = flags["flag_values"].tolist()
     assert dict(zip(names, values, strict=True)) == {code.name: code.value for code in kind}

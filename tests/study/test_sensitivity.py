@@ -15,9 +15,10 @@ from typer.testing import CliRunner
 from pindrive.cli.app import app
 from pindrive.files.device import load_device, motion_of
 from pindrive.files.template import DRIVE
+from pindrive.study.design import ranges_of
 from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.local_sensitivity import elasticities
-from pindrive.study.sensitivity import ranges_of, sobol, sobol_indices
+from pindrive.study.sensitivity import sobol, sobol_indices
 from pindrive.study.study import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pindrive.cli.errors import refusing
-from pindrive.cli.help import ASKED, COMPUTED, FILES, command
+from pindrive.cli.help import ASKED, COMPUTED, command
 from pindrive.cli.options import (
+    ForceOption,
     OverridesOption,
     PlotOption,
     count_option,
     file_option,
+    option,
     picture,
     save_picture,
 )
@@ -35,48 +37,29 @@ def fit(
     ],
     free: Annotated[
         list[str],
-        typer.Option(
-            metavar="KEYS",
-            help=f'What is fitted, with bounds or not: "{EXAMPLE}".',
-            rich_help_panel=ASKED,
-        ),
+        option(ASKED, f'What is fitted, with bounds or not: "{EXAMPLE}".', metavar="KEYS"),
     ],
     output: Annotated[Path | None, file_option("The fitted device file.", "--output", "-o")] = None,
     mouse_velocity: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="SPEED|CSV",
-            help="Of each recording, in their order, or of all; its column.",
-            rich_help_panel=ASKED,
+        option(
+            ASKED, "Of each recording, in their order, or of all; its column.", metavar="SPEED|CSV"
         ),
     ] = None,
     window: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FROM..TO", help='Samples used: "5 ms..150 ms".', rich_help_panel=ASKED
-        ),
+        str | None, option(ASKED, 'Samples used: "5 ms..150 ms".', metavar="FROM..TO")
     ] = None,
     noise: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="CHANNEL=SIZE",
-            help='Known noise: "position=5 um"; else estimated.',
-            rich_help_panel=ASKED,
-        ),
+        option(ASKED, 'Known noise: "position=5 um"; else estimated.', metavar="CHANNEL=SIZE"),
     ] = None,
     compare: Annotated[
-        bool,
-        typer.Option(
-            "--compare", help="Compare laws of friction by AICc too.", rich_help_panel=COMPUTED
-        ),
+        bool, option(COMPUTED, "Compare laws of friction by AICc too.", "--compare")
     ] = False,
     plot: PlotOption = None,
     seed: Annotated[int, count_option("--seed", "Of the candidates.", least=0)] = 1,
     overrides: OverridesOption = None,
-    force: Annotated[
-        bool,
-        typer.Option("--force", help="Replace such a file that is there.", rich_help_panel=FILES),
-    ] = False,
+    force: ForceOption = False,
 ) -> None:
     """Fit a device to recordings of its pin, and say what they cannot tell.
 

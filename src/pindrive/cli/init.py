@@ -8,31 +8,19 @@ from typing import Annotated
 import typer
 
 from pindrive.cli.errors import refusing
-from pindrive.cli.help import FILES, WRITTEN, command
+from pindrive.cli.help import WRITTEN, command
+from pindrive.cli.options import ForceOption, option
 
 
 @command("Device and study files", "pindrive init device.toml --device")
 def init(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")],
-    force: Annotated[
-        bool,
-        typer.Option("--force", help="Replace such a file that is there.", rich_help_panel=FILES),
-    ] = False,
+    force: ForceOption = False,
     device: Annotated[
-        bool,
-        typer.Option(
-            "--device",
-            help="With magnet, control block, pin array and hand.",
-            rich_help_panel=WRITTEN,
-        ),
+        bool, option(WRITTEN, "With magnet, control block, pin array and hand.", "--device")
     ] = False,
     study: Annotated[
-        bool,
-        typer.Option(
-            "--study",
-            help="A study file: a device, and what to vary of it.",
-            rich_help_panel=WRITTEN,
-        ),
+        bool, option(WRITTEN, "A study file: a device, and what to vary of it.", "--study")
     ] = False,
 ) -> None:
     """Write a commented device file, or study file, to start from."""

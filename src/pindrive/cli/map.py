@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import ASKED, command
-from pindrive.cli.options import file_option, picture, save_picture
-
-
-def _asked(help: str, *names: str, metavar: str) -> Any:
-    return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=ASKED)
+from pindrive.cli.options import file_option, option, picture, save_picture
 
 
 @command("Studies", "pindrive map study.nc --number settling_time -o map.png")
 def map_study(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="What a sweep wrote (NetCDF).")],
     output: Annotated[Path, file_option(".png, .svg or .pdf.", "--output", "-o", metavar="FIGURE")],
-    x: Annotated[str | None, _asked("Along the abscissa.", "--x", metavar="KEY")] = None,
+    x: Annotated[str | None, option(ASKED, "Along the abscissa.", "--x", metavar="KEY")] = None,
     y: Annotated[
-        str | None, _asked("Along the ordinate; curves if none.", "--y", metavar="KEY")
+        str | None, option(ASKED, "Along the ordinate; curves if none.", "--y", metavar="KEY")
     ] = None,
     number: Annotated[
         list[str] | None,
-        _asked("What to draw; settling_time or shown_part if none.", metavar="NAME"),
+        option(ASKED, "What to draw; settling_time or shown_part if none.", metavar="NAME"),
     ] = None,
     at: Annotated[
-        list[str] | None, _asked("A slice at the nearest value.", "--at", metavar="KEY=VALUE")
+        list[str] | None,
+        option(ASKED, "A slice at the nearest value.", "--at", metavar="KEY=VALUE"),
     ] = None,
 ) -> None:
     """Draw a study: maps over two keys, curves over one, slices side by side."""

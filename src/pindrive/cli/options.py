@@ -43,25 +43,34 @@ def count_option(
     return typer.Option(option, metavar=metavar, help=help, parser=count, rich_help_panel=panel)
 
 
+def option(panel: str, help: str, *names: str, metavar: str | None = None) -> Any:
+    """An option in one of the groups of a command's help; a flag where names are given alone."""
+    return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=panel)
+
+
 def file_option(help: str, *names: str, metavar: str = "FILE") -> Any:
     """An option that names a file to write."""
-    return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=FILES)
+    return option(FILES, help, *names, metavar=metavar)
 
 
 DeviceArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Device file (TOML).")]
 StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OverridesOption = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
+        ASKED,
+        'Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
         "--set",
         metavar="KEY=VALUE",
-        help='Another value, as in --set mass="12 g"; static friction keeps its ratio to kinetic.',
-        rich_help_panel=ASKED,
     ),
 ]
 PlotOption = Annotated[Path | None, file_option("Draw it: .png, .svg or .pdf.")]
 CsvOption = Annotated[
     Path | None, file_option("Even samples; events go beside it, to FILE-events.csv.")
+]
+ForceOption = Annotated[bool, option(FILES, "Replace such a file that is there.", "--force")]
+RateOption = Annotated[
+    str | None, file_option('Of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY")
 ]
 ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
 

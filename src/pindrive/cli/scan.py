@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -15,9 +15,11 @@ from pindrive.cli.options import (
     DeviceArgument,
     OverridesOption,
     PlotOption,
+    RateOption,
     csv_rate,
     file_option,
     measures,
+    option,
     picture,
     save_picture,
 )
@@ -26,39 +28,33 @@ from pindrive.cli.progress import bar
 STROKES = "strokes"
 
 
-def _page_option(metavar: str, help: str) -> Any:
-    return typer.Option(metavar=metavar, help=help, rich_help_panel=PAGE)
-
-
 @command("The whole device", 'pindrive scan device.toml --text "a" --plot scan.png')
 def scan(
     file: DeviceArgument,
     text: Annotated[
-        str | None, _page_option("TEXT", r"What is on the page; \n begins a line.")
+        str | None, option(PAGE, r"What is on the page; \n begins a line.", metavar="TEXT")
     ] = None,
-    image: Annotated[Path | None, _page_option("FILE", "A picture of the page instead.")] = None,
+    image: Annotated[
+        Path | None, option(PAGE, "A picture of the page instead.", metavar="FILE")
+    ] = None,
     grating: Annotated[
-        str | None, _page_option("PITCHES", 'Lines instead, as in "4 mm, 2 mm".')
+        str | None, option(PAGE, 'Lines instead, as in "4 mm, 2 mm".', metavar="PITCHES")
     ] = None,
     font: Annotated[
-        Path | None, _page_option("FILE", "Font of the text; DejaVu Sans if none.")
+        Path | None, option(PAGE, "Font of the text; DejaVu Sans if none.", metavar="FILE")
     ] = None,
     path: Annotated[
-        str, _page_option("strokes|FILE", "How the hand moves: a CSV of t [s], x, y.")
+        str, option(PAGE, "How the hand moves: a CSV of t [s], x, y.", metavar="strokes|FILE")
     ] = STROKES,
     plot: PlotOption = None,
     pin: Annotated[
         int | None, file_option("The pin drawn in detail, from 0.", metavar="NUMBER")
     ] = None,
     film: Annotated[Path | None, file_option("Film it: .gif or .mp4.", "--animate")] = None,
-    slow: Annotated[
-        float, typer.Option(help="How many times slower the film is.", rich_help_panel=FILES)
-    ] = 4.0,
+    slow: Annotated[float, option(FILES, "How many times slower the film is.")] = 4.0,
     lines: Annotated[Path | None, file_option("Each line under each pin, as CSV.")] = None,
     csv: CsvOption = None,
-    rate: Annotated[
-        str | None, file_option('Of the CSV, as in "1 kHz".', metavar="FREQUENCY")
-    ] = None,
+    rate: RateOption = None,
     output: Annotated[Path | None, file_option("All of it, as NetCDF.", "--output", "-o")] = None,
     overrides: OverridesOption = None,
 ) -> None:

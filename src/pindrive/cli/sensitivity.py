@@ -14,6 +14,7 @@ from pindrive.cli.options import (
     StudyArgument,
     ThreadsOption,
     count_option,
+    option,
     picturing,
 )
 from pindrive.cli.progress import points_bar
@@ -24,16 +25,11 @@ def sensitivity(
     study: StudyArgument,
     plot: PlotOption = None,
     tolerances: Annotated[
-        bool,
-        typer.Option(
-            "--tolerances", help="Over [tolerances] instead of [axes].", rich_help_panel=ASKED
-        ),
+        bool, option(ASKED, "Over [tolerances] instead of [axes].", "--tolerances")
     ] = False,
     number: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME", help="A number to analyse; all unless given.", rich_help_panel=ASKED
-        ),
+        option(ASKED, "A number to analyse; all unless given.", metavar="NAME"),
     ] = None,
     rows: Annotated[
         int | None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +14,7 @@ from pindrive.cli.options import (
     PlotOption,
     measure,
     measures,
+    option,
     picturing,
 )
 from pindrive.cli.progress import bar
@@ -24,20 +25,20 @@ if TYPE_CHECKING:
 USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 
 
-def _asked(help: str, metavar: str | None = None) -> Any:
-    return typer.Option(metavar=metavar, help=help, rich_help_panel=ASKED)
-
-
 @command("The whole device", 'pindrive speed device.toml --pitch "4 mm" --plot speed.png')
 def speed(
     file: DeviceArgument,
     pitch: Annotated[
-        list[str] | None, _asked(f"From line to line; {USUAL} if none.", "LENGTHS")
+        list[str] | None, option(ASKED, f"From line to line; {USUAL} if none.", metavar="LENGTHS")
     ] = None,
-    width: Annotated[str | None, _asked("Of the lines; half the pitch if none.", "LENGTH")] = None,
-    part: Annotated[float, _asked("Part of its way that the pin must be back in between.")] = 0.5,
-    slowest: Annotated[str, _asked("Hand tried.", "SPEED")] = "5 mm/s",
-    fastest: Annotated[str, _asked("Hand tried.", "SPEED")] = "1000 mm/s",
+    width: Annotated[
+        str | None, option(ASKED, "Of the lines; half the pitch if none.", metavar="LENGTH")
+    ] = None,
+    part: Annotated[
+        float, option(ASKED, "Part of its way that the pin must be back in between.")
+    ] = 0.5,
+    slowest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "5 mm/s",
+    fastest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "1000 mm/s",
     plot: PlotOption = None,
     overrides: OverridesOption = None,
 ) -> None:

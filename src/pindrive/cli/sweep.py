@@ -15,6 +15,7 @@ from pindrive.cli.options import (
     ThreadsOption,
     count_option,
     file_option,
+    option,
 )
 from pindrive.cli.progress import points_bar
 
@@ -25,27 +26,16 @@ def sweep(
     output: Annotated[
         Path | None, file_option("NetCDF; STUDY.nc unless given.", "--output", "-o")
     ] = None,
-    resume: Annotated[
-        bool,
-        typer.Option("--resume", help="Go on with a run cut short.", rich_help_panel=COMPUTED),
-    ] = False,
+    resume: Annotated[bool, option(COMPUTED, "Go on with a run cut short.", "--resume")] = False,
     restart: Annotated[
-        bool,
-        typer.Option(
-            "--restart",
-            help="Replace an earlier study, or a run cut short.",
-            rich_help_panel=COMPUTED,
-        ),
+        bool, option(COMPUTED, "Replace an earlier study, or a run cut short.", "--restart")
     ] = False,
     stop_after: Annotated[
         int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
     threads: ThreadsOption = None,
     cluster: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS", help="Work on a Dask cluster instead.", rich_help_panel=COMPUTED
-        ),
+        str | None, option(COMPUTED, "Work on a Dask cluster instead.", metavar="ADDRESS")
     ] = None,
     overrides: OverridesOption = None,
 ) -> None:

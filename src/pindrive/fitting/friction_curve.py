@@ -84,7 +84,7 @@ class FrictionCurve(lazy.NotebookHtml):
 
     def plot(self) -> Figure:
         """Measured forces, the curve and its rows over speed, and AICc over their number."""
-        figure: Figure = lazy.call("pindrive.plot.friction_curve:plot_friction_curve", self)
+        figure: Figure = lazy.call("pindrive.plot.fit:plot_friction_curve", self)
         return figure
 
     def to_dataset(self) -> xr.Dataset:

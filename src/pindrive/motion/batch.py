@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,8 +15,8 @@ from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
 from pindrive.quantities.results import ENDING, ENERGY, FINAL, TRANSIENT
-from pindrive.quantities.status import End, Status, flag_attributes
-from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
+from pindrive.quantities.status import OUTCOMES, outcome_attributes
+from pindrive.quantities.table import QUANTITIES, check, hint, refusal, warn_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,8 +80,6 @@ _BOUNDS: Final = [
     ),
     *(_interval(QUANTITIES[name].limits) for name in ("damping_ratio", "phase")),
 ]
-
-_CODES: Final[dict[str, type[Status | End]]] = {"status": Status, "ending": End}
 
 # Variables that hold numbers, by the names of the table of quantities; the one that says yes or no.
 _SETTLED: Final = "transient_settled"
@@ -265,9 +262,8 @@ def _wanted(outputs: Sequence[str] | None, energy: bool) -> list[str]:
         raise ValueError(refusal("outputs", "a list of names", repr(outputs)))
     for name in outputs:
         if name not in known:
-            near = get_close_matches(str(name), known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
-            raise ValueError(f"outputs: unknown variable {name!r}; {hint}")
+            told = hint(str(name), known, f"there are {', '.join(known)}")
+            raise ValueError(f"outputs: unknown variable {name!r}; {told}")
     return [*dict.fromkeys([*outputs, *(_LEDGER if energy else ()), "status"])]
 
 
@@ -372,12 +368,8 @@ def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _attributes(name: str) -> dict[str, Any]:
-    """Unit and meaning of an argument or a number, or the values and meanings of a flag."""
-    if name == "events":
-        return {"long_name": "changes at a contact; of a cycle, those of one round"}
-    if name in _CODES:
-        return flag_attributes(_CODES[name])
+    """What a variable of the dataset says of itself."""
+    if name in OUTCOMES:
+        return outcome_attributes(name)
     named = "transient.settled" if name == _SETTLED else name
-    quantity = _ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]
-    attributes = {"long_name": quantity.meaning, "symbol": quantity.symbol}
-    return attributes | ({"units": quantity.unit} if quantity.unit else {})
+    return {**(_ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]).attributes}

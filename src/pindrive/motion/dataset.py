@@ -10,7 +10,7 @@ from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.results import SERIES
-from pindrive.quantities.status import End, Status, flag_attributes
+from pindrive.quantities.status import outcome_attributes
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
@@ -56,8 +56,8 @@ def dataset(motion: Motion, t: NDArray[np.float64]) -> xr.Dataset:
         data[f"event_{name}"] = ("event", [str(getattr(e, name)) for e in motion.events])
     for name, value in motion.numbers().items():
         data[name.replace(".", "_")] = ((), value, QUANTITIES[name].attributes)
-    data["status"] = ((), np.int8(motion.status), flag_attributes(Status))
-    data["ending"] = ((), np.int8(motion.ending.end), flag_attributes(End))
+    data["status"] = ((), np.int8(motion.status), outcome_attributes("status"))
+    data["ending"] = ((), np.int8(motion.ending.end), outcome_attributes("ending"))
     origin: dict[str, Any] = {
         "title": "Motion of a tactile device's pin after release",
         "source": f"pindrive {__version__}",

@@ -30,12 +30,13 @@ from pindrive.motion.results import (
     Transient,
     events_at,
     events_of,
-    flattened,
+    part,
     segments_of,
 )
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.status import Status
+from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
+from pindrive.quantities.status import End, Status
 from pindrive.quantities.table import check, default, refusal
 
 if TYPE_CHECKING:
@@ -294,20 +295,23 @@ class Motion(lazy.NotebookHtml):
     # ---- the numbers -----------------------------------------------------------------------------
 
     @cached_property
-    def _numbers(self) -> dict[str, Any]:
-        return self._core.transient(self.duration, self.settling_band)
+    def _numbers(self) -> dict[str, float]:
+        """Of the transient and the ending, by their names in the table of quantities."""
+        numbers = self._core.transient(self.duration, self.settling_band)
+        return {k: int(n) if k.endswith(".reversals") else n for k, n in numbers.items()}
 
     @cached_property
     def transient(self) -> Transient:
         """The transient's numbers, from the closed forms."""
-        numbers = {k: v for k, v in self._numbers.items() if k not in ("end_position", "amplitude")}
-        plate, finger = ContactUse(**numbers.pop("plate")), ContactUse(**numbers.pop("finger"))
-        return Transient(**numbers, plate=plate, finger=finger)
+        numbers = part(self._numbers, "transient.")
+        plate, finger = (ContactUse(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
+        own = {name: number for name, number in numbers.items() if "." not in name}
+        return Transient(**own, plate=plate, finger=finger)
 
     @cached_property
     def ending(self) -> Ending:
         """How the motion ends."""
-        return Ending.of(self._core, self._numbers)
+        return Ending(End(self._core.end), **part(self._numbers, "ending."))
 
     def settling_time(self, band: float = _core.settling_band) -> float:
         """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.
@@ -315,7 +319,7 @@ class Motion(lazy.NotebookHtml):
         The band is above 0 and at most 1.
         """
         band = check("settling_band", band, label="band")
-        return float(self._core.transient(self.duration, band)["settling_time"])
+        return float(self._core.transient(self.duration, band)["transient.settling_time"])
 
     @cached_property
     def energy(self) -> Ledger:
@@ -435,12 +439,9 @@ class Motion(lazy.NotebookHtml):
 
     def numbers(self) -> dict[str, float]:
         """Every number of the transient, its ending and its energy, SI, by the table's names."""
-        groups = {
-            "transient": {**asdict(self.transient), "settled": self.transient.settled},
-            "ending": {k: v for k, v in asdict(self.ending).items() if k != "end"},
-            "energy": asdict(self.energy),
-        }
-        return dict(flattened(groups))
+        found: dict[str, float] = self._numbers | {"transient.settled": self.transient.settled}
+        found |= {f"energy.{name}": term for name, term in asdict(self.energy).items()}
+        return {quantity.name: found[quantity.name] for quantity in (*TRANSIENT, *ENDING, *ENERGY)}
 
 
 def _quantity(which: str) -> int:

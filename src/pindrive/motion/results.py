@@ -10,30 +10,25 @@ from dataclasses import astuple, dataclass
 from math import isnan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from pindrive import _core
 from pindrive.quantities.status import End
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     import numpy as np
     from numpy.typing import NDArray
-
-    from pindrive import _core
 
 Side = Literal["left", "right"]
 ContactName = Literal["plate", "finger"]
 
 
-def flattened(tree: dict[str, Any], prefix: str = "") -> list[tuple[str, float]]:
-    """The numbers of nested dictionaries, with dotted names."""
-    rows = []
-    for name, value in tree.items():
-        if isinstance(value, dict):
-            rows += flattened(value, f"{prefix}{name}.")
-        else:
-            rows.append((prefix + name, value))
-    return rows
+def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
+    """The numbers of one part of the table of quantities, such as "ending.", without it."""
+    return {
+        name.removeprefix(table): number
+        for name, number in numbers.items()
+        if name.startswith(table)
+    }
 
 
 Cause = Literal["plate", "finger", "both"]
@@ -251,17 +246,6 @@ class Ending:
         cycle` that falling friction sustains without a carried phase.
         """
         return _CYCLE.get(self.end)
-
-    @classmethod
-    def of(cls, core: _core.Motion, numbers: dict[str, float]) -> Ending:
-        """The ending that the core found, with the numbers measured on the segments."""
-        return cls(
-            End(core.end),
-            numbers["end_position"],
-            core.steady_since,
-            numbers["amplitude"],
-            core.period,
-        )
 
 
 @dataclass(frozen=True, slots=True)

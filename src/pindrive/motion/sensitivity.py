@@ -13,7 +13,6 @@ import numpy as np
 from pindrive import _core, lazy
 from pindrive.lazy import xr
 from pindrive.motion.release import PLACES, ROWS, entry
-from pindrive.motion.results import flattened
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import SERIES
@@ -273,17 +272,9 @@ def _numbers(
     core: _core.Motion | _core.Derivative, duration: float, band: float
 ) -> dict[str, float]:
     """The numbers of a motion over a fixed duration, by their names in `Motion.numbers()`."""
-    transient = core.transient(duration, band)
-    ending = {
-        "position": transient.pop("end_position"),
-        "steady_since": core.steady_since,
-        "amplitude": transient.pop("amplitude"),
-        "period": core.period,
-    }
-    energy = core.ledger(duration)
+    energy: dict[str, float] = core.ledger(duration)
     del energy["residual"]  # nothing but rounding
-    groups = {"transient": transient, "ending": ending, "energy": energy}
-    return dict(flattened(groups))
+    return core.transient(duration, band) | {f"energy.{name}": n for name, n in energy.items()}
 
 
 # ---- parameters ----------------------------------------------------------------------------------

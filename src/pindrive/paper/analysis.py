@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from pindrive.motion.batch import batched
 from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
+from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import Exhibit, by_case, page, trend
 from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-FACTORS: Final = (0.04, 0.16, 0.32)
-"""The damping factors of Figure 4."""
 _FACTORS_LABEL: Final = "the paper's damping factors"
 _BOUNDS: Final[dict[str, tuple[Any, str]]] = {
     "angle": ("-", "exact"),
@@ -51,8 +50,9 @@ def release(
     )
 
 
-def _plain(x: Any, name: str) -> tuple[str, Any, dict[str, str]]:
-    return (name, x, {"units": "1"})
+def _plain(**values: Any) -> dict[str, tuple[str, Any, dict[str, str]]]:
+    """Coordinates without unit."""
+    return {name: (name, along, {"units": "1"}) for name, along in values.items()}
 
 
 # ---- phase and amplitude: (7), (8) ---------------------------------------------------------------
@@ -72,12 +72,7 @@ def phase_and_amplitude() -> Exhibit:
             "phase_by_offset": (("ratio", "offset"), formulas.initial_phase(by_offset)),
             "amplitude_by_offset": (("ratio", "offset"), formulas.amplitude(by_offset)),
         },
-        coords={
-            "speed": _plain(speed, "speed"),
-            "offset": _plain(offset, "offset"),
-            "ratio": _plain(ratios, "ratio"),
-            "place": _plain(places, "place"),
-        },
+        coords=_plain(speed=speed, offset=offset, ratio=ratios, place=places),
     )
     for name in data:
         data[name].attrs["units"] = "rad" if str(name).startswith("phase") else "1"
@@ -94,9 +89,8 @@ def phase_and_amplitude() -> Exhibit:
         "phase-and-amplitude",
         "Initial phase (8) and amplitude (7)",
         "In units of x_0 and 1/ω_0. Above, against the mouse's speed at ζ = 0.16, for three "
-        "friction "
-        "offsets x_d; below, against x_d at v_p = 0.3 ω_0 x_0, for three damping ratios. Curves "
-        "begin where the pin breaks away at once.",
+        "friction offsets x_d; below, against x_d at v_p = 0.3 ω_0 x_0, for three damping ratios. "
+        "Curves begin where the pin breaks away at once.",
         data,
         _draw_phase_and_amplitude,
         (
@@ -170,12 +164,7 @@ def first_reversal() -> Exhibit:
             "limit": ("speed_of_map", limit, {"units": "1"}),
             "first_reversal": (("ratio_of_map", "speed_of_map"), times, {"units": "1"}),
         },
-        coords={
-            "ratio": _plain(ratios, "ratio"),
-            "speed": _plain(speed, "speed"),
-            "ratio_of_map": _plain(fine, "ratio_of_map"),
-            "speed_of_map": _plain(wide, "speed_of_map"),
-        },
+        coords=_plain(ratio=ratios, speed=speed, ratio_of_map=fine, speed_of_map=wide),
     )
     reverses = ~np.isnan(times)
     foretold = fine[:, None] < limit
@@ -264,11 +253,7 @@ def steady_and_rest() -> Exhibit:
             "printed_rest": ("finger", as_printed.periods_to_rest(rest, finger)),
             "simulated_rest": ("finger", found["transient_rest_time"].to_numpy() / period),
         },
-        coords={
-            "place": _plain(places, "place"),
-            "speed": _plain(speeds, "speed"),
-            "finger": _plain(ratio, "finger"),
-        },
+        coords=_plain(place=places, speed=speeds, finger=ratio),
     )
     for name in data:
         data[name].attrs["units"] = "1"
@@ -351,7 +336,7 @@ def printed_forms() -> Exhibit:
     }
     data = xr.Dataset(
         {name: ("ratio", values, {"units": "1"}) for name, values in off.items()},
-        coords={"ratio": _plain(ratios, "ratio")},
+        coords=_plain(ratio=ratios),
     )
     at = data.interp(ratio=[*FACTORS])
     worst = [100 * max(float(at[name][i]) for name in SLIPS) for i in range(3)]

@@ -9,6 +9,8 @@ from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
 from pindrive.quantities.table import QUANTITIES
 
+FACTORS: Final = (0.04, 0.16, 0.32)
+"""The damping factors of Figure 4."""
 VALUES: Final = {
     name: QUANTITIES[name].default or 0.0
     for name in (

@@ -32,8 +32,7 @@ def steady_state() -> Iterator[Claim]:
     yield Claim(
         place,
         "For the case when the pin is not sliding along the fingertip and damping is neglected, "
-        "the "
-        "steady state vibrations would be possible with amplitude x_m ≤ v_p / ω_0,",
+        "the steady state vibrations would be possible with amplitude x_m ≤ v_p / ω_0,",
         part <= 1 + TINY,
         "steady-and-rest",
         f"Of {count} undamped motions, released at v_p, half of it or none, "
@@ -110,8 +109,7 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         place,
         "The dynamics of tactile device pin drive has been investigated in the transient process, "
         "which takes place when information signal disappears and the pin moves along the "
-        "fingertip "
-        "due to the spring elastic forces.",
+        "fingertip due to the spring elastic forces.",
         leaves,
         "figure-2-velocity",
         f"The pin leaves the plate as the magnet releases it in {share(leaves)} releases from "
@@ -169,8 +167,7 @@ def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "printed-forms",
         f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
         f"releases; of those whose friction reverses, in {share((back >= start)[reverses])}. "
-        "Heavily "
-        "damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
+        "Heavily damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
         "friction reverses afterwards",
         reverses,
     )
@@ -194,9 +191,8 @@ def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "neither its displacement at t_1 or at phase angle ωt_1 are known.",
         np.array([False]),
         "first-reversal",
-        f"t_1 is a root that can be isolated and found to rounding: {int(reverses.sum())} of "
-        f"them satisfy (21) to ${at_most(worst)}$ of ω_0 X_m,0. Displacement and acceleration "
-        "there "
+        f"t_1 is a root that can be isolated and found to rounding: {int(reverses.sum())} of them "
+        f"satisfy (21) to ${at_most(worst)}$ of ω_0 X_m,0. Displacement and acceleration there "
         "follow.",
     )
     limit = population.limit_cases()
@@ -338,8 +334,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
     yield Claim(
         place,
         "The greater displacement x_d due to friction displacements of the pin is enlarging "
-        "initial "
-        "phase angle",
+        "initial phase angle",
         turned,
         "phase-and-amplitude",
         f"With 1 % more friction φ_0 is greater in {share(turned)} releases.",
@@ -373,8 +368,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "phase-and-amplitude",
         "Taking “very much” for more than half as strongly as in proportion: true of "
         f"{share(most)} releases, of {share(most[slow_mouse])} with v_p < 0.5 ω_0 (x_0 − x_d). "
-        "With a "
-        "fast mouse it is v_p that sets the amplitude.",
+        "With a fast mouse it is v_p that sets the amplitude.",
         "v_p < 0.5 ω_0 (x_0 − x_d)",
         slow_mouse,
     )

@@ -91,9 +91,8 @@ def rows(facts: Facts) -> list[Row]:
             "2",
             r"\ddot x + \omega_0^2\tfrac bk\dot x + \omega_0^2x = \omega_0^2x_d,\ x_d = F_2/k",
             r"\ddot x + \omega_0^2\tfrac bk\dot x + \omega_0^2x = \omega_0^2x_d,\ x_d = F_1/k",
-            "its residual, part of ω_0² X_m,0; with F_2, the finger's friction, which is 0 "
-            "there, x_d would "
-            "be 0",
+            "its residual, part of ω_0² X_m,0; with F_2, the finger's friction, which is 0 there, "
+            "x_d would be 0",
             _worst((oscillator + w0f**2 * xdf) / (w0f**2 * sizef)),
             _worst(oscillator / (w0f**2 * sizef)),
         ),

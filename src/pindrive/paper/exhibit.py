@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from html import escape
 from io import BytesIO
 from math import ceil, log10
 from typing import TYPE_CHECKING, Final
 
 import matplotlib.style
 import numpy as np
-from latex2mathml.converter import convert
 from matplotlib.figure import Figure
 
 from pindrive.lazy import stats
@@ -134,46 +132,20 @@ def share(true: ArrayLike) -> str:
     return f"{int(found.sum())} of {found.size}"
 
 
-_TEX: Final = re.compile(r"\$([^$]+)\$")
-_CODE: Final = re.compile(r"`([^`]+)`")
 _INDEX: Final = re.compile(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω]′?)_([a-z0-9]+(?:,[a-z0-9])?)")
 """A letter with an index: x_d, φ′_0, X_m,0."""
 
 
-def html(text: str) -> str:
-    """As HTML: MathML, code, and indices as such."""
-
-    def math(tex: str) -> str:
-        return convert(tex.replace(r"\mathrm", r"\text"), display="inline")
-
-    found = _each(text, math, lambda code: f"<code>{escape(code)}</code>", escape)
-    return found.replace("\n", "<br>")
-
-
 def markdown(text: str) -> str:
-    """As GitHub's Markdown: thin spaces, which it takes for escapes, left out."""
+    """Text of the report as GitHub's Markdown.
 
-    def math(tex: str) -> str:
-        return f"${tex.replace(chr(92) + ',', ' ')}$"
-
-    return _each(text, math, lambda code: f"`{code}`", str).replace("\n", "<br>")
-
-
-def _each(
-    text: str,
-    math: Callable[[str], str],
-    code: Callable[[str], str],
-    plain: Callable[[str], str],
-) -> str:
-    pieces = []
-    for i, piece in enumerate(_TEX.split(text)):
-        if i % 2:
-            pieces.append(math(piece))
-            continue
-        for j, words in enumerate(_CODE.split(piece)):
-            pieces.append(code(words) if j % 2 else _INDEX.sub(_index, plain(words)))
-    return "".join(pieces)
-
-
-def _index(found: re.Match[str]) -> str:
-    return f"{found[1]}<sub>{found[2]}</sub>"
+    TeX stands between dollars, without thin spaces, which it takes for escapes; a letter with an
+    index is written as such, but in TeX and code.
+    """
+    pieces = re.split(r"(\$[^$]+\$|`[^`]+`)", text)
+    for i, piece in enumerate(pieces):
+        tex = piece.startswith("$")
+        pieces[i] = piece.replace(r"\,", " ") if tex else piece
+        if i % 2 == 0:
+            pieces[i] = _INDEX.sub(r"\1<sub>\2</sub>", piece)
+    return "".join(pieces).replace("\n", "<br>")

@@ -12,6 +12,7 @@ from matplotlib.patches import Circle, FancyBboxPatch, Patch
 
 from pindrive import Profile, simulate
 from pindrive.paper import baseline
+from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import Exhibit, page
 from pindrive.plot.style import GREY, HALO, PALETTE, SMALL
 from pindrive.quantities.quantity import significant
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
     from pindrive import Motion
 
-FACTORS: Final = (0.04, 0.16, 0.32)
-"""The damping factors of Figure 4."""
 READINGS: Final = {"ratio": "damping ratio ζ", "viscous": "b in N·s/m"}
 
 _STUCK: Final = ("slip", "carried", "resting")
@@ -130,10 +129,9 @@ def displacement() -> Exhibit:
         "figure-4-displacement",
         "Figure 4: displacement at damping factor 0.04, 0.16 and 0.32",
         "The paper gives neither the unit of the damping factor nor any other parameter. Left it "
-        "is "
-        "read as the damping ratio ζ = b / 2√(mk), right as b in N·s/m. Assumed: "
-        f"{baseline.stated('damping_ratio')}; static friction equal to kinetic, as in (1). "
-        "The line marks from when on the pin stays within 5 %.",
+        "is read as the damping ratio ζ = b / 2√(mk), right as b in N·s/m. Assumed: "
+        f"{baseline.stated('damping_ratio')}; static friction equal to kinetic, as in (1). The "
+        "line marks from when on the pin stays within 5 %.",
         data,
         _draw_displacement,
         tuple(readings),

@@ -24,7 +24,7 @@ from PIL import Image
 
 from pindrive.evaluation.tactile_image import view
 from pindrive.plot.pin import moment
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, plain
+from pindrive.plot.style import GREY, MM, PALETTE, SMALL, STYLE, plain
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 
@@ -43,7 +43,6 @@ FRAMES: Final = 25
 SIZE: Final = (960, 540)
 """Pixels."""
 DPI: Final = 110
-MM: Final = 1e3
 ROOM: Final = 3.0
 """About the pins, in the mouse and under the finger, mm."""
 FORMATS: Final = (".gif", ".mp4")

@@ -1,4 +1,4 @@
-"""The figure of a fit: recordings with what was fitted, residuals, and the profiles."""
+"""The figures of fits: recordings with what was fitted, profiles; a friction curve."""
 
 from __future__ import annotations
 
@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.lazy import matplotlib
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, event_marker, event_name, plain
+from pindrive.plot.style import (
+    GREY,
+    MM,
+    PALETTE,
+    SMALL,
+    STYLE,
+    Figure,
+    event_marker,
+    event_name,
+    new_figure,
+    plain,
+)
 from pindrive.quantities.quantity import DISPLAY, significant
 
 if TYPE_CHECKING:
@@ -16,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.fitting.comparison import ModelComparison
+    from pindrive.fitting.friction_curve import FrictionCurve
     from pindrive.fitting.results import Estimate, Fit
 
     Array = NDArray[np.float64]
@@ -44,7 +56,7 @@ def plot_fit(found: Fit) -> Figure:
     with matplotlib.style.context(STYLE, after_reset=True):
         rows = -(-len(estimates) // 2)
         height = min(240.0, 30.0 + max(62.0 * len(blocks), 36.0 * rows))
-        figure = Figure(figsize=(180 / 25.4, height / 25.4), layout="constrained")
+        figure = new_figure(180, height)
         halves: Any = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
         left, right = halves
         _draw_blocks(left, found)
@@ -170,8 +182,7 @@ def plot_comparison(compared: ModelComparison) -> Figure:
     """The residuals of each law over time, with its excess of AICc."""
     fits = compared.fits
     with matplotlib.style.context(STYLE, after_reset=True):
-        size = (180 / 25.4, (20.0 + 30.0 * len(fits)) / 25.4)
-        figure = Figure(figsize=size, layout="constrained")
+        figure = new_figure(180, 20.0 + 30.0 * len(fits))
         panels = figure.subplots(len(fits), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         for axes, (law, found) in zip(panels, fits.items(), strict=True):
             block = found.model.blocks[0]
@@ -185,4 +196,27 @@ def plot_comparison(compared: ModelComparison) -> Figure:
             axes.set_title(words, fontsize=SMALL, loc="left")
             axes.set_ylabel(f"rest ({unit})")
         panels[-1].set_xlabel("$t$ (ms)")
+    return figure
+
+
+def plot_friction_curve(found: FrictionCurve) -> Figure:
+    """Force over speed on the left, the criterion over the number of rows on the right."""
+    with matplotlib.style.context(STYLE, after_reset=True):
+        figure = new_figure(180, 75)
+        axes, beside = figure.subplots(1, 2, width_ratios=(1.8, 1.0))
+        speed, force = np.array(found.rows).T
+        dots = {"marker": ".", "ms": 2.0, "ls": "none", "color": GREY, "rasterized": True}
+        axes.plot(MM * found.speed, 1e3 * found.force, **dots, label="measured", gid="measured")
+        look = {"color": PALETTE["curve"], "marker": "o", "mfc": "white"}
+        errors = 1e3 * np.array(found.standard_errors)
+        axes.plot(MM * speed, 1e3 * force, **look, label="curve and its rows", gid="curve")
+        axes.errorbar(MM * speed, 1e3 * force, 1.96 * errors, fmt="none", color=PALETTE["curve"])
+        axes.set(xlabel="sliding speed (mm/s)", ylabel="friction force (mN)")
+        axes.legend(frameon=False)
+        counts = [*found.aicc]
+        excess = np.array([*found.aicc.values()]) - min(found.aicc.values())
+        beside.plot(counts, excess, **look, gid="aicc")
+        beside.set_yscale("symlog", linthresh=10.0)
+        beside.set(xlabel="rows", ylabel="AICc above the least")
+        beside.set_xticks(counts)
     return figure

@@ -23,15 +23,17 @@ from pindrive.plot.style import (
     EVENT_SHAPE,
     GREY,
     HALO,
+    MM,
     PALETTE,
     SMALL,
     STYLE,
     Figure,
-    event_marker,
-    event_name,
+    event_key,
+    mark_events,
     new_figure,
+    shade,
 )
-from pindrive.plot.trace import MM, Trace
+from pindrive.plot.trace import Trace
 from pindrive.quantities.table import QUANTITIES, digits, duration, short
 
 if TYPE_CHECKING:
@@ -92,7 +94,8 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     for axes, label in panels.items():
         axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
         for mode in ("carried", "resting"):
-            _shade(axes, trace.stuck(mode), mode, _TINT[mode])
+            tint: dict[str, Any] = {"color": PALETTE[mode], "alpha": _TINT[mode], "zorder": 0.5}
+            shade(axes, trace.stuck(mode), mode, **tint)
         axes.set_ylabel(label)
         axes.tick_params(labelbottom=axes is a)
     x.plot(trace.t, trace.x, color=PALETTE["curve"], gid="curve")
@@ -118,27 +121,14 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
 def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
     """The stretch of a compliant finger's skin, and where it grips the pin."""
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
-    _shade(axes, trace.gripping(), "gripping", _GRIP_TINT)
+    tint: dict[str, Any] = {"color": PALETTE["gripping"], "alpha": _GRIP_TINT, "zorder": 0.5}
+    shade(axes, trace.gripping(), "gripping", **tint)
     axes.plot(trace.t, trace.s, color=PALETTE["curve"], gid="curve")
     axes.set_ylim(_room(trace.s, 0.0))
     axes.set_ylabel("skin stretch $s$ (µm)")
     axes.set_xlabel(above.get_xlabel())
     above.set_xlabel("")
     above.tick_params(labelbottom=False)
-
-
-def _shade(axes: Axes, spans: list[tuple[float, float]], name: str, tint: float) -> None:
-    """Tint stretches of time (begin, length) over the height of a panel."""
-    axes.broken_barh(
-        spans,
-        (0.0, 1.0),
-        transform=axes.get_xaxis_transform(),
-        color=PALETTE[name],
-        alpha=tint,
-        lw=0.0,
-        zorder=0.5,
-        gid=name,
-    )
 
 
 def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
@@ -172,11 +162,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     notes: list[str] = []
     occur = {(event.kind, event.contact) for event, _ in trace.events}
     if len(trace.events) <= _MOST_MARKERS:
-        handles += [
-            Line2D([], [], **event_marker(*sign), label=event_name(*sign))
-            for sign in product(EVENT_SHAPE, CONTACTS)
-            if sign in occur
-        ]
+        handles += event_key(sign for sign in product(EVENT_SHAPE, CONTACTS) if sign in occur)
     else:
         notes.append(f"{len(trace.events)} events: too many to mark")
     if len(trace.starts) > 1:
@@ -216,11 +202,8 @@ def _room(values: NDArray[np.float64], *others: float, margin: float = 0.15) -> 
 def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -> None:
     if len(trace.events) > _MOST_MARKERS:
         return
-    for sign in product(EVENT_SHAPE, CONTACTS):
-        chosen = [i for i, (e, _) in enumerate(trace.events) if (e.kind, e.contact) == sign]
-        if chosen:
-            up = [getattr(trace.events[i][0], ordinate) * MM for i in chosen]
-            axes.plot([across[i] for i in chosen], up, **event_marker(*sign), zorder=3)
+    events = zip(trace.events, across, strict=True)
+    mark_events(axes, ((e.kind, e.contact, x, getattr(e, ordinate) * MM) for (e, _), x in events))
 
 
 def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,14 +12,16 @@ from matplotlib.patches import Patch
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.line_crossings import printed
 from pindrive.plot.style import (
-    CONTACTS,
-    EVENT_SHAPE,
     GREY,
+    MM,
+    MS,
     PALETTE,
     PRINTED,
     SMALL,
-    event_marker,
-    event_name,
+    Sign,
+    event_key,
+    mark_events,
+    shade,
 )
 from pindrive.quantities.table import check_whole
 
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
     from pindrive.device.scanning import PinScan
     from pindrive.evaluation.results import Judgement, Line
 
-MS: Final = 1e3
-MM: Final = 1e3
 LINES: Final = 4
 """Shown in the history, at most."""
 LONGEST: Final = 1.2
@@ -149,14 +148,7 @@ def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
         for line in printed(judgement.scan)[chosen.pin]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
-    axes.broken_barh(
-        spans,
-        (0.0, 1.0),
-        transform=axes.get_xaxis_transform(),
-        **PRINTED,
-        zorder=0,
-        gid="printed",
-    )
+    shade(axes, spans, "printed", **PRINTED, zorder=0)
 
 
 def _draw_seen(
@@ -182,7 +174,7 @@ def _draw_seen(
 
 def _draw_motion(
     pin: PinScan, chosen: Moment, axes: Axes, t: NDArray[np.float64], ms: NDArray[np.float64]
-) -> list[tuple[str, str]]:
+) -> list[Sign]:
     """The deflection, where the plate carries the pin, and its events; the signs that occur."""
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0.2, gid="zero")
     carried = [
@@ -190,29 +182,16 @@ def _draw_motion(
         for begin, end in Course(pin.motion).held()
         if pin.begin + end > chosen.begin and pin.begin + begin < chosen.end
     ]
-    axes.broken_barh(
-        carried,
-        (0.0, 1.0),
-        transform=axes.get_xaxis_transform(),
-        color=PALETTE["carried"],
-        alpha=0.6,
-        lw=0.0,
-        zorder=0.1,
-        gid="carried",
-    )
+    shade(axes, carried, "carried", color=PALETTE["carried"], alpha=0.6, zorder=0.1)
     axes.plot(ms, MM * pin.position(t), color=PALETTE["curve"], lw=1.3, gid="curve")
-    signs = []
-    within = [e for e in pin.events if chosen.begin < e.time < chosen.end]
-    for sign in product(EVENT_SHAPE, CONTACTS):
-        events = [e for e in within if (e.kind, e.contact) == sign]
-        if events:
-            signs.append(sign)
-            axes.plot(
-                [MS * (e.time - chosen.begin) for e in events],
-                [MM * e.position for e in events],
-                **event_marker(*sign),
-                zorder=3,
-            )
+    signs = mark_events(
+        axes,
+        (
+            (e.kind, e.contact, MS * (e.time - chosen.begin), MM * e.position)
+            for e in pin.events
+            if chosen.begin < e.time < chosen.end
+        ),
+    )
     axes.margins(y=0.12)
     axes.set_ylabel("deflection $x$ (mm)")
     return signs
@@ -237,11 +216,11 @@ def _draw_force(
         other.spines["right"].set_visible(True)
 
 
-def _key(signs: list[tuple[str, str]]) -> list[Artist]:
+def _key(signs: list[Sign]) -> list[Artist]:
     return [
         Patch(**PRINTED, label="printed line under the spot"),
         Line2D([], [], color=GREY, lw=0.6, ls=":", label="threshold of the control block"),
         Patch(color=PALETTE["stick"], lw=0.0, label="magnet switched on"),
         Patch(color=PALETTE["carried"], alpha=0.6, lw=0.0, label="carried by the plate"),
-        *(Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs),
+        *event_key(signs),
     ]

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from pindrive.evaluation.resolution import criterion
-from pindrive.plot.style import GREY, HANDS, PALETTE, STYLE, Figure, new_figure, plain
+from pindrive.plot.style import GREY, HANDS, MM, PALETTE, STYLE, Figure, new_figure, plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from pindrive.device.device import Criteria
     from pindrive.evaluation.resolution import SpeedLimit
 
-MM: Final = 1e3
 CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}
 STUDIED: Final = (20.0, 100.0)
 """Hand speeds in finger studies, mm/s (arXiv 2505.11162)."""

@@ -14,7 +14,7 @@ from pindrive.device.dataset import gap_words
 from pindrive.evaluation.line_crossings import turnings
 from pindrive.evaluation.tactile_image import Painting, paint, view
 from pindrive.plot.pin import Moment, draw_history, moment
-from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
+from pindrive.plot.style import MM, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import QUANTITIES
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from pindrive.device.scanning import Scan
     from pindrive.evaluation.results import Judgement
 
-MM: Final = 1e3
 WIDTH: Final = 180.0
 """Of the page that it is drawn for, mm."""
 WIDE: Final = 1.7

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Sequence
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 from textwrap import fill
-from typing import IO, Any, Final
+from typing import IO, TYPE_CHECKING, Any, Final
 
 import matplotlib.style
 from matplotlib.figure import Figure as _Figure
+from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+Sign = tuple[str, str]
+"""Kind and contact of an event."""
 
 PALETTE: Final = {
     "curve": "#0072B2",  # blue
@@ -44,6 +54,11 @@ HANDS: Final[dict[str, Any]] = {"fc": "#FBF0D8", "ec": "#E69F00", "hatch": "\\\\
 """A band that other areas cover."""
 HALO: Final = [withStroke(linewidth=2.0, foreground="white")]
 """Of a text that a line may cross."""
+
+MM: Final = 1e3
+"""Of lengths and velocities: a metre in millimetres."""
+MS: Final = 1e3
+"""Of times: a second in milliseconds."""
 
 GREY: Final = "0.45"
 SMALL: Final = 7.0
@@ -100,6 +115,28 @@ def event_marker(kind: str, contact: str) -> dict[str, Any]:
     fill, size = CONTACTS[contact]
     look = {"marker": EVENT_SHAPE[kind], "color": PALETTE[kind], "fillstyle": fill, "ms": size}
     return {"ls": "none", "mew": 0.9, "mfcalt": "white", **look, "gid": f"{kind} {contact}"}
+
+
+def mark_events(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> list[Sign]:
+    """Mark events, each given by kind, contact and place; the signs that occur, for a legend."""
+    places: dict[Sign, list[tuple[float, float]]] = {}
+    for kind, contact, *place in points:
+        places.setdefault((kind, contact), []).append((place[0], place[1]))
+    signs = [sign for sign in product(EVENT_SHAPE, CONTACTS) if sign in places]
+    for sign in signs:
+        axes.plot(*zip(*places[sign], strict=True), **event_marker(*sign), zorder=3)
+    return signs
+
+
+def event_key(signs: Iterable[Sign]) -> list[Artist]:
+    """What the markers of events mean, for a legend."""
+    return [Line2D([], [], **event_marker(*sign), label=event_name(*sign)) for sign in signs]
+
+
+def shade(axes: Axes, spans: Sequence[tuple[float, float]], gid: str, **look: Any) -> None:
+    """Shade stretches along the abscissa (begin, length) over the height of a panel."""
+    up = axes.get_xaxis_transform()
+    axes.broken_barh(spans, (0.0, 1.0), transform=up, **{"lw": 0.0, **look}, gid=gid)
 
 
 class Figure(_Figure):

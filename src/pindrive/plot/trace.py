@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.quantities.table import QUANTITIES
+from pindrive.plot.style import MM
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -30,7 +30,6 @@ _MOST_CLOSER: Final = 30.0
 """How much closer at most the grid is where skin grips, which is a stiffer spring."""
 
 MICRON: Final = 1e6  # of stretches
-MM: Final = QUANTITIES["displacement"].display_scale  # of lengths and velocities
 
 
 @dataclass(frozen=True, slots=True)

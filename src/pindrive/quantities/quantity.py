@@ -168,8 +168,8 @@ class Quantity:
     @property
     def attributes(self) -> dict[str, str]:
         """What a variable of a dataset that holds it says of it: meaning, symbol, SI unit."""
-        unit = {"units": self.unit} if self.unit else {}
-        return {"long_name": self.meaning, "symbol": self.symbol} | unit
+        stated = {"long_name": self.meaning, "symbol": self.symbol, "units": self.unit}
+        return {name: text for name, text in stated.items() if text}
 
     def required(self, value: float) -> str:
         """What a value (SI) must be, if it is not: "finite and greater than 0 kg"."""

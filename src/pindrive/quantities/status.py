@@ -12,7 +12,7 @@ import numpy as np
 
 from pindrive.quantities.table import QUANTITIES
 
-__all__ = ["End", "SimulationError", "Status", "flag_attributes"]
+__all__ = ["OUTCOMES", "End", "SimulationError", "Status", "outcome_attributes"]
 
 
 class Status(IntEnum):
@@ -107,13 +107,20 @@ class End(IntEnum):
     limit_cycle = 6
 
 
-_MEANINGS = {Status: "whether the motion was followed to its end", End: "how the motion ends"}
+OUTCOMES: dict[str, type[Status | End] | None] = {"status": Status, "ending": End, "events": None}
+"""The variables of a dataset that say what became of a motion: codes, and a count."""
+_MEANINGS = {
+    "status": "whether the motion was followed to its end",
+    "ending": "how the motion ends",
+    "events": "changes at a contact; of a cycle, those of one round",
+}
 
 
-def flag_attributes(kind: type[Status | End]) -> dict[str, Any]:
-    """The attributes of a variable of such codes: meaning, and each value with its name."""
-    return {
-        "long_name": _MEANINGS[kind],
-        "flag_values": np.array([*kind], np.int8),
-        "flag_meanings": " ".join(code.name for code in kind),
-    }
+def outcome_attributes(name: str) -> dict[str, Any]:
+    """The attributes of such a variable: meaning, and of codes each value with its name."""
+    kind = OUTCOMES[name]
+    flags: dict[str, Any] = {}
+    if kind:
+        flags["flag_values"] = np.array([*kind], np.int8)
+        flags["flag_meanings"] = " ".join(code.name for code in kind)
+    return {"long_name": _MEANINGS[name]} | flags

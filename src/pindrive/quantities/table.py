@@ -7,7 +7,9 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from difflib import get_close_matches
 from operator import index
 from typing import (
     TYPE_CHECKING,
@@ -85,6 +87,12 @@ class Refusal(str):
 def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
     return Refusal.of(label, f"{label} must be {required}, got {given}", where)
+
+
+def hint(given: str, known: Iterable[str], otherwise: str) -> str:
+    """What an unknown name may stand for, "did you mean mass?"; or else `otherwise`."""
+    near = get_close_matches(given, [*known], 1)
+    return f"did you mean {near[0]}?" if near else otherwise
 
 
 def told_by(error: Exception) -> Refusal | str:

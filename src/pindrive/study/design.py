@@ -18,10 +18,18 @@ from pindrive.files.schema import number, written
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.quantities.table import QUANTITIES, refusal
 from pindrive.quantities.units import quoted
-from pindrive.study.distributions import Axis, Distribution, Grid, Linked, Sample, with_links
+from pindrive.study.distributions import (
+    Axis,
+    Distribution,
+    Grid,
+    Linked,
+    Sample,
+    as_distribution,
+    with_links,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -242,6 +250,15 @@ class Plan:
         """The first point of a chunk, and the first of the next."""
         return chunk * self.chunk, min((chunk + 1) * self.chunk, self.size)
 
+    def first_seen(self, chunk: int) -> Iterator[tuple[Dimension, int, int]]:
+        """For each dimension, the places along it that no point of an earlier chunk has."""
+        ends = self.bounds(chunk)
+        for i, dimension in enumerate(self.dimensions):
+            stride = prod(self.shape[i + 1 :])
+            first, last = (min(-(-point // stride), dimension.size) for point in ends)
+            if first < last:
+                yield dimension, first, last
+
     @property
     def at_a_time(self) -> int:
         """How many points are computed before the progress is reported again."""
@@ -302,3 +319,50 @@ def device_at(plan: Plan, at: Mapping[str, float]) -> DeviceFile:
     """
     given = [Setting(key, written(key, value), "") for key, value in at.items()]
     return device_of(plan.device.path, plan.device.tables, given, whole=plan.page is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Ranges:
+    """What varies in a study, and how."""
+
+    scatter: Mapping[str, Distribution]
+    fixed: Mapping[str, float]
+    """Keys of a single value."""
+    links: Mapping[str, Linked]
+
+    def columns(self, plan: Plan, points: NDArray[np.float64]) -> Columns:
+        """Values of all keys at points (keys of `scatter`, n)."""
+        given = dict(zip(self.scatter, points, strict=True))
+        given |= {k: np.full(points.shape[1], v) for k, v in self.fixed.items()}
+        return with_links(plan.device, given, self.links)
+
+
+def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
+    """The ranges of the axes, or the tolerances; these too where there are no axes.
+
+    Raises:
+        ValueError: nothing varies, or a count does, or there are no tolerances.
+    """
+    if tolerances and not plan.tolerances:
+        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
+    scatter: dict[str, Distribution] = {}
+    fixed: dict[str, float] = {}
+    of_axes = [k for k, axis in plan.axes.items() if not isinstance(axis, Linked)]
+    if plan.tolerances and (tolerances or not of_axes):
+        return Ranges(plan.tolerances, {}, plan.tolerance_links)
+    for key, axis in plan.axes.items():
+        if isinstance(axis, Linked):
+            continue
+        low, high = axis.span
+        if low < high and key in COUNTS:
+            raise ValueError(
+                f"{plan.path}: axes.{key} counts pins, and there is nothing between two counts to "
+                "draw; give one value"
+            )
+        if low < high:
+            scatter[key] = as_distribution(axis)
+        else:
+            fixed[key] = low
+    if not scatter:
+        raise ValueError(f"{plan.path}: nothing varies; write what in [axes] or [tolerances]")
+    return Ranges(scatter, fixed, plan.links)

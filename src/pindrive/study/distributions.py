@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Indices = NDArray[np.int64]
-    from collections.abc import Collection, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from numpy.typing import NDArray
 
@@ -149,6 +149,11 @@ class Linked:
     of: str
     times: float
     over: str = ""
+
+    def words(self, key: str, name: Callable[[str], str] = str) -> str:
+        """How `key` follows: "plate.static = 1.5 × plate.kinetic"; `name` gives a key's name."""
+        over = f" / {name(self.over)}" if self.over else ""
+        return f"{name(key)} = {self.times:g} × {name(self.of)}{over}"
 
 
 Axis = Even | Listed | Distribution | Linked

@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from pindrive.device.scanning import Progress
     from pindrive.evaluation.results import Judgement
     from pindrive.files.device import DeviceFile
-    from pindrive.study.design import Columns, Plan
+    from pindrive.study.design import Columns, Plan, Ranges
 
 
 Row = dict[str, Any]
@@ -58,7 +59,7 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     return judge(done, file.whole.criteria())
 
 
-def evaluate_scans(
+def _evaluate_scans(
     plan: Plan, columns: Columns, count: int, outputs: Sequence[str], processes: int | None = 1
 ) -> dict[str, Any]:
     """The outputs at `count` points; arguments as for `evaluate`.
@@ -127,9 +128,7 @@ def evaluate(
         threads: for `simulate_batch`, or processes for scans; None: all cores.
     """
     if plan.page:
-        from pindrive.study.evaluate import evaluate_scans
-
-        return evaluate_scans(plan, columns, count, outputs, threads)
+        return _evaluate_scans(plan, columns, count, outputs, threads)
     device = plan.device
     inputs = _inputs(device, columns)
     if is_slow(device, columns):
@@ -146,6 +145,34 @@ def evaluate(
         if "reason" in outputs:
             table["reason"] = _refused(found["status"].values)
     return {name: table[name] for name in outputs}
+
+
+def evaluate_all(
+    plan: Plan,
+    ranges: Ranges,
+    points: NDArray[np.float64],
+    outputs: Sequence[str],
+    threads: int | None,
+    progress: Progress,
+) -> tuple[Table, tuple[RefusedPoints, ...]]:
+    """The outputs and the status at many points, part by part; and which points cannot exist.
+
+    Args:
+        plan: the study.
+        ranges: what varies.
+        points: values of the keys of `ranges.scatter`, SI, shape (keys, n).
+        outputs: names of variables.
+        threads: as for `evaluate`.
+        progress: called with the points done and the points in all.
+    """
+    total, parts = points.shape[1], []
+    for begin in range(0, total, plan.at_a_time):
+        part = points[:, begin : begin + plan.at_a_time]
+        columns, count = ranges.columns(plan, part), part.shape[1]
+        parts.append(evaluate(plan, columns, count, (*outputs, "status", "reason"), threads))
+        progress(begin + count, total)
+    table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return table, refusals(plan, ranges.columns(plan, points), table.pop("reason"))
 
 
 def follow(plan: Plan, at: Mapping[str, float]) -> Motion:

@@ -13,7 +13,7 @@ from pindrive.files.device import motion_of
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.study.design import variable
+from pindrive.study.design import ranges_of, variable
 from pindrive.study.distributions import base_value, exponents
 
 if TYPE_CHECKING:
@@ -75,6 +75,36 @@ class Elasticities(lazy.NotebookHtml):
         coords = {"number": numbers, "key": [*self.keys]}
         attributes = {"status": self.status.name, "duration": self.duration}
         return xr.Dataset(data, coords=coords, attrs=attributes)
+
+
+def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
+    """By how many per cent each number changes where a key of a study grows by one per cent.
+
+    Exact derivatives at the device's own values, by dual numbers through every event.
+
+    Args:
+        study: of releases; its axes say the keys.
+        tolerances: the keys of its tolerances instead.
+
+    Returns:
+        The elasticities, NaN where one does not exist, with the reason of a key that has none.
+
+    Raises:
+        ValueError: the study is one of scans, which have no exact derivatives, or nothing varies.
+
+    Examples:
+        >>> import pindrive as pd
+        >>> study = pd.Study(
+        ...     pd.load_device("tactile-mouse.toml"), axes={"drive.stiffness": [90.0, 110.0]}
+        ... )
+        >>> near = pd.local_sensitivity(study)
+        >>> round(near.table["transient_swing"]["drive.stiffness"], 3)
+        0.097
+    """
+    if study.page:
+        raise ValueError(f"{study.path}: a study of scans has no exact derivatives; sobol takes it")
+    ranges = ranges_of(study, tolerances)
+    return elasticities(study, tuple(ranges.scatter), ranges.links)
 
 
 def elasticities(plan: Plan, keys: Sequence[str], links: Mapping[str, Linked]) -> Elasticities:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,7 +11,8 @@ import numpy as np
 
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.results import ENDING, ENERGY, JUDGED, LINE, TRANSIENT
-from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.status import OUTCOMES, outcome_attributes
+from pindrive.quantities.table import QUANTITIES, hint, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
@@ -148,9 +148,8 @@ def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> s
     if ends:
         raise ValueError(f"{place}: {quoted(given)} may be {' or '.join(ends)}; give it in full")
     names = {short: short for short in shorts.values()} | {full: full for full in among}
-    near = get_close_matches(name, names, 1)
-    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(map(label, among))}"
-    raise ValueError(f"{place}: unknown number {quoted(given)}; {hint}")
+    told = hint(name, names, f"there are {', '.join(map(label, among))}")
+    raise ValueError(f"{place}: unknown number {quoted(given)}; {told}")
 
 
 def dtype(name: str) -> np.dtype[Any]:
@@ -168,18 +167,11 @@ def encoded(name: str, values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """Unit and meaning of a number; xarray reads a missing count as NaN."""
-    if name not in NUMBERS:
-        return {}
-    quantity = NUMBERS[name]
-    found: dict[str, Any] = {"long_name": quantity.meaning}
-    if quantity.symbol:
-        found["symbol"] = quantity.symbol
-    if quantity.unit:
-        found["units"] = quantity.unit
-    if name == _SETTLED:
-        found["dtype"] = "bool"
-    return found
+    """What a variable says of itself; xarray reads a missing count as NaN."""
+    if name in OUTCOMES:
+        return outcome_attributes(name)
+    found = {**NUMBERS[name].attributes}
+    return found | {"dtype": "bool"} if name == _SETTLED else found
 
 
 def missing(name: str) -> int | None:

@@ -13,10 +13,10 @@ from pindrive.lazy import optimize, stats, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
+from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
-from pindrive.study.evaluate import RefusedPoints, evaluate, exist, follow, refusals
-from pindrive.study.outputs import attributes
-from pindrive.study.sensitivity import Ranges, ranges_of
+from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
+from pindrive.study.outputs import NUMBERS, attributes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -213,20 +213,11 @@ def robustness(
 
     def numbers(points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         columns = ranges.columns(plan, points)
-        return evaluate(plan, columns, points.shape[1], (*watched, "status", "reason"), threads)
+        return evaluate(plan, columns, points.shape[1], (*watched, "status"), threads)
 
-    parts, drawn = [], []
-    for begin in range(0, count, plan.at_a_time):
-        end = min(begin + plan.at_a_time, count)
-        portions = zip(sample.parts(np.arange(begin, end)), ranges.scatter.values(), strict=True)
-        points = np.array([scatter.ppf(portion) for portion, scatter in portions])
-        drawn.append(points)
-        parts.append(numbers(points))
-        progress(end, count)
-    table = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    points = np.concatenate(drawn, axis=1)
-
-    refused = refusals(plan, ranges.columns(plan, points), table["reason"])
+    parts = zip(sample.parts(np.arange(count)), ranges.scatter.values(), strict=True)
+    points = np.array([scatter.ppf(part) for part, scatter in parts])
+    table, refused = evaluate_all(plan, ranges, points, watched, threads, progress)
     designs = exist(table["status"])
     if not designs.any():
         words, reason = counted(count, "draw"), refused[0].reason
@@ -312,12 +303,5 @@ def _worst(
     if plan.page:
         return WorstCase(demand, columns, float(numbers(best)[demand.name][0]), sampled, None)
     motion = follow(plan, columns)
-    value = motion.numbers()[_table_name(demand.name)]
+    value = motion.numbers()[NUMBERS[demand.name].name]
     return WorstCase(demand, columns, value, sampled, motion)
-
-
-def _table_name(name: str) -> str:
-    """The name in the table of quantities of a variable."""
-    from pindrive.study.outputs import NUMBERS
-
-    return NUMBERS[name].name

@@ -28,6 +28,9 @@ from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import refusal
+from pindrive.study import outputs
+from pindrive.study.design import variable
+from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
     Journal,
     Piece,
@@ -37,7 +40,6 @@ from pindrive.study.store import (
     checksum,
     difference,
     lay_out,
-    work_out,
 )
 from pindrive.study.workers import DIED, workers
 
@@ -154,7 +156,7 @@ def on_threads(threads: int | None = None) -> Work:
     count = worker_count(threads)
 
     def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        pool = workers(plan, min(count, len(chunks) or 1))
+        pool = workers(min(count, len(chunks) or 1), processes=plan.page is not None)
         try:
             yield from in_flight(chunks, count + 1, lambda k: pool.submit(work_out, plan, k))
         except BrokenProcessPool:
@@ -163,6 +165,19 @@ def on_threads(threads: int | None = None) -> Work:
             pool.shutdown(wait=False, cancel_futures=True)
 
     return work
+
+
+def work_out(plan: Plan, chunk: int) -> list[Piece]:
+    """The numbers of a chunk's points, and of each coordinate the part that appears there first."""
+    begin, end = plan.bounds(chunk)
+    coordinates = [
+        Piece(variable(key), first, np.ascontiguousarray(values, "<f8"))
+        for dimension, first, last in plan.first_seen(chunk)
+        for key, values in dimension.at(np.arange(first, last)).items()
+    ]
+    table = evaluate(plan, plan.columns(begin, end), end - begin, plan.outputs)
+    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in plan.outputs]
+    return [*coordinates, *numbers]
 
 
 def in_flight(
@@ -273,19 +288,9 @@ def _is_complete(target: Path, plan: Plan) -> bool:
 def _counted(target: Path, plan: Plan) -> tuple[int, int]:
     """Refused and settled points of a finished file."""
     with Store(target, plan) as store:
-        tallies = [_tally(_typed(store.read(plan, k))) for k in range(plan.chunks)]
+        tallies = [_tally(store.read(plan, k)) for k in range(plan.chunks)]
     settled = sum(tally.settled for tally in tallies)
     return sum(tally.refused for tally in tallies), settled if settled >= 0 else -1
-
-
-def _typed(pieces: list[Piece]) -> list[Piece]:
-    from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, dtype
-
-    numbers = {*OUTPUTS, *SCAN_OUTPUTS}
-    return [
-        Piece(name, start, values.view(dtype(name)) if name in numbers else values)
-        for name, start, values in pieces
-    ]
 
 
 def _tally(pieces: list[Piece]) -> Tally:

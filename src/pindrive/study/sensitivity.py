@@ -13,9 +13,8 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import refusal
-from pindrive.study.design import COUNTS
-from pindrive.study.distributions import Distribution, Linked, as_distribution, with_links
-from pindrive.study.evaluate import RefusedPoints, evaluate, exist, refusals
+from pindrive.study.design import Ranges, ranges_of
+from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Progress
-    from pindrive.study.design import Columns, Plan
+    from pindrive.study.design import Plan
     from pindrive.study.distributions import Distribution
 
     Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
@@ -171,53 +170,6 @@ USUAL_ROWS_OF_SCANS: Final = 256
 """A scan takes some ten thousand times as long as a release."""
 
 
-@dataclass(frozen=True, slots=True)
-class Ranges:
-    """What varies in a study, and how."""
-
-    scatter: Mapping[str, Distribution]
-    fixed: Mapping[str, float]
-    """Keys of a single value."""
-    links: Mapping[str, Linked]
-
-    def columns(self, plan: Plan, points: NDArray[np.float64]) -> Columns:
-        """Values of all keys at points (keys of `scatter`, n)."""
-        given = dict(zip(self.scatter, points, strict=True))
-        given |= {k: np.full(points.shape[1], v) for k, v in self.fixed.items()}
-        return with_links(plan.device, given, self.links)
-
-
-def ranges_of(plan: Plan, tolerances: bool) -> Ranges:
-    """The ranges of the axes, or the tolerances; these too where there are no axes.
-
-    Raises:
-        ValueError: nothing varies, or a count does, or there are no tolerances.
-    """
-    if tolerances and not plan.tolerances:
-        raise ValueError(f"{plan.path}: has no tolerances; write them in [tolerances]")
-    scatter: dict[str, Distribution] = {}
-    fixed: dict[str, float] = {}
-    of_axes = [k for k, axis in plan.axes.items() if not isinstance(axis, Linked)]
-    if plan.tolerances and (tolerances or not of_axes):
-        return Ranges(plan.tolerances, {}, plan.tolerance_links)
-    for key, axis in plan.axes.items():
-        if isinstance(axis, Linked):
-            continue
-        low, high = axis.span
-        if low < high and key in COUNTS:
-            raise ValueError(
-                f"{plan.path}: axes.{key} counts pins, and there is nothing between two counts to "
-                "draw; give one value"
-            )
-        if low < high:
-            scatter[key] = as_distribution(axis)
-        else:
-            fixed[key] = low
-    if not scatter:
-        raise ValueError(f"{plan.path}: nothing varies; write what in [axes] or [tolerances]")
-    return Ranges(scatter, fixed, plan.links)
-
-
 @dataclass(frozen=True, slots=True, repr=False)
 class Influence(lazy.NotebookHtml):
     """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
@@ -330,26 +282,18 @@ def sobol(
     keys = tuple(ranges.scatter)
     usual = (name for name in askable(plan) if name not in LEDGER or name in plan.outputs)
     asked = tuple(dict.fromkeys(numbers)) or tuple(usual)
-    outputs = (*asked, "status", "reason")
     if rows is None:
         rows = USUAL_ROWS_OF_SCANS if plan.page else USUAL_ROWS
     varied = len(keys)
-    each = (varied + 2) * (varied + len(outputs)) + 3 * (varied + 1) * len(outputs)
-    of = f"{rows} rows of {each}, for {varied} keys and {len(outputs)} results"
+    results = len(asked) + 2  # status and reason
+    each = (varied + 2) * (varied + results) + 3 * (varied + 1) * results
+    of = f"{rows} rows of {each}, for {varied} keys and {results} results"
     budgets.DESIGN_VALUES.check(rows * each, of)
     refused: tuple[RefusedPoints, ...] = ()
 
     def function(points: NDArray[np.float64]) -> dict[str, Any]:
         nonlocal refused
-        total = points.shape[1]
-        parts = []
-        for begin in range(0, total, plan.at_a_time):
-            part = points[:, begin : begin + plan.at_a_time]
-            columns = ranges.columns(plan, part)
-            parts.append(evaluate(plan, columns, part.shape[1], outputs, threads))
-            progress(min(begin + plan.at_a_time, total), total)
-        found = {name: np.concatenate([part[name] for part in parts]) for name in outputs}
-        refused = refusals(plan, ranges.columns(plan, points), found.pop("reason"))
+        found, refused = evaluate_all(plan, ranges, points, asked, threads, progress)
         designs = exist(found.pop("status"))
         if _SETTLED in found:
             found[_SETTLED] = np.where(designs, found[_SETTLED].astype(float), np.nan)
@@ -359,33 +303,3 @@ def sobol(
     points = rows * (len(keys) + 2)
     local = elasticities(plan, keys, ranges.links) if near and not plan.page else None
     return Influence(keys, ranges, local, over, rows, points, refused, plan.name)
-
-
-def local_sensitivity(study: Plan, *, tolerances: bool = False) -> Elasticities:
-    """By how many per cent each number changes where a key of a study grows by one per cent.
-
-    Exact derivatives at the device's own values, by dual numbers through every event.
-
-    Args:
-        study: of releases; its axes say the keys.
-        tolerances: the keys of its tolerances instead.
-
-    Returns:
-        The elasticities, NaN where one does not exist, with the reason of a key that has none.
-
-    Raises:
-        ValueError: the study is one of scans, which have no exact derivatives, or nothing varies.
-
-    Examples:
-        >>> import pindrive as pd
-        >>> study = pd.Study(
-        ...     pd.load_device("tactile-mouse.toml"), axes={"drive.stiffness": [90.0, 110.0]}
-        ... )
-        >>> near = pd.local_sensitivity(study)
-        >>> round(near.table["transient_swing"]["drive.stiffness"], 3)
-        0.097
-    """
-    if study.page:
-        raise ValueError(f"{study.path}: a study of scans has no exact derivatives; sobol takes it")
-    ranges = ranges_of(study, tolerances)
-    return elasticities(study, tuple(ranges.scatter), ranges.links)

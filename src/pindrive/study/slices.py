@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,9 +14,10 @@ from pindrive.files import template
 from pindrive.files.device import keys_meant
 from pindrive.files.template import WHOLE, usual
 from pindrive.lazy import xr
-from pindrive.quantities.table import short
+from pindrive.quantities.table import hint, short
 from pindrive.quantities.units import UnitError, quoted, to_si
 from pindrive.study.design import variable
+from pindrive.study.distributions import Linked
 from pindrive.study.outputs import (
     MEASURED,
     NUMBERS,
@@ -195,8 +195,7 @@ class View:
 
         links = json.loads(self.data.attrs["identity"])["links"]
         self.links = [
-            f"{words(variable(key))} = {link['times']:g} × {words(variable(link['of']))}"
-            + (f" / {words(variable(link['over']))}" if link["over"] else "")
+            Linked(**link).words(key, lambda key: words(variable(key)))
             for key, link in links.items()
         ]
 
@@ -218,9 +217,8 @@ class View:
         names = [name for name in (*names, given.replace(".", "_")) if name in self.keys]
         if names:
             return names[0]
-        near = get_close_matches(given.replace(".", "_"), self.keys, 1)
-        hint = f"did you mean {near[0]}?" if near else f"it varies {', '.join(self.keys)}"
-        raise ValueError(f"{option} {given}: {self.path} does not vary it; {hint}")
+        told = hint(given.replace(".", "_"), self.keys, f"it varies {', '.join(self.keys)}")
+        raise ValueError(f"{option} {given}: {self.path} does not vary it; {told}")
 
     def number(self, given: str) -> str:
         """The number that is meant, if the file holds it."""

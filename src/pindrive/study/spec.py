@@ -5,7 +5,6 @@ Whatever is wrong is found in one pass and said in lines that name file, key, va
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,7 +20,7 @@ from pindrive.files.device import (
 from pindrive.files.recording import is_file
 from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.quantities import budgets
-from pindrive.quantities.table import refusal
+from pindrive.quantities.table import hint, refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import AxisReader, sweepable, written_axes
 from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page, variable
@@ -138,8 +137,7 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
         if key in TABLES:
             problems.append(f"{file}: give base or the table {key}, not both")
             continue
-        near = get_close_matches(key, known, 1)
-        said = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+        said = hint(key, known, f"there are {', '.join(known)}")
         problems.append(f"{file}: unknown key {quoted(key)}; {said}")
     return problems
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import json
 import os
-from math import prod
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
@@ -25,13 +24,10 @@ from pindrive.device.electromagnet import COIL, DIRECT
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
-from pindrive.quantities.status import End, Status, flag_attributes
 from pindrive.study import outputs
 from pindrive.study.design import variable
-from pindrive.study.evaluate import evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -48,21 +44,13 @@ class Piece(NamedTuple):
     values: NDArray[Any]
 
 
-def work_out(plan: Plan, chunk: int) -> list[Piece]:
-    """The numbers of a chunk's points, and of each coordinate the part that appears there first."""
-    begin, end = plan.bounds(chunk)
-    table = evaluate(plan, plan.columns(begin, end), end - begin, plan.outputs)
-    numbers = [Piece(name, begin, outputs.encoded(name, table[name])) for name in plan.outputs]
-    return [*_coordinates(plan, begin, end), *numbers]
-
-
 def extents(plan: Plan, chunk: int) -> list[tuple[str, int, int]]:
     """Name, start and length of the pieces of a chunk, in their order."""
     begin, end = plan.bounds(chunk)
     coordinates = [
         (variable(key), first, last - first)
-        for dimension, first, last in _first_seen(plan, begin, end)
-        for key in plan.dimensions[dimension].axes
+        for dimension, first, last in plan.first_seen(chunk)
+        for key in dimension.axes
     ]
     return [*coordinates, *((name, begin, end - begin) for name in plan.outputs)]
 
@@ -73,22 +61,6 @@ def checksum(pieces: list[Piece]) -> int:
     for piece in pieces:
         found = crc32(piece.values.data.cast("B"), found)
     return found
-
-
-def _coordinates(plan: Plan, begin: int, end: int) -> Iterator[Piece]:
-    for dimension, first, last in _first_seen(plan, begin, end):
-        values = plan.dimensions[dimension].at(np.arange(first, last))
-        for key in plan.dimensions[dimension].axes:
-            yield Piece(variable(key), first, np.ascontiguousarray(values[key], "<f8"))
-
-
-def _first_seen(plan: Plan, begin: int, end: int) -> Iterator[tuple[int, int, int]]:
-    """For each dimension, the places along it that no point before `begin` has."""
-    for i, size in enumerate(plan.shape):
-        stride = prod(plan.shape[i + 1 :])
-        first, last = (min(-(-point // stride), size) for point in (begin, end))
-        if first < last:
-            yield i, first, last
 
 
 class Store:
@@ -136,7 +108,7 @@ class Store:
             with self._lock:
                 self._file.seek(offset + start * kind.itemsize)
                 content = self._file.read(length * kind.itemsize)
-            found.append(Piece(name, start, np.frombuffer(content, np.uint8)))
+            found.append(Piece(name, start, np.frombuffer(content, kind)))
         return found
 
     def sync(self) -> None:
@@ -157,21 +129,22 @@ def lay_out(path: Path, plan: Plan) -> None:
     """Write the file's structure: dimensions, coordinates, variables, units, the study itself."""
     from pindrive import __version__
 
+    links = "\n".join(link.words(key) for key, link in plan.links.items())
     with h5netcdf.File(path, "w") as file:
         file.dimensions = {dimension.name: dimension.size for dimension in plan.dimensions}
         for dimension in plan.dimensions:
             for key, axis in dimension.axes.items():
                 made = _variable(file, variable(key), (dimension.name,), "<f8")
-                made.attrs.update(_key_attributes(key))
+                made.attrs.update(NUMBERS[key].attributes, key=key)
                 if getattr(axis, "log", False):
                     made.attrs["spacing"] = "log"
         for key, value in _fixed(plan).items():
             made = file.create_variable(variable(key), (), "<f8", data=value)
-            made.attrs.update(_key_attributes(key))
+            made.attrs.update(NUMBERS[key].attributes, key=key)
         names = tuple(dimension.name for dimension in plan.dimensions)
         for name in plan.outputs:
             made = _variable(file, name, names, outputs.dtype(name), outputs.missing(name))
-            made.attrs.update(_number_attributes(name))
+            made.attrs.update(outputs.attributes(name))
             beside = [variable(key) for key in (*plan.axes, *_fixed(plan)) if key not in plan.links]
             made.attrs["coordinates"] = " ".join(v for v in beside if v not in names)
         file.attrs.update(
@@ -181,18 +154,10 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "source": f"pindrive {__version__}",
                 "study": plan.text,
                 **({"page": plan.page.page.words} if plan.page else {}),
-                **({"links": _links(plan)} if plan.links else {}),
+                **({"links": links} if links else {}),
                 "identity": identity(plan),
             }
         )
-
-
-def _links(plan: Plan) -> str:
-    """What follows varied keys, a line each."""
-    return "\n".join(
-        f"{key} = {link.times:g} × {link.of}{f' / {link.over}' if link.over else ''}"
-        for key, link in plan.links.items()
-    )
 
 
 def _fixed(plan: Plan) -> dict[str, float]:
@@ -222,21 +187,6 @@ def _variable(
     made = file.create_variable(name, dims, kind, fillvalue=fill, fill_time="never")
     made[(slice(0, 1),) * len(dims)] = 0  # the first write fixes the place
     return made
-
-
-def _key_attributes(key: str) -> dict[str, str]:
-    quantity = NUMBERS[key]
-    words = {"long_name": quantity.meaning, "symbol": quantity.symbol, "key": key}
-    return words | ({"units": quantity.unit} if quantity.unit else {})
-
-
-def _number_attributes(name: str) -> dict[str, Any]:
-    if name == "events":
-        return {"long_name": "changes at a contact; of a cycle, those of one round"}
-    codes: dict[str, type[Status | End]] = {"status": Status, "ending": End}
-    if name in codes:
-        return flag_attributes(codes[name])
-    return outputs.attributes(name)
 
 
 class Tally(NamedTuple):

@@ -18,16 +18,15 @@ from pindrive.files.output import OutputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from pindrive.study.design import Plan
-
+Shared = TypeVar("Shared")
 Given = TypeVar("Given")
 Done = TypeVar("Done")
 DIED = "a process that worked on the study died"
 
 
-def workers(plan: Plan, count: int) -> Executor:
-    """So many workers for a plan. One alone is a thread of this process in any case."""
-    return ThreadPoolExecutor(count) if plan.page is None or count == 1 else _processes(count)
+def workers(count: int, *, processes: bool) -> Executor:
+    """So many workers. One alone is a thread of this process in any case."""
+    return _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
 
 
 class Standing:
@@ -38,11 +37,11 @@ class Standing:
         self._pool = _processes(count)
 
     def spread(
-        self, work: Callable[[Plan, Given], Done], plan: Plan, portions: Sequence[Given]
+        self, work: Callable[[Shared, Given], Done], shared: Shared, portions: Sequence[Given]
     ) -> list[Done]:
-        """The work of each portion, in their order."""
+        """The work of each portion, in their order; `shared` is the same for all."""
         try:
-            return list(self._pool.map(work, [plan] * len(portions), portions))
+            return list(self._pool.map(work, [shared] * len(portions), portions))
         except BrokenProcessPool:
             standing.cache_clear()
             raise OutputError(DIED) from None
