@@ -120,6 +120,15 @@ class Guards {
     return late ? next : earliest;
   }
 
+  /// When the first of those in closed form counts: up to a limit, which may be a row, and with stick forces
+  /// that are known to their roundoff.
+  T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_row, T roundoff) {
+    const T row = is_row ? limit : std::numeric_limits<T>::infinity();
+    return put_off(earliest(oscillator, since, limit), row, [&](const Guard<T>& guard, T tau) {
+      return stays(guard, oscillator, tau, roundoff);
+    });
+  }
+
   /// Whether one in closed form stays at its bound from its zero until τ, to rounding.
   bool stays(const Guard<T>& guard, const Oscillator<T>& oscillator, T tau,
              T force_roundoff) const {
