@@ -72,6 +72,16 @@ class Attended {
   bool stopped_{false};
 };
 
+/// Sets a number by its name; whether there is one.
+bool set(pindrive_drive& drive, const char* name, double value);
+bool set(pindrive_release& release, const char* name, double value);
+constexpr const char* drive_names =
+    "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
+    "finger.stiffness";
+constexpr const char* release_names =
+    "mouse_velocity, plate_load, displacement, velocity, skin_stretch, duration";
+
+pindrive_error check_band(double band);
 /// What the core can follow, and what fits the direction of a derivative.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
 pindrive_error check(const char* name, double value, bool good, const char* range);

@@ -69,7 +69,9 @@ double* find(pindrive_drive& drive, const char* name) {
   return nullptr;
 }
 
-bool set(pindrive_drive& drive, const char* name, double value) {
+}  // namespace
+
+bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
   double* number = find(drive, name);
   if (!number) return false;
   *number = value;
@@ -78,13 +80,17 @@ bool set(pindrive_drive& drive, const char* name, double value) {
   return true;
 }
 
+namespace {
+
 pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   return nullptr;
 }
 
-bool set(pindrive_release& release, const char* name, double value) {
+}  // namespace
+
+bool pindrive_c::set(pindrive_release& release, const char* name, double value) {
   if (pd::Rows* rows = profile(release, name)) {
     rows->assign(1, {0, value});
     return true;
@@ -101,11 +107,7 @@ bool set(pindrive_release& release, const char* name, double value) {
   return false;
 }
 
-constexpr const char* drive_names =
-    "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
-    "finger.stiffness";
-constexpr const char* release_names =
-    "mouse_velocity, plate_load, displacement, velocity, skin_stretch, duration";
+namespace {
 
 pindrive_error bad_name(const char* of, const char* name, const char* names) {
   return fail(PINDRIVE_BAD_NAME, "%s has no %.40s, but %s", of, name, names);
@@ -325,9 +327,13 @@ pindrive_error duration_in(const pd::OwnedMotion<T>& motion, double band, double
               known, duration);
 }
 
-pindrive_error check_band(double band) {
+}  // namespace
+
+pindrive_error pindrive_c::check_band(double band) {
   return check("settling_band", band, band > 0 && band <= 1, "above 0 and at most 1");
 }
+
+namespace {
 
 constexpr const char* number_names[] = {"transient.peak_displacement",
                                         "transient.peak_time",
@@ -746,55 +752,6 @@ pindrive_error pindrive_certificate(const pindrive_motion* motion, double durati
   static_assert(sizeof laws / sizeof *laws == certificate_count);
   std::copy(std::begin(laws), std::end(laws), values);
   return PINDRIVE_OK;
-}
-
-pindrive_error pindrive_batch(const pindrive_drive* drive, const pindrive_release* release,
-                              const pindrive_varied* varied, size_t varied_count, size_t points,
-                              double settling_band, pindrive_go_on go_on, void* context,
-                              double* numbers, pindrive_status* status, pindrive_end* end,
-                              pindrive_error* errors) {
-  if (!drive) return null_pointer("drive");
-  if (!release) return null_pointer("release");
-  if (varied_count > 0 && !varied) return null_pointer("varied");
-  if (points > 0 && !numbers) return null_pointer("numbers");
-  if (const pindrive_error error = check_band(settling_band)) return error;
-  return guarded([&]() -> pindrive_error {
-    pindrive_drive at_drive = *drive;
-    pindrive_release at_release = *release;
-    for (std::size_t j = 0; j < varied_count; ++j) {
-      if (!varied[j].name || !varied[j].values) return null_pointer("name and values of a varied");
-      if (!set(at_drive, varied[j].name, 0) && !set(at_release, varied[j].name, 0))
-        return fail(PINDRIVE_BAD_NAME, "neither a drive nor a release has %.40s, but %s; %s",
-                    varied[j].name, drive_names, release_names);
-    }
-    at_drive = *drive;
-    at_release = *release;
-    Attended attended(go_on, context);
-    for (std::size_t i = 0; i < points; ++i) {
-      for (std::size_t j = 0; j < varied_count; ++j)
-        if (!set(at_drive, varied[j].name, varied[j].values[i]))
-          set(at_release, varied[j].name, varied[j].values[i]);
-      double* row = numbers + i * number_count;
-      const pindrive_error error = check(at_drive, at_release);
-      if (errors) errors[i] = error;
-      if (error) {
-        std::fill(row, row + number_count, none);
-        if (status) status[i] = PINDRIVE_STATUS_INCONSISTENT;
-        if (end) end[i] = PINDRIVE_END_MOVING;
-        continue;
-      }
-      std::unique_ptr<pd::OwnedMotion<double>> motion;
-      const pd::Numbers at = numbers_of(at_drive, at_release);
-      if (const pindrive_error stopped = simulated(motion, at, at, attended)) return stopped;
-      double duration = none;
-      duration_in(*motion, settling_band, duration);
-      const auto view = motion->view();
-      write(pd::Measurement(view, duration).transient(settling_band), motion->outcome(), row);
-      if (status) status[i] = static_cast<pindrive_status>(motion->outcome().status);
-      if (end) end[i] = static_cast<pindrive_end>(motion->outcome().end);
-    }
-    return PINDRIVE_OK;
-  });
 }
 
 }  // extern "C"

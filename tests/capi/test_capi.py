@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+import pindrive as pd
 from pindrive import Status, _core
 from pindrive.quantities.results import ENDING, TRANSIENT
 
@@ -454,6 +455,67 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         c.free(drive=drive, release=release, stepper=stepper)
     print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
     assert kept > 100
+
+
+class Varied(ctypes.Structure):
+    """pindrive_varied."""
+
+    _fields_ = (("name", c_char_p), ("values", POINTER(c_double)))
+
+
+def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
+    """By the kernel, and by the general core where the kernel gives up."""
+    random = np.random.default_rng(23)
+    points = 3000
+    plate, finger = random.uniform(0, 0.1, points), random.uniform(1e-3, 0.05, points)
+    plate[random.integers(points, size=50)] = 0.0
+    varied = {
+        "mass": random.uniform(2e-3, 2e-2, points),
+        "stiffness": random.uniform(20, 400, points),
+        "damping": random.uniform(0, 2, points),
+        "plate.kinetic": plate,
+        "plate.static": plate * random.uniform(1, 2, points),
+        "finger.kinetic": finger,
+        "finger.static": finger * random.uniform(1, 2, points),
+        "finger.stiffness": np.where(random.integers(20, size=points) == 0, 2000.0, inf),
+        "mouse_velocity": random.uniform(-0.3, 0.3, points),
+        "displacement": random.uniform(-3e-3, 3e-3, points),
+        "velocity": random.uniform(-0.3, 0.3, points),
+        "plate_load": random.choice([1.0, 0.5, 3.0], points),
+        "duration": np.where(random.integers(5, size=points) == 0, 0.1, inf),
+    }
+    varied["mass"][7] = -1.0
+    names = c.names("number")
+    expected = pd.simulate_batch(
+        pd.Drive(
+            mass=0.01,
+            stiffness=100.0,
+            damping=0.0,
+            plate=pd.Contact(kinetic=0.02),
+            finger=pd.Contact(kinetic=0.005),
+        ),
+        pd.Release(mouse_velocity=0.1),
+        **{name.replace(".", "_"): values for name, values in varied.items()},
+        outputs=[name.replace(".", "_") for name in names] + ["ending", "status"],
+    )
+    drive, release = c.given(Case())
+    listed = (Varied * len(varied))(
+        *(Varied(name.encode(), doubles(values)) for name, values in varied.items())
+    )
+    numbers = np.empty((points, len(names)))
+    codes = [np.empty(points, np.int32) for _ in range(3)]
+    outputs = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in codes))
+    c(
+        *("batch", drive, release, listed, c_size_t(len(varied)), c_size_t(points)),
+        *(c_double(0.05), None, None, *outputs),
+    )
+    for k, name in enumerate(names):
+        same(numbers[:, k], expected[name.replace(".", "_")].values, k)
+    good = expected["status"].values == Status.ok
+    assert_array_equal(codes[2] == 0, expected["status"].values < Status.incomplete)
+    assert_array_equal(codes[1][good], expected["ending"].values[good])
+    assert not good[7] and good.sum() > 0.99 * points
+    c.free(drive=drive, release=release)
 
 
 def line(rows: Rows, time: float) -> tuple[float, float]:
