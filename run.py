@@ -38,7 +38,7 @@ STAMP = VENV / "pindrive.json"
 STUB = ROOT / "src" / "pindrive" / "_core.pyi"
 EXAMPLE = Path("examples", "tactile-mouse.toml")
 PICTURE = Path("tactile-mouse.png")
-SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "src")
+SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
 
 # A package manager, and what it installs: Python, its venv module, its headers, a C++ compiler.
 INSTALLERS = {
@@ -255,17 +255,17 @@ def run(*command: str | Path) -> int:
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include", "src/pindrive", "capi", "tests", "benchmarks")
+    folders = ("include", "src/pindrive", "capi", "fmu", "tests", "benchmarks")
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 
 
 def clang_tidy() -> int:
     """The core's headers, as the programs that use them instantiate them."""
-    programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in ("capi", "tests")]
-    return run(
-        "clang-tidy", "--quiet", *programs, "--", "-std=c++17", "-Iinclude", "-Isrc/pindrive"
-    )
+    folders = ("capi", "fmu", "tests")
+    programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in folders]
+    headers = ("-Iinclude", "-Isrc/pindrive", "-Icapi", "-isystemfmu/fmi2", "-isystemfmu/fmi3")
+    return run("clang-tidy", "--quiet", *programs, "--", "-std=c++17", *headers)
 
 
 def installed_stub() -> Path:

@@ -29,7 +29,10 @@
 
 #include <stddef.h>
 
-#if defined(_WIN32) && defined(PINDRIVE_SHARED)
+/* PINDRIVE_WITHIN: within a library that has another interface to the outside, such as an FMU. */
+#if defined(PINDRIVE_WITHIN)
+#define PINDRIVE_API
+#elif defined(_WIN32) && defined(PINDRIVE_SHARED)
 #ifdef PINDRIVE_BUILDING
 #define PINDRIVE_API __declspec(dllexport)
 #else
