@@ -29,8 +29,6 @@ fmi2Status attempt(fmi2Component c, Function&& function) {
   try {
     function(at(c).instance);
     return fmi2OK;
-  } catch (const Failure& failure) {
-    why = failure.message;
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -82,8 +80,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                     functions ? functions->logger : nullptr,
                     functions ? functions->componentEnvironment : nullptr});
       return made.release();
-    } catch (const Failure& failure) {
-      why = failure.message;
     } catch (const std::exception& error) {
       why = error.what();
     }
@@ -164,7 +160,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
                                  size_t size) {
   return attempt(c, [&](Instance&) {
     const auto all = Instance::written(*static_cast<Instance::State*>(state));
-    if (size != all.size()) throw Failure{"the size must be that of the state"};
+    if (size != all.size()) throw Failure("the size must be that of the state");
     std::memcpy(bytes, all.data(), size);
   });
 }
@@ -188,7 +184,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
                                        const fmi2Integer order[], const fmi2Real value[]) {
   return attempt(c, [&](Instance& i) {
     for (size_t k = 0; k < n; ++k) {
-      if (order[k] != 1) throw Failure{"an input has a first derivative, and no higher one"};
+      if (order[k] != 1) throw Failure("an input has a first derivative, and no higher one");
       i.set_rate(vr[k], value[k]);
     }
   });

@@ -29,8 +29,6 @@ fmi3Status attempt(fmi3Instance c, Function&& function) {
   try {
     function(at(c).instance);
     return fmi3OK;
-  } catch (const Failure& failure) {
-    why = failure.message;
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -39,7 +37,7 @@ fmi3Status attempt(fmi3Instance c, Function&& function) {
 }
 
 fmi3Status unsupported(fmi3Instance c, const char* what) {
-  return attempt(c, [&](Instance&) { throw Failure{std::string("a drive has no ") + what}; });
+  return attempt(c, [&](Instance&) { throw Failure(std::string("a drive has no ") + what); });
 }
 
 }  // namespace
@@ -78,8 +76,6 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3Strin
         Component{Instance(resources ? resources : "", token ? token : ""), log, environment,
                   events, may_end_early});
     return made.release();
-  } catch (const Failure& failure) {
-    why = failure.message;
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -193,7 +189,7 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte by
                                  size_t size) {
   return attempt(c, [&](Instance&) {
     const auto all = Instance::written(*static_cast<Instance::State*>(state));
-    if (size != all.size()) throw Failure{"the size must be that of the state"};
+    if (size != all.size()) throw Failure("the size must be that of the state");
     std::memcpy(bytes, all.data(), size);
   });
 }

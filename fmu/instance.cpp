@@ -22,7 +22,7 @@ constexpr const char* outputs[] = {"position",     "velocity",    "acceleration"
                                    "plate_state",  "finger_state"};
 static_assert(sizeof outputs / sizeof *outputs == output_count);
 
-[[noreturn]] void refuse(const std::string& message) { throw Failure{message}; }
+[[noreturn]] void refuse(const std::string& message) { throw Failure(message); }
 
 void need(pindrive_error error) {
   if (error != PINDRIVE_OK) refuse(pindrive_last_error());
@@ -46,8 +46,11 @@ std::string content_of(const std::string& path) {
   if (!file) refuse(path + " cannot be read");
   std::string content;
   char part[1024];
-  for (std::size_t got; (got = std::fread(part, 1, sizeof part, file)) > 0;)
+  std::size_t got = sizeof part;
+  while (got == sizeof part) {
+    got = std::fread(part, 1, sizeof part, file);
     content.append(part, got);
+  }
   std::fclose(file);
   return content;
 }
@@ -316,7 +319,7 @@ double Instance::derivative(std::size_t unknown, const unsigned* knowns, const d
     changing.reset(made);
     double slopes[4] = {};
     for (std::size_t i = 0; i < variables_.size(); ++i)
-      if (variables_[i].kind == Variable::input) slopes[place(i + 1, Variable::input)] = along[i];
+      if (const int which = place(i + 1, Variable::input); which >= 0) slopes[which] = along[i];
     for (const Input each : {mouse_velocity, plate_load})
       need(pindrive_stepper_set_along(made, inputs[each], slopes[each], slopes[each + 1]));
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,8 @@ struct Values {
 };
 
 /// What a failed call was given and what is allowed.
-struct Failure {
-  std::string message;
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 class Instance {

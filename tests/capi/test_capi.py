@@ -469,7 +469,7 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
     points = 3000
     plate, finger = random.uniform(0, 0.1, points), random.uniform(1e-3, 0.05, points)
     plate[random.integers(points, size=50)] = 0.0
-    varied = {
+    varied: dict[str, Any] = {
         "mass": random.uniform(2e-3, 2e-2, points),
         "stiffness": random.uniform(20, 400, points),
         "damping": random.uniform(0, 2, points),

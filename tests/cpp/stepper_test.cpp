@@ -15,7 +15,6 @@
 
 namespace pd = pindrive;
 using check::expect;
-using check::near;
 
 namespace {
 

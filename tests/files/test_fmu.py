@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -262,21 +263,49 @@ def test_steps_end_early_at_events(archive: Archive) -> None:
     assert found == pytest.approx(events, rel=1e-13) and len(found) > 3
 
 
-def test_it_says_what_is_refused(archive: Archive) -> None:
-    unit = archive.unit().begin()
-    for call in (
-        lambda: unit.set(drive__mass=1.0),
-        lambda: unit.set(position=1.0),
-        lambda: unit.set(plate_load=-1.0),
-        lambda: unit.slave.doStep(currentCommunicationPoint=5.0, communicationStepSize=1.0),
-        lambda: unit.begin(drive__mass=-1.0),
+@pytest.mark.parametrize("archive", [(MOUSE, 2)], indirect=True, ids=str)
+def test_libcosim_drives_sixteen(archive: Archive) -> None:
+    """Sixteen drives in one system, each released from another place."""
+    cosim = pytest.importorskip("libcosimpy")
+    for name in ("CosimExecution", "CosimLogging", "CosimObserver", "CosimSlave"):
+        import_module(f"libcosimpy.{name}")
+    cosim.CosimLogging.log_output_level(cosim.CosimLogging.CosimLogLevel.ERROR)
+    execution = cosim.CosimExecution.CosimExecution.from_step_size(1_000_000)  # ns
+    observer = cosim.CosimObserver.CosimObserver.create_last_value()
+    numbers = {v.name: v.valueReference for v in archive.description.modelVariables}
+    places = [1e-3 + 1e-4 * i for i in range(16)]
+    slaves = []
+    for i, place in enumerate(places):
+        slave = cosim.CosimSlave.CosimLocalSlave(str(archive.path), f"pin{i}")
+        slaves.append(execution.add_local_slave(slave))
+        execution.real_initial_value(slaves[-1], numbers["motion.displacement"], place)
+    execution.add_observer(observer)
+    velocity = archive.device.release.mouse_velocity
+    motions = [simulate(archive.device.drive, Release(velocity, place)) for place in places]
+    for step in range(1, 61):
+        execution.step()
+        for slave, motion in zip(slaves, motions, strict=True):
+            (x,) = observer.last_real_values(slave, [numbers["position"]])
+            assert x == pytest.approx(motion.position(step * 1e-3), rel=1e-12, abs=1e-15)
+
+
+def test_it_says_what_is_refused(archive: Archive, capsys: pytest.CaptureFixture[str]) -> None:
+    unit, bad = archive.unit().begin(), archive.unit()
+    for call, words in (
+        (lambda: unit.set(drive__mass=1.0), "drive.mass is a fixed parameter"),
+        (lambda: unit.set(position=1.0), "position is an output"),
+        (lambda: unit.set(plate_load=-1.0), "plate_load must be at least 0 and finite, not -1"),
+        (lambda: unit.slave.doStep(5.0, 1.0), "a step must begin where the last one ended, at 0.0"),
+        (lambda: bad.begin(drive__mass=-1.0), "mass must be above 0 and finite, not -1"),
     ):
         with pytest.raises(FMICallException):
             call()
+        assert words in capsys.readouterr().out
     description = fmpy.read_model_description(str(archive.path))
     setattr(description, "guid" if archive.version == 2 else "instantiationToken", "{other}")
     with pytest.raises(Exception, match="instantiate"):
         Unit(archive.folder, description)
+    assert "the token must be" in capsys.readouterr().out
 
 
 def test_the_command_writes_both_versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,6 @@ the list that the archive carries beside the description.
 from __future__ import annotations
 
 import struct
-import sys
-import sysconfig
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import sha256
@@ -31,6 +29,12 @@ VERSIONS: Final = (2, 3)
 """Of FMI."""
 IDENTIFIER: Final = "pindrive"
 """The name of the library in the archive."""
+_PLATFORMS_2: Final = {
+    "x86_64-linux": "linux64",
+    "x86_64-windows": "win64",
+    "x86_64-darwin": "darwin64",
+}
+"""What FMI 2 calls the platforms for which it has a name, by their names in FMI 3."""
 
 _OUTPUTS: Final = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
@@ -167,21 +171,10 @@ def _libraries(version: int) -> Iterator[tuple[str, bytes]]:
     folder = resources.files("pindrive") / "fmu"
     if not folder.is_dir():
         return
-    for item in sorted(folder.iterdir(), key=lambda entry: entry.name):
-        if item.name.startswith(f"{IDENTIFIER}."):
-            suffix = item.name.partition(".")[2]
-            yield f"binaries/{_platform(version)}/{IDENTIFIER}.{suffix}", item.read_bytes()
-
-
-def _platform(version: int) -> str:
-    """What FMI calls this platform."""
-    system = {"win32": "windows", "darwin": "darwin"}.get(sys.platform, "linux")
-    machine = sysconfig.get_platform().rpartition("-")[2].lower()
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(machine, machine)
-    if version == 3:
-        return f"{machine}-{system}"
-    short = {"windows": "win", "darwin": "darwin", "linux": "linux"}[system]
-    return f"{short}64" if machine == "x86_64" else f"{machine}-{system}"
+    for platform in sorted(folder.iterdir(), key=lambda entry: entry.name):
+        name = _PLATFORMS_2.get(platform.name, platform.name) if version == 2 else platform.name
+        for library in platform.iterdir():
+            yield f"binaries/{name}/{library.name}", library.read_bytes()
 
 
 def _listed(variables: Iterable[Variable]) -> tuple[str, bytes]:
@@ -269,7 +262,8 @@ def _experiment(root: Element, device: DeviceFile) -> None:
 
 def _document(root: Element) -> bytes:
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, "utf-8") + b"\n"
+    text: bytes = tostring(root, "utf-8", xml_declaration=True)
+    return text + b"\n"
 
 
 def _description_2(device: DeviceFile, variables: list[Variable], token: str) -> bytes:
