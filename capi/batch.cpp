@@ -5,32 +5,70 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
+#include <iterator>
 #include <memory>
 #include <vector>
 
-#include "_batch_numbers.hpp"
-#include "_kernel.hpp"
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
+#include "pindrive/kernel_block.hpp"
+#ifdef PINDRIVE_KERNELS
+#include "_kernel.hpp"
+#endif
 
-namespace pe = pindrive_extension;
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
 namespace {
 
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
-using Sources = std::vector<const pe::Number<pe::Summary>*>;
 
-/// Where each number of the interface comes from.
-Sources sources() {
-  Sources found;
-  for (std::size_t k = 0; k < pindrive_number_count(); ++k)
-    for (const auto& each : pe::numbers)
-      if (std::strcmp(each.name, pindrive_number_name(k)) == 0) found.push_back(&each);
-  return found;
+constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
+
+/// Where the kernel has each number, in the order of pindrive_number_name.
+constexpr int column_of[] = {
+    PlainNumber::peak_displacement,
+    PlainNumber::peak_time,
+    PlainNumber::trough_displacement,
+    PlainNumber::trough_time,
+    PlainNumber::swing,
+    PlainNumber::return_velocity,
+    PlainNumber::return_velocity_time,
+    PlainNumber::first_reversal_time,
+    PlainNumber::settling_time,
+    Block::rest_time,
+    Block::rest_time,  // the last event is that it comes to rest
+    no_column,         // the stretch of a compliant finger, and its rate
+    no_column,
+    PlainNumber::plate_reversals,
+    PlainNumber::plate_time_stuck,
+    PlainNumber::plate_distance_slid,
+    PlainNumber::plate_dissipated,
+    PlainNumber::plate_peak_force,
+    PlainNumber::finger_reversals,
+    PlainNumber::finger_time_stuck,
+    PlainNumber::finger_distance_slid,
+    PlainNumber::finger_dissipated,
+    PlainNumber::finger_peak_force,
+    Block::rest_position,
+    no_column,  // a steady oscillation: its begin, amplitude and period
+    no_column,
+    no_column,
+};
+constexpr std::size_t number_count = std::size(column_of);
+constexpr auto settling_time = std::size_t{8};
+static_assert(column_of[settling_time] == PlainNumber::settling_time);
+
+/// In packs as wide as the processor has them, where the kernel is compiled for several widths; the bits are
+/// the same in each.
+void run_kernel(Block& block, std::size_t count) {
+  constexpr auto asked = pd::detail::Asked::settling;
+#ifdef PINDRIVE_KERNELS
+  pindrive_extension::kernel_of(0)->follow(block, static_cast<int>(count), asked);
+#else
+  pd::detail::follow_block<double>(block, static_cast<int>(count), asked);
+#endif
 }
 
 /// What the arguments of the core are for a point without curves and inputs that change, with the load of the
@@ -113,14 +151,13 @@ class Batch {
   void by_kernel(std::size_t first, std::size_t count) {
     std::fill_n(block_->output, Block::columns, nullptr);
     block_->output[Block::rest_time] = columns_[Block::rest_time];
-    for (const auto* number : sources_)
-      if (number->column != pe::no_column)
-        block_->output[number->column] = columns_[number->column];
-    pe::kernel_of(0)->follow(*block_, static_cast<int>(count), pd::detail::Asked::settling);
+    for (const int column : column_of)
+      if (column != no_column) block_->output[column] = columns_[column];
+    run_kernel(*block_, count);
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < sources_.size(); ++k)
-        row(first + i)[k] = kinds_[i] == Kind::kernel && sources_[k]->column != pe::no_column
-                                ? columns_[sources_[k]->column][i]
+      for (std::size_t k = 0; k < number_count; ++k)
+        row(first + i)[k] = kinds_[i] == Kind::kernel && column_of[k] != no_column
+                                ? columns_[column_of[k]][i]
                                 : none;
       const bool rests = !std::isnan(columns_[Block::rest_time][i]);
       const bool refused = kinds_[i] == Kind::refused;
@@ -137,18 +174,17 @@ class Batch {
     const pd::Numbers& at = points_[i];
     const pd::OwnedMotion<double> motion(at, at, [&] { return attended.go_on(); });
     if (attended.stopped()) return;
-    const pd::Motion<double> view = motion.view();
-    pe::Summary summary{};
-    summary.outcome = motion.outcome();
-    summary.duration = pd::duration_of(view, band_);
-    summary.transient = pd::Measurement<double>(view, summary.duration).transient(band_);
-    for (std::size_t k = 0; k < sources_.size(); ++k)
-      if (all || sources_[k]->column == PlainNumber::settling_time)
-        row(point)[k] = sources_[k]->of(summary);
-    if (all) say(point, summary.outcome.status, summary.outcome.end);
+    double numbers[number_count];
+    write_numbers(motion, band_, numbers);
+    if (!all) {
+      row(point)[settling_time] = numbers[settling_time];
+      return;
+    }
+    std::copy_n(numbers, number_count, row(point));
+    say(point, motion.outcome().status, motion.outcome().end);
   }
 
-  double* row(std::size_t point) const { return numbers_ + point * sources_.size(); }
+  double* row(std::size_t point) const { return numbers_ + point * number_count; }
   void say(std::size_t point, pd::Status status, pd::End end) const {
     if (status_) status_[point] = static_cast<pindrive_status>(status);
     if (end_) end_[point] = static_cast<pindrive_end>(end);
@@ -164,7 +200,6 @@ class Batch {
   pindrive_end* end_;
   pindrive_error* errors_;
 
-  const Sources sources_{sources()};
   std::unique_ptr<Block> block_{std::make_unique<Block>()};
   double columns_[Block::columns][Block::capacity];
   std::array<Kind, Block::capacity> kinds_{};

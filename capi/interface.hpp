@@ -91,6 +91,9 @@ pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& rele
 /// What stands for the plate's velocity at the release, with its derivative.
 void start(pd::Numbers& at, pd::Numbers& along);
 
+/// The numbers of a motion in the order of pindrive_number_name, over its own duration.
+void write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values);
+
 /// A quantity at an instant of a trajectory; friction() tells the friction there.
 template <class T, class Trajectory, class Share>
 double value_along(const Trajectory& along, const T& tau, const T& skin, Share&& friction,

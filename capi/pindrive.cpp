@@ -410,6 +410,12 @@ constexpr std::size_t certificate_count = sizeof certificate_names / sizeof *cer
 
 }  // namespace
 
+void pindrive_c::write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values) {
+  double duration = none;
+  duration_in(motion, band, duration);
+  write(pd::Measurement(motion.view(), duration).transient(band), motion.outcome(), values);
+}
+
 extern "C" {
 
 int pindrive_interface(void) { return PINDRIVE_INTERFACE; }

@@ -46,16 +46,12 @@ class Followed {
 using State = pd::Stepper<double>::State;
 using StateOfDual = pd::Stepper<Dual>::State;
 
-/// The drive alone says how a stepper goes on from a state; along a direction in which nothing changes.
-pd::Numbers without_change(pd::Numbers at) {
-  for (pd::ContactNumbers* contact : {&at.plate, &at.finger}) {
-    *contact = {0, 0, 0, pd::Rows(contact->curve.size())};
-  }
-  at.mass = at.stiffness = at.damping = 0;
-  at.displacement = at.velocity = at.skin_stretch = at.duration = 0;
-  at.mouse_velocity.assign(at.mouse_velocity.size(), {0, 0});
-  at.plate_load.assign(at.plate_load.size(), {0, 0});
-  return at;
+/// A direction in which the drive does not change.
+pd::Numbers without_change(const pd::Numbers& at) {
+  pd::Numbers along{};
+  along.plate.curve.resize(at.plate.curve.size());
+  along.finger.curve.resize(at.finger.curve.size());
+  return along;
 }
 
 StateOfDual lifted(const State& s) {
@@ -443,7 +439,7 @@ pindrive_error pindrive_stepper_read(const void* bytes, size_t size, pindrive_st
                 "the bytes must be those of a stepper, whole and of interface %d",
                 PINDRIVE_INTERFACE);
   return guarded([&]() -> pindrive_error {
-    pd::Numbers at{0, 0, 0, {}, {}, {{0, 0}}, {{0, 1}}, 0, 0, none, infinity};
+    pd::Numbers at{};
     State state{};
     Reading reading(from + sizeof head, size - sizeof head);
     exchange(reading, at, state);
