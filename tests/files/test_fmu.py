@@ -136,7 +136,12 @@ def driven(unit: Unit, random: np.random.Generator, largest: float) -> Iterator[
     for i, (begin, end) in enumerate(pairwise((*TIMES, END))):
         assert unit.time == begin
         unit.set(mouse_velocity=VELOCITIES[i], plate_load=LOADS[i])
-        unit.set(mouse_velocity_rate=rates(VELOCITIES, i), plate_load_rate=rates(LOADS, i))
+        slopes = {"mouse_velocity": rates(VELOCITIES, i), "plate_load": rates(LOADS, i)}
+        if unit.version == 2 and i % 2:  # FMI 2 sets a rate in either way
+            numbers = [unit.numbers[name] for name in slopes]
+            unit.slave.setRealInputDerivatives(numbers, [1, 1], [*slopes.values()])
+        else:
+            unit.set(**{f"{name}_rate": slope for name, slope in slopes.items()})
         while unit.time < end:
             until = min(end, unit.time + random.uniform(0, largest))
             before = unit.time
