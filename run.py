@@ -9,6 +9,8 @@
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
     python3 run.py validation         write the published cases and figures of docs/validation.md
+    python3 run.py fmu-binaries [PLATFORM...]
+                                      compile what FMUs carry for other platforms
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when
@@ -38,7 +40,18 @@ STAMP = VENV / "pindrive.json"
 STUB = ROOT / "src" / "pindrive" / "_core.pyi"
 EXAMPLE = Path("examples", "tactile-mouse.toml")
 PICTURE = Path("tactile-mouse.png")
-SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "src")
+FMU_OF_CAPI = ("pindrive.cpp", "stepper.cpp")
+SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
+
+# What FMI 3 calls a platform, what the compiler does, and how its libraries end.
+FMU_PLATFORMS = {
+    "x86_64-linux": ("x86_64-linux-gnu.2.17", "so"),
+    "aarch64-linux": ("aarch64-linux-gnu.2.17", "so"),
+    "x86_64-windows": ("x86_64-windows-gnu", "dll"),
+    "aarch64-windows": ("aarch64-windows-gnu", "dll"),
+    "x86_64-darwin": ("x86_64-macos", "dylib"),
+    "aarch64-darwin": ("aarch64-macos", "dylib"),
+}
 
 # A package manager, and what it installs: Python, its venv module, its headers, a C++ compiler.
 INSTALLERS = {
@@ -255,17 +268,17 @@ def run(*command: str | Path) -> int:
 
 def cpp_files() -> list[Path]:
     """The C++ of the project."""
-    folders = ("include", "src/pindrive", "capi", "tests", "benchmarks")
+    folders = ("include", "src/pindrive", "capi", "fmu", "tests", "benchmarks")
     found = (p for folder in folders for p in (ROOT / folder).rglob("*.[ch]pp"))
     return sorted(p.relative_to(ROOT) for p in found)
 
 
 def clang_tidy() -> int:
     """The core's headers, as the programs that use them instantiate them."""
-    programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in ("capi", "tests")]
-    return run(
-        "clang-tidy", "--quiet", *programs, "--", "-std=c++17", "-Iinclude", "-Isrc/pindrive"
-    )
+    folders = ("capi", "fmu", "tests")
+    programs = [p for p in cpp_files() if p.suffix == ".cpp" and p.parts[0] in folders]
+    headers = ("-Iinclude", "-Isrc/pindrive", "-Icapi", "-isystemfmu/fmi2", "-isystemfmu/fmi3")
+    return run("clang-tidy", "--quiet", *programs, "--", "-std=c++17", *headers)
 
 
 def installed_stub() -> Path:
@@ -365,6 +378,33 @@ def bench(arguments: list[str]) -> int:
     return run("python", program, *arguments[len(named) :])
 
 
+def fmu_binaries(platforms: list[str]) -> int:
+    """The libraries that FMUs carry for the platforms named, or all; then installs them."""
+    unknown = [name for name in platforms if name not in FMU_PLATFORMS]
+    if unknown:
+        stop(f"no platform {unknown[0]!r}; there are {', '.join(FMU_PLATFORMS)}")
+    install({"fmu"}, project=False)
+    sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
+    headers = [f"-I{ROOT / name}" for name in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")]
+    options = ["-std=c++17", "-O2", "-s", "-shared", "-ffp-contract=off", "-DPINDRIVE_WITHIN"]
+    for name in platforms or FMU_PLATFORMS:
+        target, suffix = FMU_PLATFORMS[name]
+        library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
+        library.parent.mkdir(parents=True, exist_ok=True)
+        part = library.with_name("part")
+        command = [str(BIN / "python"), "-m", "ziglang", "c++", "-target", target, *options]
+        if suffix != "dll":
+            command.append("-fvisibility=hidden")
+        quietly(f"compiling for {name}", [*command, *headers, *map(str, sources), "-o", str(part)])
+        part.replace(library)
+        print(f"{library.relative_to(ROOT)}: {library.stat().st_size} bytes")
+        for beside in library.parent.glob("part*"):  # an import library, which nobody needs
+            beside.unlink()
+    write_stamp({**json.loads(STAMP.read_text("utf-8")), "sources": None})
+    install({"fmu"})
+    return 0
+
+
 def validation() -> int:
     """The published cases: computed, and written to docs/validation.md with their figures."""
     install({"test"})
@@ -393,6 +433,7 @@ def main(arguments: list[str]) -> int:
         print(__doc__)
         return 0
     taking = {"test": test, "explore": explore, "lint": lint, "bench": bench}
+    taking["fmu-binaries"] = fmu_binaries
     alone = {"simulate": simulate, "format": layout, "stubs": stubs, "validation": validation}
     if command in taking:
         return taking[command](rest)

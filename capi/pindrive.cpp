@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive/batch.hpp"
 #include "pindrive/certify.hpp"
@@ -23,20 +24,18 @@
 
 namespace pd = pindrive;
 
-namespace {
+using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
-using Dual = pd::Dual<double>;
-double plain(double number) { return number; }
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+namespace {
 
 // ---- errors ------------------------------------------------------------------------------------
 
 thread_local char last_error[256] = "";
 
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
+}  // namespace
+
+namespace pindrive_c {
+
 pindrive_error fail(pindrive_error error, const char* format, ...) {
   std::va_list given;
   va_start(given, format);
@@ -49,53 +48,9 @@ pindrive_error null_pointer(const char* what) {
   return fail(PINDRIVE_NULL, "%s must not be null", what);
 }
 
-/// What a function returns that may run out of memory.
-template <class Function>
-pindrive_error guarded(Function&& function) {
-#if defined(__cpp_exceptions)
-  try {
-    return function();
-  } catch (const std::bad_alloc&) {
-    return fail(PINDRIVE_OUT_OF_MEMORY, "out of memory");
-  }
-#else
-  return function();
-#endif
-}
-
-/// Asks a caller now and then whether to go on.
-class Attended {
- public:
-  Attended(pindrive_go_on ask, void* context) : ask_(ask), context_(context) {}
-
-  bool go_on() {
-    if (ask_ && ++done_ % between == 0 && !stopped_) stopped_ = ask_(context_) == 0;
-    return !stopped_;
-  }
-  bool stopped() const { return stopped_; }
-
- private:
-  static constexpr std::uint32_t between = 1U << 12;  ///< segments: about a millisecond
-
-  pindrive_go_on ask_;
-  void* context_;
-  std::uint32_t done_{0};
-  bool stopped_{false};
-};
-
-}  // namespace
+}  // namespace pindrive_c
 
 // ---- drives and releases -----------------------------------------------------------------------
-
-struct pindrive_drive {
-  double mass{none}, stiffness{none}, damping{0};
-  pd::ContactNumbers plate{0, 0, infinity, {}}, finger{0, 0, infinity, {}};
-};
-
-struct pindrive_release {
-  pd::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}};
-  double displacement{0}, velocity{none}, skin_stretch{none}, duration{infinity};
-};
 
 namespace {
 
@@ -114,7 +69,9 @@ double* find(pindrive_drive& drive, const char* name) {
   return nullptr;
 }
 
-bool set(pindrive_drive& drive, const char* name, double value) {
+}  // namespace
+
+bool pindrive_c::set(pindrive_drive& drive, const char* name, double value) {
   double* number = find(drive, name);
   if (!number) return false;
   *number = value;
@@ -123,13 +80,17 @@ bool set(pindrive_drive& drive, const char* name, double value) {
   return true;
 }
 
+namespace {
+
 pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   return nullptr;
 }
 
-bool set(pindrive_release& release, const char* name, double value) {
+}  // namespace
+
+bool pindrive_c::set(pindrive_release& release, const char* name, double value) {
   if (pd::Rows* rows = profile(release, name)) {
     rows->assign(1, {0, value});
     return true;
@@ -146,11 +107,7 @@ bool set(pindrive_release& release, const char* name, double value) {
   return false;
 }
 
-constexpr const char* drive_names =
-    "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
-    "finger.stiffness";
-constexpr const char* release_names =
-    "mouse_velocity, plate_load, displacement, velocity, skin_stretch, duration";
+namespace {
 
 pindrive_error bad_name(const char* of, const char* name, const char* names) {
   return fail(PINDRIVE_BAD_NAME, "%s has no %.40s, but %s", of, name, names);
@@ -158,11 +115,15 @@ pindrive_error bad_name(const char* of, const char* name, const char* names) {
 
 // ---- what the core can follow ------------------------------------------------------------------
 
-/// Checks a number; the range in words is what the message says.
-pindrive_error check(const char* name, double value, bool good, const char* range) {
+}  // namespace
+
+/// The range in words is what the message says.
+pindrive_error pindrive_c::check(const char* name, double value, bool good, const char* range) {
   if (good) return PINDRIVE_OK;
   return fail(PINDRIVE_BAD_VALUE, "%s must be %s, not %.17g", name, range, value);
 }
+
+namespace {
 
 pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -202,7 +163,9 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   return error;
 }
 
-pindrive_error check(const pindrive_drive& drive, const pindrive_release& release) {
+}  // namespace
+
+pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_release& release) {
   const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
   const auto finite_or = [](double value, double other) {
     return std::isfinite(value) || (std::isnan(value) && std::isnan(other));
@@ -239,28 +202,40 @@ pindrive_error check(const pindrive_drive& drive, const pindrive_release& releas
                "what the finger's static friction can hold");
 }
 
+namespace {
+
 pindrive_error same_rows(const char* name, const pd::Rows& rows, const pd::Rows& rates) {
   if (rows.size() == rates.size()) return PINDRIVE_OK;
   return fail(PINDRIVE_BAD_VALUE, "the rate of %s must have %zu rows, as it has, not %zu", name,
               rows.size(), rates.size());
 }
 
-pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
+}  // namespace
+
+pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindrive_release& release,
+                                       const pindrive_drive& drive_rate,
+                                       const pindrive_release& release_rate) {
+  pindrive_error error = same_rows("plate.curve", drive.plate.curve, drive_rate.plate.curve);
+  if (!error) error = same_rows("finger.curve", drive.finger.curve, drive_rate.finger.curve);
+  if (!error)
+    error = same_rows("mouse_velocity", release.mouse_velocity, release_rate.mouse_velocity);
+  if (!error) error = same_rows("plate_load", release.plate_load, release_rate.plate_load);
+  return error;
+}
+
+pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
   return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
           drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
           release.velocity, release.skin_stretch,   release.duration};
 }
 
-/// What stands for the plate's velocity at the release, with its derivative.
-void start(pd::Numbers& at, pd::Numbers& along) {
+void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
   if (!std::isnan(at.velocity)) return;
   const pd::OwnedRows<Dual> rows(at.mouse_velocity, along.mouse_velocity);
   const Dual plate = rows.profile().from(Dual(0)).value;
   at.velocity = plate.value;
   along.velocity = plate.slope;
 }
-
-}  // namespace
 
 // ---- motions -----------------------------------------------------------------------------------
 
@@ -292,27 +267,9 @@ pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Number
 template <class T>
 double value_at(const pd::Motion<T>& motion, const pd::Segment<T>& segment, T tau,
                 pindrive_quantity quantity) {
-  const T skin = motion.drive().finger.stiffness;
+  const auto friction = [&] { return motion.friction(segment, tau); };
   return motion.along(segment, [&](const auto& along) {
-    const auto at = [&](const auto& path) { return along.at(path, tau); };
-    switch (quantity) {
-      case PINDRIVE_POSITION:
-        return pd::result(at(along.position()));
-      case PINDRIVE_VELOCITY:
-        return pd::result(at(along.velocity()));
-      case PINDRIVE_ACCELERATION:
-        return pd::result(at(along.acceleration()));
-      case PINDRIVE_PLATE_FORCE:
-        return pd::result(motion.friction(segment, tau).plate);
-      case PINDRIVE_FINGER_FORCE:
-        return pd::result(motion.friction(segment, tau).finger);
-      case PINDRIVE_SKIN_STRETCH:
-        return pd::result(-at(along.finger_force()) / skin);
-      case PINDRIVE_SKIN_STRETCH_RATE:
-        return pd::result(-at(along.derivative(along.finger_force())) / skin);
-      default:
-        return none;
-    }
+    return value_along(along, tau, motion.drive().finger.stiffness, friction, quantity);
   });
 }
 
@@ -370,9 +327,13 @@ pindrive_error duration_in(const pd::OwnedMotion<T>& motion, double band, double
               known, duration);
 }
 
-pindrive_error check_band(double band) {
+}  // namespace
+
+pindrive_error pindrive_c::check_band(double band) {
   return check("settling_band", band, band > 0 && band <= 1, "above 0 and at most 1");
 }
+
+namespace {
 
 /// Writes the numbers of a result in the order of their list.
 template <class T, class Result, std::size_t count>
@@ -388,6 +349,13 @@ const char* name_of(const Numbers& numbers, std::size_t index) {
 constexpr std::size_t number_count = std::size(pd::transient_numbers<double>);
 
 }  // namespace
+
+void pindrive_c::write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values) {
+  double duration = none;
+  duration_in(motion, band, duration);
+  write(pd::transient_numbers<double>, pd::Measurement(motion.view(), duration).transient(band),
+        values);
+}
 
 extern "C" {
 
@@ -507,11 +475,7 @@ pindrive_error pindrive_differentiate(const pindrive_drive* drive, const pindriv
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = same_rows("plate.curve", drive->plate.curve, drive_rate->plate.curve);
-  if (!error) error = same_rows("finger.curve", drive->finger.curve, drive_rate->finger.curve);
-  if (!error)
-    error = same_rows("mouse_velocity", release->mouse_velocity, release_rate->mouse_velocity);
-  if (!error) error = same_rows("plate_load", release->plate_load, release_rate->plate_load);
+  if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return guarded([&]() -> pindrive_error {
     auto made = std::make_unique<pindrive_motion>();
@@ -726,56 +690,6 @@ pindrive_error pindrive_certificate(const pindrive_motion* motion, double durati
   const auto view = motion->values->view();
   write(pd::certificate_numbers<double>, pd::Certifier<double>(view, duration).certify(), values);
   return PINDRIVE_OK;
-}
-
-pindrive_error pindrive_batch(const pindrive_drive* drive, const pindrive_release* release,
-                              const pindrive_varied* varied, size_t varied_count, size_t points,
-                              double settling_band, pindrive_go_on go_on, void* context,
-                              double* numbers, pindrive_status* status, pindrive_end* end,
-                              pindrive_error* errors) {
-  if (!drive) return null_pointer("drive");
-  if (!release) return null_pointer("release");
-  if (varied_count > 0 && !varied) return null_pointer("varied");
-  if (points > 0 && !numbers) return null_pointer("numbers");
-  if (const pindrive_error error = check_band(settling_band)) return error;
-  return guarded([&]() -> pindrive_error {
-    pindrive_drive at_drive = *drive;
-    pindrive_release at_release = *release;
-    for (std::size_t j = 0; j < varied_count; ++j) {
-      if (!varied[j].name || !varied[j].values) return null_pointer("name and values of a varied");
-      if (!set(at_drive, varied[j].name, 0) && !set(at_release, varied[j].name, 0))
-        return fail(PINDRIVE_BAD_NAME, "neither a drive nor a release has %.40s, but %s; %s",
-                    varied[j].name, drive_names, release_names);
-    }
-    at_drive = *drive;
-    at_release = *release;
-    Attended attended(go_on, context);
-    for (std::size_t i = 0; i < points; ++i) {
-      for (std::size_t j = 0; j < varied_count; ++j)
-        if (!set(at_drive, varied[j].name, varied[j].values[i]))
-          set(at_release, varied[j].name, varied[j].values[i]);
-      double* row = numbers + i * number_count;
-      const pindrive_error error = check(at_drive, at_release);
-      if (errors) errors[i] = error;
-      if (error) {
-        std::fill(row, row + number_count, none);
-        if (status) status[i] = PINDRIVE_STATUS_INCONSISTENT;
-        if (end) end[i] = PINDRIVE_END_MOVING;
-        continue;
-      }
-      std::unique_ptr<pd::OwnedMotion<double>> motion;
-      const pd::Numbers at = numbers_of(at_drive, at_release);
-      if (const pindrive_error stopped = simulated(motion, at, at, attended)) return stopped;
-      double duration = none;
-      duration_in(*motion, settling_band, duration);
-      const auto view = motion->view();
-      write(pd::transient_numbers<double>, pd::Measurement(view, duration).transient(settling_band),
-            row);
-      if (status) status[i] = static_cast<pindrive_status>(motion->outcome().status);
-      if (end) end[i] = static_cast<pindrive_end>(motion->outcome().end);
-    }
-    return PINDRIVE_OK;
-  });
 }
 
 }  // extern "C"

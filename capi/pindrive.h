@@ -29,7 +29,10 @@
 
 #include <stddef.h>
 
-#if defined(_WIN32) && defined(PINDRIVE_SHARED)
+/* PINDRIVE_WITHIN: within a library that has another interface to the outside, such as an FMU. */
+#if defined(PINDRIVE_WITHIN)
+#define PINDRIVE_API
+#elif defined(_WIN32) && defined(PINDRIVE_SHARED)
 #ifdef PINDRIVE_BUILDING
 #define PINDRIVE_API __declspec(dllexport)
 #else
@@ -61,9 +64,10 @@ enum {
   PINDRIVE_BAD_VALUE = 3,     /* a number, or a code, out of its range */
   PINDRIVE_NULL = 4,          /* a null pointer where one is needed */
   PINDRIVE_UNSUPPORTED = 5,   /* a drive and a release that the core cannot follow together */
-  PINDRIVE_DERIVATIVE = 6,    /* asked of derivatives what only a motion has */
+  PINDRIVE_DERIVATIVE = 6,    /* asked of derivatives what only a motion has, or the reverse */
   PINDRIVE_STOPPED = 7,       /* go_on returned 0 */
-  PINDRIVE_OUT_OF_MEMORY = 8
+  PINDRIVE_OUT_OF_MEMORY = 8,
+  PINDRIVE_GIVEN_UP = 9 /* a stepper that cannot go on */
 };
 
 /* What the last call of this thread that failed was given, and what is allowed; valid until the next
@@ -295,6 +299,82 @@ PINDRIVE_API size_t pindrive_certificate_count(void);
 PINDRIVE_API const char *pindrive_certificate_name(size_t index);
 PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, double duration,
                                                  double *values);
+
+/* ---- step by step ---------------------------------------------------------------------------- */
+
+/* A release that is followed from one time to the next, under inputs that are set on the way. Its
+ * answers are those of one simulation, whatever the steps: nothing is integrated again at a step. */
+typedef struct pindrive_stepper pindrive_stepper;
+
+/* A release at the time `begin`, s; to be freed. Its mouse_velocity and plate_load have one value, as
+ * its inputs are set on the way; its duration does not matter. */
+PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive *drive,
+                                                 const pindrive_release *release, double begin,
+                                                 pindrive_stepper **stepper);
+
+/* The exact derivatives of that stepper along a direction, as of pindrive_differentiate(). What is then
+ * evaluated of it is a derivative at a time. */
+PINDRIVE_API pindrive_error pindrive_stepper_differentiate(const pindrive_drive *drive,
+                                                           const pindrive_release *release,
+                                                           const pindrive_drive *drive_rate,
+                                                           const pindrive_release *release_rate,
+                                                           double begin,
+                                                           pindrive_stepper **derivative);
+
+/* The derivatives from now on of a stepper along which nothing has changed so far: directions of its
+ * inputs are then set by pindrive_stepper_set_along(). */
+PINDRIVE_API pindrive_error pindrive_stepper_derivative(const pindrive_stepper *stepper,
+                                                        pindrive_stepper **derivative);
+
+/* A stepper in the same state, which goes on to the same bits: so a state is kept and gone back to. */
+PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper *stepper,
+                                                  pindrive_stepper **copy);
+
+PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
+
+/* Sets "mouse_velocity" (m/s, rate m/s^2) or "plate_load" (>= 0, rate 1/s) from now on: it goes on at
+ * its rate until it is set again; a load that has fallen to zero stays there. A mouse velocity that jumps
+ * moves the housing in no time: beside it the pin keeps its velocity, to the plate too. A value that
+ * differs from the input as it went on by rounding is the same. Of derivatives it is a number, which does
+ * not change along the direction. */
+PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
+                                                 double value, double rate);
+
+/* Of derivatives: how an input and its rate change along the direction, from now on. */
+PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper *derivative,
+                                                       const char *input, double value,
+                                                       double rate);
+
+/* Goes on to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
+ * a contact until then. */
+PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper *stepper, double until,
+                                                  int stop_at_event);
+
+typedef struct pindrive_instant {
+  double time;                                   /* now, s */
+  double next_event;                             /* no contact changes before it if the inputs go on
+                                                    as they do, s; infinite where none ever does */
+  double mouse_velocity, mouse_velocity_rate;    /* m/s, m/s^2 */
+  double plate_load, plate_load_rate;            /* 1, 1/s */
+  pindrive_contact_state plate, finger;          /* from now on */
+  pindrive_transition plate_event, finger_event; /* what happens now */
+} pindrive_instant;
+
+PINDRIVE_API pindrive_error pindrive_stepper_now(const pindrive_stepper *stepper,
+                                                 pindrive_instant *instant);
+
+/* A quantity now; at an event, after it. */
+PINDRIVE_API pindrive_error pindrive_stepper_evaluate(const pindrive_stepper *stepper,
+                                                      pindrive_quantity quantity, double *value);
+
+/* A stepper, not of derivatives, as bytes: how many they are, and writing them. They are read by a
+ * library of the same interface on a machine that keeps numbers in the same way; damaged ones are
+ * refused. */
+PINDRIVE_API size_t pindrive_stepper_size(const pindrive_stepper *stepper);
+PINDRIVE_API pindrive_error pindrive_stepper_write(const pindrive_stepper *stepper, void *bytes,
+                                                   size_t size);
+PINDRIVE_API pindrive_error pindrive_stepper_read(const void *bytes, size_t size,
+                                                  pindrive_stepper **stepper);
 
 /* ---- many releases --------------------------------------------------------------------------- */
 

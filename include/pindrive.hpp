@@ -12,7 +12,8 @@
 ///     const double x = segment->flow.position.at(segment->flow.oscillator, tau);  // x(0.02 s)
 ///
 /// `summarise` gives all numbers of a motion at once, `Certifier` proves one against the laws of
-/// motion, `Dual` makes everything its own derivative. Names in `pindrive::detail` are internal.
+/// motion, `Dual` makes everything its own derivative, `Stepper` goes on from time to time under inputs that
+/// are set on the way. Names in `pindrive::detail` are internal.
 #pragma once
 
 #include "pindrive/batch.hpp"      // IWYU pragma: export
@@ -23,4 +24,5 @@
 #include "pindrive/model.hpp"      // IWYU pragma: export
 #include "pindrive/motion.hpp"     // IWYU pragma: export
 #include "pindrive/simulate.hpp"   // IWYU pragma: export
+#include "pindrive/stepper.hpp"    // IWYU pragma: export
 #include "pindrive/transient.hpp"  // IWYU pragma: export

@@ -14,6 +14,37 @@ namespace pindrive {
 /// Which limit is asked for at an event.
 enum class Side : signed char { left, right };
 
+/// Calls visit with the quantities of a segment whose plate load goes on from its begin along a line: a
+/// ClosedForm or, where it has none, BySeries; what that returns.
+template <class T, class Visitor>
+auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load,
+                      Visitor&& visit) {
+  const SeriesMode<T> mode(drive, segment.mode, {segment.plate_velocity, load});
+  if (!(segment.end > segment.begin) || mode.has_closed_form())
+    return visit(ClosedForm<T>(segment));
+  return visit(BySeries<T>(drive, segment, load));
+}
+
+/// Friction of each contact on the pin, N.
+template <class T>
+struct Friction {
+  T plate, finger;
+};
+
+/// That of a segment after τ. Two stuck contacts share in proportion to their static friction: how they
+/// really do is not determined.
+template <class T>
+Friction<T> friction_in(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load,
+                        T tau) {
+  const Friction<T> found = visit_trajectory(drive, segment, load, [&](const auto& t) {
+    return Friction<T>{t.at(t.plate_force(), tau), t.at(t.finger_force(), tau)};
+  });
+  if (!segment.mode.both_stuck()) return found;
+  const T at_plate = drive.plate.static_limit * load.at(tau);
+  const T part = at_plate > 0 ? at_plate / (at_plate + drive.finger.static_limit) : T(0);
+  return {part * found.plate, (1 - part) * found.plate};
+}
+
 /// What a simulation was given and what it found. It owns nothing: the segments live elsewhere.
 template <class T>
 class Motion {
@@ -63,29 +94,13 @@ class Motion {
   /// that returns.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
-    if (drive_.plate.branches == 0 || inputs_.plate_load.constant() ||
-        !(segment.end > segment.begin))
+    if (drive_.plate.branches == 0 || inputs_.plate_load.constant())
       return visit(ClosedForm<T>(segment));
-    const Line<T> load = inputs_.plate_load.from(segment.begin);
-    const SeriesMode<T> mode(drive_, segment.mode, {segment.plate_velocity, load});
-    if (mode.has_closed_form()) return visit(ClosedForm<T>(segment));
-    return visit(BySeries<T>(drive_, segment, load));
+    return visit_trajectory(drive_, segment, inputs_.plate_load.from(segment.begin), visit);
   }
 
-  struct Friction {
-    T plate, finger;
-  };
-  /// Friction of each contact on the pin, N. Two stuck contacts share in proportion to their static
-  /// friction: how they really do is not determined.
-  Friction friction(const Segment<T>& segment, T tau) const {
-    const Friction found = along(segment, [&](const auto& t) {
-      return Friction{t.at(t.plate_force(), tau), t.at(t.finger_force(), tau)};
-    });
-    const T plate = found.plate;
-    if (!segment.mode.both_stuck()) return found;
-    const T at_plate = drive_.plate.static_limit * inputs_.plate_load.from(segment.begin).at(tau);
-    const T part = at_plate > 0 ? at_plate / (at_plate + drive_.finger.static_limit) : T(0);
-    return {part * plate, (1 - part) * plate};
+  Friction<T> friction(const Segment<T>& segment, T tau) const {
+    return friction_in(drive_, segment, inputs_.plate_load.from(segment.begin), tau);
   }
 
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until

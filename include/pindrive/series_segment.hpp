@@ -57,7 +57,8 @@ class SeriesSegment {
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
   /// of a time happens there.
   T earliest(T since, T row) const {
-    return row - first_ <= rounding<T> * (since + row) ? row : first_;
+    constexpr T never = std::numeric_limits<T>::infinity();
+    return row < never && row - first_ <= rounding<T> * (since + row) ? row : first_;
   }
 
   /// Brings the state on by τ, unless the mode has a closed form.

@@ -13,6 +13,11 @@
 #include "pindrive/return.hpp"
 #include "pindrive/series_segment.hpp"
 
+namespace pindrive {
+template <class T>
+class Stepper;
+}
+
 namespace pindrive::detail {
 
 /// Follows one pin from its release and hands each segment to the sink, in order of time; a sink may
@@ -21,22 +26,7 @@ template <class T, class Surface = Contact<T>, class Input = Profile<T>>
 class Simulation {
  public:
   Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
-      : drive_(drive),
-        inputs_(inputs),
-        plain_(drive.mass, drive.damping, drive.stiffness),
-        half_period_(plain_.zeros(T(0), T(1)).first),
-        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}),
-        state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
-        plate_(drive.plate),
-        finger_(drive.finger) {
-    using std::abs;
-    using std::isnan;
-    state_.x_size = abs(state_.x);
-    look_ahead();
-    const bool given = !isnan(inputs.skin_stretch);
-    if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
-    plate_.begin(state_.v, false);
-    finger_.begin(state_.v, given);
+      : Simulation(drive, inputs, T(0)) {
     select();
   }
 
@@ -78,8 +68,30 @@ class Simulation {
   }
 
  private:
+  friend class pindrive::Stepper<T>;
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Side = Touch<T, Surface>;
+
+  /// A release at a time, of which the first mode is still to be selected.
+  Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs, T begin)
+      : drive_(drive),
+        inputs_(inputs),
+        plain_(drive.mass, drive.damping, drive.stiffness),
+        half_period_(plain_.zeros(T(0), T(1)).first),
+        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}),
+        time_(begin),
+        state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
+        plate_(drive.plate),
+        finger_(drive.finger) {
+    using std::abs;
+    using std::isnan;
+    state_.x_size = abs(state_.x);
+    look_ahead();
+    const bool given = !isnan(inputs.skin_stretch);
+    if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
+    plate_.begin(state_.v, false);
+    finger_.begin(state_.v, given);
+  }
 
   /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
   /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
@@ -323,7 +335,7 @@ class Simulation {
   T half_period_;            ///< from one zero of its velocity to the next,
   Propagator<T> half_turn_;  ///< and how it has moved on there
 
-  T time_{0}, row_{never};  ///< now, and of the next row of an input, s
+  T time_, row_{never};  ///< now, and of the next row of an input, s
   State<T> state_;
   Side plate_, finger_;   ///< in the mode that was selected
   int limit_{0};          ///< the side of a stick force that has just come to its limit

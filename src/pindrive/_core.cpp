@@ -107,7 +107,7 @@ Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool rig
   });
 }
 
-template <class T, T pd::Motion<T>::Friction::* contact>
+template <class T, T pd::Friction<T>::* contact>
 Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right) {
   const auto view = motion.view();
   return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
@@ -245,7 +245,7 @@ nb::dict certificate(const CoreMotion<double>& motion, double duration) {
 /// What a motion and its derivatives have in common.
 template <class T>
 nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* meaning) {
-  using Friction = typename pd::Motion<T>::Friction;
+  using Friction = pd::Friction<T>;
   return nb::class_<CoreMotion<T>>(m, name, meaning)
       .def("position", &evaluate<T, pd::Quantity::position>, "times"_a, "right"_a)
       .def("velocity", &evaluate<T, pd::Quantity::velocity>, "times"_a, "right"_a)

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+import pindrive as pd
 from pindrive import Status, _core
 from pindrive.quantities.results import ENDING, TRANSIENT
 
@@ -378,6 +380,142 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
         same((times[: count.value], sides[: count.value]), across, number)
         c.free(drive=drive, release=release, motion=motion)
     assert len(endings) >= 4
+
+
+class Instant(ctypes.Structure):
+    """pindrive_instant."""
+
+    _fields_ = (
+        *((name, c_double) for name in ("time", "next_event", "mouse_velocity")),
+        *((name, c_double) for name in ("mouse_velocity_rate", "plate_load", "plate_load_rate")),
+        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
+    )
+
+
+def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
+    """Whatever the steps, and the inputs that change on the way."""
+    random = np.random.default_rng(17)
+    worst, steps, kept = 0.0, 0, 0
+    for number in range(150):
+        case = drawn(random)
+        case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
+        rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
+        changes = sorted({t for of_input in rows.values() for t, _ in of_input})
+        case.numbers["duration"] = changes[-1] + 0.2
+        core = case.core()
+        held = Case(case.numbers, case.curves, {n: [(0.0, r[0][1])] for n, r in rows.items()})
+        drive, release = c.given(held)
+        stepper, instant = c_void_p(), Instant()
+        c("stepper_new", drive, release, c_double(0), byref(stepper))
+        time = 0.0
+        scale = {}
+        for quantity, name in enumerate(QUANTITIES[:5]):
+            at = np.linspace(0, case.numbers["duration"], 200)
+            scale[quantity] = np.abs(getattr(core, name)(at, True)).max() + 1e-300
+        for begin, end in zip(changes, [*changes[1:], case.numbers["duration"]], strict=True):
+            for name, of_input in rows.items():
+                value, rate = line(of_input, begin)
+                c("stepper_set", stepper, name.encode(), c_double(value), c_double(rate))
+            while time < end:
+                until = min(end, time + random.uniform(0, 0.02))
+                stop = int(random.integers(2))
+                c("stepper_step", stepper, c_double(until), stop)
+                c("stepper_now", stepper, byref(instant))
+                assert time < instant.time <= until
+                assert instant.next_event > instant.time
+                assert stop or instant.time == until
+                time = instant.time
+                if random.integers(8) == 0:  # going astray, and back to a state that was kept
+                    state = c_void_p()
+                    c("stepper_copy", stepper, byref(state))
+                    c("stepper_set", stepper, b"plate_load", c_double(2), c_double(-30))
+                    c("stepper_step", stepper, c_double(time + 0.1), 0)
+                    c.free(stepper=stepper)
+                    stepper, kept = state, kept + 1
+                for quantity in range(5):
+                    value_now = c_double()
+                    c("stepper_evaluate", stepper, quantity, byref(value_now))
+                    name = QUANTITIES[quantity]
+                    near_end = time > end - 1e-9
+                    if quantity > 1 and (near_end or instant.plate_event or instant.finger_event):
+                        continue  # it jumps there
+                    expected = getattr(core, name)(np.array([time]), True)[0]
+                    apart = abs(value_now.value - expected) / scale[quantity]
+                    assert apart < 1e-12, (number, name, time)
+                    worst, steps = max(worst, apart), steps + 1
+        c.free(drive=drive, release=release, stepper=stepper)
+    print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
+    assert kept > 100
+
+
+class Varied(ctypes.Structure):
+    """pindrive_varied."""
+
+    _fields_ = (("name", c_char_p), ("values", POINTER(c_double)))
+
+
+def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
+    """By the kernel, and by the general core where the kernel gives up."""
+    random = np.random.default_rng(23)
+    points = 3000
+    plate, finger = random.uniform(0, 0.1, points), random.uniform(1e-3, 0.05, points)
+    plate[random.integers(points, size=50)] = 0.0
+    varied: dict[str, Any] = {
+        "mass": random.uniform(2e-3, 2e-2, points),
+        "stiffness": random.uniform(20, 400, points),
+        "damping": random.uniform(0, 2, points),
+        "plate.kinetic": plate,
+        "plate.static": plate * random.uniform(1, 2, points),
+        "finger.kinetic": finger,
+        "finger.static": finger * random.uniform(1, 2, points),
+        "finger.stiffness": np.where(random.integers(20, size=points) == 0, 2000.0, inf),
+        "mouse_velocity": random.uniform(-0.3, 0.3, points),
+        "displacement": random.uniform(-3e-3, 3e-3, points),
+        "velocity": random.uniform(-0.3, 0.3, points),
+        "plate_load": random.choice([1.0, 0.5, 3.0], points),
+        "duration": np.where(random.integers(5, size=points) == 0, 0.1, inf),
+    }
+    varied["mass"][7] = -1.0
+    names = c.names("number")
+    expected = pd.simulate_batch(
+        pd.Drive(
+            mass=0.01,
+            stiffness=100.0,
+            damping=0.0,
+            plate=pd.Contact(kinetic=0.02),
+            finger=pd.Contact(kinetic=0.005),
+        ),
+        pd.Release(mouse_velocity=0.1),
+        **{name.replace(".", "_"): values for name, values in varied.items()},
+        outputs=[name.replace(".", "_") for name in names] + ["ending", "status"],
+    )
+    drive, release = c.given(Case())
+    listed = (Varied * len(varied))(
+        *(Varied(name.encode(), doubles(values)) for name, values in varied.items())
+    )
+    numbers = np.empty((points, len(names)))
+    codes = [np.empty(points, np.int32) for _ in range(3)]
+    outputs = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in codes))
+    c(
+        *("batch", drive, release, listed, c_size_t(len(varied)), c_size_t(points)),
+        *(c_double(0.05), None, None, *outputs),
+    )
+    for k, name in enumerate(names):
+        same(numbers[:, k], expected[name.replace(".", "_")].values, k)
+    good = expected["status"].values == Status.ok
+    assert_array_equal(codes[2] == 0, expected["status"].values < Status.incomplete)
+    assert_array_equal(codes[1][good], expected["ending"].values[good])
+    assert not good[7] and good.sum() > 0.99 * points
+    c.free(drive=drive, release=release)
+
+
+def line(rows: Rows, time: float) -> tuple[float, float]:
+    """The value and the rate of an input from a time on."""
+    for (t0, y0), (t1, y1) in pairwise(rows):
+        if t0 <= time < t1:
+            rate = (y1 - y0) / (t1 - t0)
+            return y0 + rate * (time - t0), rate
+    return rows[-1][1], 0.0
 
 
 def test_derivatives_have_the_bits_of_python(c: Interface) -> None:

@@ -19,6 +19,7 @@ COMMAND_GROUPS: Final = (
     "Measurements",
     "The whole device",
     "Studies",
+    "Other simulators",
     "The paper behind the model",
 )
 """The order in which the help lists them; a group that is not here comes after them."""

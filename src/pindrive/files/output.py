@@ -273,6 +273,7 @@ MOTION_JSON: Final = _beginning("JSON file of a motion", b'{\n  "pindrive": ')
 MOTION_NETCDF: Final = _titled("NetCDF file of a motion", "Motion of ")
 LINES_CSV: Final = _beginning("CSV file of lines", b"pin,fate,")
 SCAN_NETCDF: Final = _titled("NetCDF file of a scan", "Scan of ")
+FMU: Final = Kind("FMU", lambda path: b"modelDescription.xml" in _head(path))
 STUDY_NETCDF: Final = Kind(
     "NetCDF file of a study", lambda path: _attribute(path, "identity") != "", "--restart"
 )

@@ -1,0 +1,239 @@
+// The C interface: many releases, by the kernel as far as it follows them.
+#include "pindrive/batch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include "interface.hpp"
+#include "owned_motion.hpp"
+#include "pindrive.h"
+#include "pindrive/kernel_block.hpp"
+#ifdef PINDRIVE_KERNELS
+#include "_kernel.hpp"
+#endif
+
+using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
+
+namespace {
+
+using Block = pd::detail::KernelBlock;
+using pd::detail::PlainNumber;
+
+constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
+
+/// Where the kernel has each number, in the order of pindrive_number_name.
+constexpr int column_of[] = {
+    PlainNumber::peak_displacement,
+    PlainNumber::peak_time,
+    PlainNumber::trough_displacement,
+    PlainNumber::trough_time,
+    PlainNumber::swing,
+    PlainNumber::return_velocity,
+    PlainNumber::return_velocity_time,
+    PlainNumber::first_reversal_time,
+    PlainNumber::settling_time,
+    Block::rest_time,
+    Block::rest_time,  // the last event is that it comes to rest
+    no_column,         // the stretch of a compliant finger, and its rate
+    no_column,
+    PlainNumber::plate_reversals,
+    PlainNumber::plate_time_stuck,
+    PlainNumber::plate_distance_slid,
+    PlainNumber::plate_dissipated,
+    PlainNumber::plate_peak_force,
+    PlainNumber::finger_reversals,
+    PlainNumber::finger_time_stuck,
+    PlainNumber::finger_distance_slid,
+    PlainNumber::finger_dissipated,
+    PlainNumber::finger_peak_force,
+    Block::rest_position,
+    no_column,  // a steady oscillation: its begin, amplitude and period
+    no_column,
+    no_column,
+};
+constexpr std::size_t number_count = std::size(column_of);
+constexpr auto settling_time = std::size_t{8};
+static_assert(column_of[settling_time] == PlainNumber::settling_time);
+
+/// In packs as wide as the processor has them, where the kernel is compiled for several widths; the bits are
+/// the same in each.
+void run_kernel(Block& block, std::size_t count) {
+  constexpr auto asked = pd::detail::Asked::settling;
+#ifdef PINDRIVE_KERNELS
+  pindrive_extension::kernel_of(0)->follow(block, static_cast<int>(count), asked);
+#else
+  pd::detail::follow_block<double>(block, static_cast<int>(count), asked);
+#endif
+}
+
+/// What the arguments of the core are for a point without curves and inputs that change, with the load of the
+/// plate in its friction; the order is that of the kernel's blocks.
+std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
+  const double load = at.plate_load[0].second, velocity = at.mouse_velocity[0].second;
+  return {at.mass,
+          at.stiffness,
+          at.damping,
+          load == 1 ? at.plate.kinetic : at.plate.kinetic * load,
+          load == 1 ? at.plate.static_limit : at.plate.static_limit * load,
+          at.finger.kinetic,
+          at.finger.static_limit,
+          at.finger.stiffness,
+          velocity,
+          at.displacement,
+          at.velocity,
+          at.duration,
+          band,
+          load};
+}
+bool constant(const pd::Numbers& at) {
+  return at.plate.curve.empty() && at.finger.curve.empty() && at.mouse_velocity.size() == 1 &&
+         at.plate_load.size() == 1 && std::isnan(at.skin_stretch);
+}
+/// The same with its load in its friction.
+pd::Numbers pressed(pd::Numbers at) {
+  const double load = at.plate_load[0].second;
+  if (load != 1)
+    for (double* force : {&at.plate.kinetic, &at.plate.static_limit}) *force *= load;
+  at.plate_load[0].second = 1;
+  return at;
+}
+
+/// A batch as its caller describes it, and what it fills.
+class Batch {
+ public:
+  Batch(const pindrive_drive& drive, const pindrive_release& release, const pindrive_varied* varied,
+        std::size_t varied_count, double band, double* numbers, pindrive_status* status,
+        pindrive_end* end, pindrive_error* errors)
+      : drive_(drive),
+        release_(release),
+        varied_(varied),
+        varied_count_(varied_count),
+        band_(band),
+        numbers_(numbers),
+        status_(status),
+        end_(end),
+        errors_(errors) {}
+
+  /// Points [first, first + count), at most a block.
+  void follow(std::size_t first, std::size_t count, Attended& attended) {
+    std::fill_n(kinds_.begin(), count, Kind::refused);
+    for (std::size_t i = 0; i < count; ++i) read(first, i);
+    by_kernel(first, count);
+    for (std::size_t i = 0; i < count && !attended.stopped(); ++i) finish(first + i, i, attended);
+  }
+
+ private:
+  enum class Kind : signed char { refused, general, kernel };
+
+  void read(std::size_t first, std::size_t i) {
+    for (std::size_t j = 0; j < varied_count_; ++j)
+      if (const double value = varied_[j].values[first + i]; !set(drive_, varied_[j].name, value))
+        set(release_, varied_[j].name, value);
+    const pindrive_error error = check(drive_, release_);
+    if (errors_) errors_[first + i] = error;
+    if (!error) {
+      pd::Numbers& at = points_[i] = numbers_of(drive_, release_);
+      start(at, at);
+      kinds_[i] = constant(at) ? Kind::kernel : Kind::general;
+      if (kinds_[i] == Kind::kernel) at = pressed(at);
+    }
+    // In place of what the kernel is not asked for: a release without friction, which it gives up.
+    std::array<double, Block::inputs> in{1, 1};
+    if (kinds_[i] == Kind::kernel) in = arguments(points_[i], band_);
+    for (std::size_t k = 0; k < in.size(); ++k) block_->input[k][i] = in[k];
+  }
+
+  void by_kernel(std::size_t first, std::size_t count) {
+    std::fill_n(block_->output, Block::columns, nullptr);
+    block_->output[Block::rest_time] = columns_[Block::rest_time];
+    for (const int column : column_of)
+      if (column != no_column) block_->output[column] = columns_[column];
+    run_kernel(*block_, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < number_count; ++k)
+        row(first + i)[k] = kinds_[i] == Kind::kernel && column_of[k] != no_column
+                                ? columns_[column_of[k]][i]
+                                : none;
+      const bool rests = !std::isnan(columns_[Block::rest_time][i]);
+      const bool refused = kinds_[i] == Kind::refused;
+      say(first + i, refused ? pd::Status::inconsistent : pd::Status::ok,
+          rests && !refused ? pd::End::resting : pd::End::moving);
+    }
+  }
+
+  /// What the kernel has left of a point to the general core: all of it, or its settling time.
+  void finish(std::size_t point, std::size_t i, Attended& attended) {
+    const bool all =
+        kinds_[i] == Kind::general || (kinds_[i] == Kind::kernel && block_->given_up[i]);
+    if (!all && (kinds_[i] == Kind::refused || !block_->unsure[i])) return;
+    const pd::Numbers& at = points_[i];
+    const pd::OwnedMotion<double> motion(at, at, [&] { return attended.go_on(); });
+    if (attended.stopped()) return;
+    double numbers[number_count];
+    write_numbers(motion, band_, numbers);
+    if (!all) {
+      row(point)[settling_time] = numbers[settling_time];
+      return;
+    }
+    std::copy_n(numbers, number_count, row(point));
+    say(point, motion.outcome().status, motion.outcome().end);
+  }
+
+  double* row(std::size_t point) const { return numbers_ + point * number_count; }
+  void say(std::size_t point, pd::Status status, pd::End end) const {
+    if (status_) status_[point] = static_cast<pindrive_status>(status);
+    if (end_) end_[point] = static_cast<pindrive_end>(end);
+  }
+
+  pindrive_drive drive_;
+  pindrive_release release_;
+  const pindrive_varied* varied_;
+  std::size_t varied_count_;
+  double band_;
+  double* numbers_;
+  pindrive_status* status_;
+  pindrive_end* end_;
+  pindrive_error* errors_;
+
+  std::unique_ptr<Block> block_{std::make_unique<Block>()};
+  double columns_[Block::columns][Block::capacity];
+  std::array<Kind, Block::capacity> kinds_{};
+  std::vector<pd::Numbers> points_{Block::capacity};
+};
+
+}  // namespace
+
+extern "C" pindrive_error pindrive_batch(const pindrive_drive* drive,
+                                         const pindrive_release* release,
+                                         const pindrive_varied* varied, size_t varied_count,
+                                         size_t points, double settling_band, pindrive_go_on go_on,
+                                         void* context, double* numbers, pindrive_status* status,
+                                         pindrive_end* end, pindrive_error* errors) {
+  if (!drive) return null_pointer("drive");
+  if (!release) return null_pointer("release");
+  if (varied_count > 0 && !varied) return null_pointer("varied");
+  if (points > 0 && !numbers) return null_pointer("numbers");
+  if (const pindrive_error error = check_band(settling_band)) return error;
+  return guarded([&]() -> pindrive_error {
+    pindrive_drive tried_drive = *drive;
+    pindrive_release tried_release = *release;
+    for (std::size_t j = 0; j < varied_count; ++j) {
+      if (!varied[j].name || !varied[j].values) return null_pointer("name and values of a varied");
+      if (!set(tried_drive, varied[j].name, 0) && !set(tried_release, varied[j].name, 0))
+        return fail(PINDRIVE_BAD_NAME, "neither a drive nor a release has %.40s, but %s; %s",
+                    varied[j].name, drive_names, release_names);
+    }
+    const auto batch = std::make_unique<Batch>(*drive, *release, varied, varied_count,
+                                               settling_band, numbers, status, end, errors);
+    Attended attended(go_on, context);
+    for (std::size_t first = 0; first < points && !attended.stopped(); first += Block::capacity)
+      batch->follow(first, std::min<std::size_t>(Block::capacity, points - first), attended);
+    if (!attended.stopped()) return PINDRIVE_OK;
+    return fail(PINDRIVE_STOPPED, "the computation was stopped by its caller");
+  });
+}

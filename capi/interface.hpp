@@ -1,0 +1,122 @@
+/// What the sources of the C interface share: its handles, how they are checked, how errors are told.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <new>
+
+#include "owned_motion.hpp"
+#include "pindrive.h"
+
+namespace pindrive_c {
+namespace pd = pindrive;
+using pd::plain;
+using Dual = pd::Dual<double>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+}  // namespace pindrive_c
+
+struct pindrive_drive {
+  double mass{pindrive_c::none}, stiffness{pindrive_c::none}, damping{0};
+  pindrive::ContactNumbers plate{0, 0, pindrive_c::infinity, {}},
+      finger{0, 0, pindrive_c::infinity, {}};
+};
+
+struct pindrive_release {
+  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}};
+  double displacement{0}, velocity{pindrive_c::none}, skin_stretch{pindrive_c::none},
+      duration{pindrive_c::infinity};
+};
+
+namespace pindrive_c {
+
+/// Keeps what the last error of this thread says, as printf does.
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+pindrive_error fail(pindrive_error error, const char* format, ...);
+pindrive_error null_pointer(const char* what);
+
+/// What a function returns that may run out of memory.
+template <class Function>
+pindrive_error guarded(Function&& function) {
+#if defined(__cpp_exceptions)
+  try {
+    return function();
+  } catch (const std::bad_alloc&) {
+    return fail(PINDRIVE_OUT_OF_MEMORY, "out of memory");
+  }
+#else
+  return function();
+#endif
+}
+
+/// Asks a caller now and then whether to go on.
+class Attended {
+ public:
+  Attended(pindrive_go_on ask, void* context) : ask_(ask), context_(context) {}
+
+  bool go_on() {
+    if (ask_ && ++done_ % between == 0 && !stopped_) stopped_ = ask_(context_) == 0;
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  static constexpr std::uint32_t between = 1U << 12;  ///< segments: about a millisecond
+
+  pindrive_go_on ask_;
+  void* context_;
+  std::uint32_t done_{0};
+  bool stopped_{false};
+};
+
+/// Sets a number by its name; whether there is one.
+bool set(pindrive_drive& drive, const char* name, double value);
+bool set(pindrive_release& release, const char* name, double value);
+constexpr const char* drive_names =
+    "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
+    "finger.stiffness";
+constexpr const char* release_names =
+    "mouse_velocity, plate_load, displacement, velocity, skin_stretch, duration";
+
+pindrive_error check_band(double band);
+/// What the core can follow, and what fits the direction of a derivative.
+pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
+pindrive_error check(const char* name, double value, bool good, const char* range);
+pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,
+                           const pindrive_drive& drive_rate, const pindrive_release& release_rate);
+pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release);
+/// What stands for the plate's velocity at the release, with its derivative.
+void start(pd::Numbers& at, pd::Numbers& along);
+
+/// The numbers of a motion in the order of pindrive_number_name, over its own duration.
+void write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values);
+
+/// A quantity at an instant of a trajectory; friction() tells the friction there.
+template <class T, class Trajectory, class Share>
+double value_along(const Trajectory& along, const T& tau, const T& skin, Share&& friction,
+                   pindrive_quantity quantity) {
+  const auto at = [&](const auto& path) { return along.at(path, tau); };
+  switch (quantity) {
+    case PINDRIVE_POSITION:
+      return pd::result(at(along.position()));
+    case PINDRIVE_VELOCITY:
+      return pd::result(at(along.velocity()));
+    case PINDRIVE_ACCELERATION:
+      return pd::result(at(along.acceleration()));
+    case PINDRIVE_PLATE_FORCE:
+      return pd::result(friction().plate);
+    case PINDRIVE_FINGER_FORCE:
+      return pd::result(friction().finger);
+    case PINDRIVE_SKIN_STRETCH:
+      return pd::result(-at(along.finger_force()) / skin);
+    case PINDRIVE_SKIN_STRETCH_RATE:
+      return pd::result(-at(along.derivative(along.finger_force())) / skin);
+    default:
+      return none;
+  }
+}
+
+}  // namespace pindrive_c

@@ -1,0 +1,312 @@
+// FMI 3.0 co-simulation with event mode and early return: names of the standard over an Instance.
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "fmi3Functions.h"
+#include "instance.hpp"
+
+namespace {
+
+using pindrive_fmu::Failure;
+using pindrive_fmu::Instance;
+
+struct Component {
+  Instance instance;
+  fmi3LogMessageCallback log;
+  fmi3InstanceEnvironment environment;
+  bool events, may_end_early;
+};
+Component& at(fmi3Instance c) { return *static_cast<Component*>(c); }
+
+/// Runs what may be refused; the importer is told why.
+template <class Function>
+fmi3Status attempt(fmi3Instance c, Function&& function) {
+  std::string why;
+  try {
+    function(at(c).instance);
+    return fmi3OK;
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  if (at(c).log) at(c).log(at(c).environment, fmi3Error, "logStatusError", why.c_str());
+  return fmi3Error;
+}
+
+fmi3Status unsupported(fmi3Instance c, const char* what) {
+  return attempt(c, [&](Instance&) { throw Failure(std::string("a drive has no ") + what); });
+}
+
+}  // namespace
+
+extern "C" {
+
+const char* fmi3GetVersion(void) { return fmi3Version; }
+fmi3Status fmi3SetDebugLogging(fmi3Instance, fmi3Boolean, size_t, const fmi3String[]) {
+  return fmi3OK;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String, fmi3Boolean,
+                                          fmi3Boolean, fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback log) {
+  if (log)
+    log(environment, fmi3Error, "logStatusError",
+        "a drive is for co-simulation: it solves its own equations");
+  return nullptr;
+}
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean,
+                                               fmi3Boolean, fmi3InstanceEnvironment environment,
+                                               fmi3LogMessageCallback log, fmi3ClockUpdateCallback,
+                                               fmi3LockPreemptionCallback,
+                                               fmi3UnlockPreemptionCallback) {
+  return fmi3InstantiateModelExchange(nullptr, nullptr, nullptr, false, false, environment, log);
+}
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3String resources,
+                                         fmi3Boolean, fmi3Boolean, fmi3Boolean events,
+                                         fmi3Boolean may_end_early, const fmi3ValueReference[],
+                                         size_t, fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback) {
+  std::string why;
+  try {
+    auto made = std::make_unique<Component>(
+        Component{Instance(resources ? resources : "", token ? token : ""), log, environment,
+                  events, may_end_early});
+    return made.release();
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  if (log) log(environment, fmi3Error, "logStatusError", why.c_str());
+  return nullptr;
+}
+void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean, fmi3Float64, fmi3Float64 start,
+                                       fmi3Boolean, fmi3Float64) {
+  return attempt(c, [&](Instance& i) { i.set_start_time(start); });
+}
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
+  return attempt(c, [](Instance& i) { i.initialise(); });
+}
+fmi3Status fmi3EnterEventMode(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3EnterStepMode(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3Terminate(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3Reset(fmi3Instance c) {
+  return attempt(c, [](Instance& i) { i.reset(); });
+}
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance) { return fmi3OK; }
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                          fmi3Float64 value[], size_t) {
+  return attempt(c, [&](Instance& i) {
+    for (size_t k = 0; k < n; ++k) value[k] = i.number(vr[k]);
+  });
+}
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                          const fmi3Float64 value[], size_t) {
+  return attempt(c, [&](Instance& i) {
+    for (size_t k = 0; k < n; ++k) i.set(vr[k], value[k]);
+  });
+}
+fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Int32 value[],
+                        size_t) {
+  return attempt(c, [&](Instance& i) {
+    for (size_t k = 0; k < n; ++k) value[k] = i.whole(vr[k]);
+  });
+}
+
+#define PINDRIVE_NO_VARIABLES(type)                                                            \
+  fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3##type[], \
+                           size_t) {                                                           \
+    return n == 0 ? fmi3OK : unsupported(c, "variables of type " #type);                       \
+  }                                                                                            \
+  fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference[], size_t n,               \
+                           const fmi3##type[], size_t) {                                       \
+    return n == 0 ? fmi3OK : unsupported(c, "variables of type " #type " that can be set");    \
+  }
+PINDRIVE_NO_VARIABLES(Float32)
+PINDRIVE_NO_VARIABLES(Int8)
+PINDRIVE_NO_VARIABLES(UInt8)
+PINDRIVE_NO_VARIABLES(Int16)
+PINDRIVE_NO_VARIABLES(UInt16)
+PINDRIVE_NO_VARIABLES(UInt32)
+PINDRIVE_NO_VARIABLES(Int64)
+PINDRIVE_NO_VARIABLES(UInt64)
+PINDRIVE_NO_VARIABLES(Boolean)
+PINDRIVE_NO_VARIABLES(String)
+#undef PINDRIVE_NO_VARIABLES
+
+fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Int32[],
+                        size_t) {
+  return n == 0 ? fmi3OK : unsupported(c, "variables of type Int32 that can be set");
+}
+fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference[], size_t n, size_t[],
+                         fmi3Binary[], size_t) {
+  return n == 0 ? fmi3OK : unsupported(c, "binary variables");
+}
+fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference[], size_t n, const size_t[],
+                         const fmi3Binary[], size_t) {
+  return n == 0 ? fmi3OK : unsupported(c, "binary variables");
+}
+fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3Clock[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Clock[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference, size_t*) {
+  return unsupported(c, "dependencies that change");
+}
+fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference, size_t[],
+                                       fmi3ValueReference[], size_t[], fmi3DependencyKind[],
+                                       size_t) {
+  return unsupported(c, "dependencies that change");
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
+  return attempt(c, [&](Instance& i) {
+    delete static_cast<Instance::State*>(std::exchange(*state, i.keep()));
+  });
+}
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
+  return attempt(c, [&](Instance& i) { i.go_back(*static_cast<Instance::State*>(state)); });
+}
+fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
+  delete static_cast<Instance::State*>(*state);
+  *state = nullptr;
+  return fmi3OK;
+}
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t* size) {
+  return attempt(c, [&](Instance&) {
+    *size = Instance::written(*static_cast<Instance::State*>(state)).size();
+  });
+}
+fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[],
+                                 size_t size) {
+  return attempt(c, [&](Instance&) {
+    const auto all = Instance::written(*static_cast<Instance::State*>(state));
+    if (size != all.size()) throw Failure("the size must be that of the state");
+    std::memcpy(bytes, all.data(), size);
+  });
+}
+fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
+                                   fmi3FMUState* state) {
+  return attempt(c, [&](Instance& i) {
+    Instance::State* const found = i.read(bytes, size);
+    delete static_cast<Instance::State*>(std::exchange(*state, found));
+  });
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[],
+                                        size_t unknowns, const fmi3ValueReference known[],
+                                        size_t knowns, const fmi3Float64 seed[], size_t,
+                                        fmi3Float64 found[], size_t) {
+  return attempt(c, [&](Instance& i) {
+    for (size_t k = 0; k < unknowns; ++k) found[k] = i.derivative(unknown[k], known, seed, knowns);
+  });
+}
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference[], size_t,
+                                    const fmi3ValueReference[], size_t, const fmi3Float64[], size_t,
+                                    fmi3Float64[], size_t) {
+  return unsupported(c, "adjoint derivatives");
+}
+
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                  fmi3Float64[], fmi3IntervalQualifier[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3GetIntervalFraction(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                   fmi3UInt64[], fmi3UInt64[], fmi3IntervalQualifier[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3GetShiftDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                               fmi3Float64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3GetShiftFraction(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3UInt64[],
+                                fmi3UInt64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3SetIntervalDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                  const fmi3Float64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3SetIntervalFraction(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                   const fmi3UInt64[], const fmi3UInt64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3SetShiftDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                               const fmi3Float64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3SetShiftFraction(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                const fmi3UInt64[], const fmi3UInt64[]) {
+  return n == 0 ? fmi3OK : unsupported(c, "clocks");
+}
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* needs_update,
+                                    fmi3Boolean* terminate, fmi3Boolean* nominals,
+                                    fmi3Boolean* states, fmi3Boolean* defined, fmi3Float64* next) {
+  return attempt(c, [&](Instance& i) {
+    *needs_update = *terminate = *nominals = *states = false;
+    const double event = i.next_event();
+    *defined = std::isfinite(event);
+    if (*defined) *next = event;
+  });
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference[], size_t n,
+                                    const fmi3Int32[], fmi3Float64[], size_t) {
+  return n == 0 ? fmi3OK : unsupported(c, "derivatives of outputs");
+}
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 size, fmi3Boolean,
+                      fmi3Boolean* event, fmi3Boolean* terminate, fmi3Boolean* early,
+                      fmi3Float64* last) {
+  const Component& own = at(c);
+  *event = *terminate = *early = false;
+  return attempt(c, [&](Instance& i) {
+    const bool happens = i.step(from, size, own.events && own.may_end_early);
+    *last = i.now();
+    *event = own.events && happens;
+    *early = *last < from + size;
+  });
+}
+
+// An importer may look up the functions of model exchange too.
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return unsupported(c, "continuous time"); }
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean*, fmi3Boolean*) {
+  return unsupported(c, "continuous time");
+}
+fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64) { return unsupported(c, "continuous time"); }
+fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64[], size_t) {
+  return unsupported(c, "continuous states");
+}
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64[], size_t) {
+  return unsupported(c, "continuous states");
+}
+fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64[], size_t) {
+  return unsupported(c, "event indicators");
+}
+fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64[], size_t) {
+  return unsupported(c, "continuous states");
+}
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64[], size_t) {
+  return unsupported(c, "continuous states");
+}
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance, size_t* count) {
+  *count = 0;
+  return fmi3OK;
+}
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance, size_t* count) {
+  *count = 0;
+  return fmi3OK;
+}
+fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference, fmi3Float64) {
+  return unsupported(c, "model partitions");
+}
+
+}  // extern "C"

@@ -1,0 +1,55 @@
+"""The command `pindrive fmu`: a drive as a block of other simulators."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pindrive.cli.errors import refusing
+from pindrive.cli.help import FILES, WRITTEN, command
+from pindrive.cli.options import DeviceArgument, OverridesOption, count_option
+
+
+@command("Other simulators", "pindrive fmu device.toml -o drive.fmu")
+def fmu(
+    file: DeviceArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="FMU", help="Where to write it.", rich_help_panel=FILES
+        ),
+    ],
+    fmi: Annotated[
+        int,
+        count_option("--fmi", "2 or 3, the version of FMI.", "2|3", least=2, most=3, panel=WRITTEN),
+    ] = 3,
+    overrides: OverridesOption = None,
+) -> None:
+    """Write the drive of a device file as a functional mock-up unit (FMU) for co-simulation.
+
+    Mouse velocity and plate load are its inputs, each with its rate; all other values of the drive
+    and its release are parameters. It follows the pin exactly, whatever the steps of the importer.
+
+    Rows of an input in the file are not in it: what the importer sets takes their place.
+    """
+    from pindrive.files.device import load_device
+    from pindrive.files.fmu import variables_of, write_fmu
+    from pindrive.files.output import FMU, Output, naming, writing
+    from pindrive.motion.drive import Profile
+
+    with refusing():
+        device = load_device(file, overrides or ())
+        with writing([Output(output, FMU, "-o")], device.inputs) as parts, naming(output):
+            write_fmu(device, parts[output], fmi)
+    for name in ("mouse_velocity", "plate_load"):
+        given = getattr(device.release, name)
+        if isinstance(given, Profile) and given.changes:
+            typer.echo(
+                f"warning: {name} is an input and starts at {given(0.0):g}; its rows are left out",
+                err=True,
+            )
+    kinds = [variable.kind for variable in variables_of(device)]
+    counts = (f"{kinds.count(kind)} {kind}s" for kind in ("parameter", "input", "output"))
+    typer.echo(f"Wrote {output}, FMI {fmi}.0 for co-simulation: {', '.join(counts)}")

@@ -1,0 +1,333 @@
+"""A drive as a functional mock-up unit: variables from the table of quantities, and the archive.
+
+The library inside is the same for every drive: it reads the variables, and their start values, from
+the list that the archive carries beside the description.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib import resources
+from math import inf, isfinite
+from pathlib import Path
+from typing import Final
+from uuid import UUID
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from pindrive.files.device import DeviceFile
+from pindrive.motion.drive import Contact, Profile
+from pindrive.quantities.drive import INPUTS
+from pindrive.quantities.quantity import DISPLAY, Quantity
+from pindrive.quantities.results import SERIES
+from pindrive.quantities.table import QUANTITIES
+
+VERSIONS: Final = (2, 3)
+"""Of FMI."""
+IDENTIFIER: Final = "pindrive"
+"""The name of the library in the archive."""
+_PLATFORMS_2: Final = {
+    "x86_64-linux": "linux64",
+    "x86_64-windows": "win64",
+    "x86_64-darwin": "darwin64",
+}
+"""What FMI 2 calls the platforms for which it has a name, by their names in FMI 3."""
+
+_OUTPUTS: Final = (
+    *("position", "velocity", "acceleration", "plate_force", "finger_force"),
+    *("stretch", "stretch_rate"),
+)
+_STATES: Final = "-1 slips backward, 0 sticks, 1 slips forward, 2 absent, 3 sticks elastically"
+_BASE: Final = {
+    "kg": {"kg": 1},
+    "m": {"m": 1},
+    "s": {"s": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "m/s": {"m": 1, "s": -1},
+    "m/s^2": {"m": 1, "s": -2},
+    "1/s": {"s": -1},
+    "N/m": {"kg": 1, "s": -2},
+    "N*s/m": {"kg": 1, "s": -1},
+}
+"""The units of its variables by powers of those of the SI."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable of the unit."""
+
+    name: str
+    kind: str
+    """"parameter", "input" or "output"."""
+    meaning: str
+    unit: str
+    start: float | None = None
+    """SI; None: an output."""
+    least: float = -inf
+    largest: float = inf
+    whole: bool = False
+    """Whether it is a whole number, which changes at events only."""
+
+
+def variables_of(device: DeviceFile) -> list[Variable]:
+    """The variables of a device's drive, in the order of their numbers, which begin with 1.
+
+    Parameters are the keys that the file gives, or whose values hold where it does not: damping
+    stands for a damping ratio, rows of friction curves are parameters one by one.
+    """
+    return [*_parameters(device), *_inputs(device), *_outputs()]
+
+
+def _parameters(device: DeviceFile) -> Iterator[Variable]:
+    drive, release = device.drive, device.release
+    for name in ("mass", "stiffness", "damping"):
+        yield _given(f"drive.{name}", QUANTITIES[name], getattr(drive, name))
+    for place in ("plate", "finger"):
+        contact: Contact = getattr(drive, place)
+        for i, (speed, force) in enumerate(contact.curve or (), 1):
+            for column, value in (("speed", speed), ("force", force)):
+                yield _given(f"{place}.curve.{column}[{i}]", QUANTITIES[f"curve.{column}"], value)
+        if not contact.curve:
+            yield _given(f"{place}.kinetic", QUANTITIES[f"{place}.kinetic"], contact.kinetic)
+        static = contact.static_friction
+        yield _given(f"{place}.static", QUANTITIES[f"{place}.static"], static)
+        if not contact.rigid:
+            row = QUANTITIES["finger.stiffness"]
+            yield _given(f"{place}.stiffness", row, contact.stiffness)
+    for name in ("displacement", "velocity", "skin_stretch"):
+        value = getattr(release, name)
+        if value is not None:
+            yield _given(f"motion.{name}", QUANTITIES[name], value)
+
+
+def _given(name: str, row: Quantity, value: float) -> Variable:
+    least, largest = row.limits.lower, row.limits.upper
+    return Variable(name, "parameter", row.meaning, row.unit, value, least, largest)
+
+
+def _inputs(device: DeviceFile) -> Iterator[Variable]:
+    for name in ("mouse_velocity", "plate_load"):
+        row: Quantity = next(row for row in INPUTS if row.name == name)
+        given: float | Profile = getattr(device.release, name)
+        value, rate = (given(0.0), 0.0) if isinstance(given, Profile) else (given, 0.0)
+        limits = row.limits
+        yield Variable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
+        unit = {"m/s": "m/s^2", "1": "1/s"}[row.unit]
+        meaning = f"rate at which {name} continues until it is set again"
+        yield Variable(f"{name}_rate", "input", meaning, unit, rate)
+
+
+def _outputs() -> Iterator[Variable]:
+    for name in _OUTPUTS:
+        yield Variable(name, "output", SERIES[name].meaning, SERIES[name].unit)
+    meaning = (
+        "no contact changes before, if the inputs continue as they do; 1.8e308 if none ever does"
+    )
+    yield Variable("next_event_time", "output", meaning, "s")
+    for contact in ("plate", "finger"):
+        meaning = f"what the contact with the {contact} does: {_STATES}"
+        yield Variable(f"{contact}_state", "output", meaning, "", None, -1, 3, whole=True)
+
+
+# ---- the archive ---------------------------------------------------------------------------------
+
+
+def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
+    """Write a device's drive as a functional mock-up unit for co-simulation.
+
+    Args:
+        device: a device file; of the whole device its drive and its release alone.
+        path: the archive.
+        version: of FMI, one of `VERSIONS`.
+
+    Raises:
+        ValueError: another version; this installation has no library for an FMU.
+    """
+    if version not in VERSIONS:
+        raise ValueError(f"version must be one of {', '.join(map(str, VERSIONS))}, got {version}")
+    libraries = dict(_libraries(version))
+    if not libraries:
+        raise ValueError("fmu: this installation has no library for an FMU; install pindrive again")
+    variables = variables_of(device)
+    token, listed = _listed(variables)
+    describe = _description_2 if version == 2 else _description_3
+    files = {
+        "modelDescription.xml": describe(device, variables, token),
+        "resources/drive.txt": listed,
+        **libraries,
+    }
+    with ZipFile(path, "w", ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            entry = ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # the same drive makes the same archive
+            entry.compress_type, entry.external_attr = ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, content)
+
+
+def _libraries(version: int) -> Iterator[tuple[str, bytes]]:
+    """The library of each platform that is installed, by its name in the archive."""
+    folder = resources.files("pindrive") / "fmu"
+    if not folder.is_dir():
+        return
+    for platform in sorted(folder.iterdir(), key=lambda entry: entry.name):
+        name = _PLATFORMS_2.get(platform.name, platform.name) if version == 2 else platform.name
+        for library in platform.iterdir():
+            yield f"binaries/{name}/{library.name}", library.read_bytes()
+
+
+def _listed(variables: Iterable[Variable]) -> tuple[str, bytes]:
+    """A token of the variables with their start values, and the list that the library reads."""
+    lines = [
+        f"{variable.kind} {variable.name} {struct.pack('>d', variable.start or 0.0).hex()}"
+        for variable in variables
+    ]
+    digest = sha256("\n".join(lines).encode()).digest()
+    token = f"{{{UUID(bytes=digest[:16], version=4)}}}"
+    return token, "\n".join(["pindrive-fmu-1", token, *lines, ""]).encode()
+
+
+# ---- the descriptions ----------------------------------------------------------------------------
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _root(device: DeviceFile, version: str, token_name: str, token: str) -> Element:
+    from pindrive import __version__
+
+    return Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": version,
+            "modelName": device.name or device.path.stem,
+            token_name: token,
+            "description": device.description or "A pin that friction moves, followed exactly",
+            "generationTool": f"pindrive {__version__}",
+            "variableNamingConvention": "structured",
+        },
+    )
+
+
+def _units(parent: Element, variables: Iterable[Variable]) -> None:
+    units = SubElement(parent, "UnitDefinitions")
+    for name in dict.fromkeys(v.unit for v in variables if v.unit in _BASE):
+        unit = SubElement(units, "Unit", {"name": name})
+        SubElement(unit, "BaseUnit", {base: str(power) for base, power in _BASE[name].items()})
+        if name in DISPLAY:
+            shown, scale = DISPLAY[name]
+            SubElement(unit, "DisplayUnit", {"name": shown, "factor": _number(scale)})
+
+
+def _attributes(variable: Variable) -> dict[str, str]:
+    """Unit, bounds and start value."""
+    found = {"unit": variable.unit} if variable.unit in _BASE else {}
+    if variable.unit in DISPLAY and variable.unit in _BASE:
+        found["displayUnit"] = DISPLAY[variable.unit][0]
+    write = (lambda value: str(int(value))) if variable.whole else _number
+    if isfinite(variable.least):
+        found["min"] = write(variable.least)
+    if isfinite(variable.largest):
+        found["max"] = write(variable.largest)
+    if variable.start is not None:
+        found["start"] = write(variable.start)
+    return found
+
+
+def _variability(variable: Variable) -> str:
+    if variable.kind == "parameter":
+        return "fixed"
+    discrete = variable.whole or variable.name == "next_event_time"
+    return "discrete" if discrete else "continuous"
+
+
+def _described(variable: Variable, reference: int) -> dict[str, str]:
+    initial = {"parameter": {"initial": "exact"}, "output": {"initial": "calculated"}}
+    return {
+        "name": variable.name,
+        "valueReference": str(reference),
+        "description": variable.meaning,
+        "causality": variable.kind,
+        "variability": _variability(variable),
+        **initial.get(variable.kind, {}),
+    }
+
+
+def _experiment(root: Element, device: DeviceFile) -> None:
+    stop = device.duration if device.duration is not None else 1.0
+    SubElement(root, "DefaultExperiment", {"startTime": "0.0", "stopTime": _number(stop)})
+
+
+def _document(root: Element) -> bytes:
+    indent(root)
+    text: bytes = tostring(root, "utf-8", xml_declaration=True)
+    return text + b"\n"
+
+
+def _description_2(device: DeviceFile, variables: list[Variable], token: str) -> bytes:
+    root = _root(device, "2.0", "guid", token)
+    SubElement(
+        root,
+        "CoSimulation",
+        {
+            "modelIdentifier": IDENTIFIER,
+            "canHandleVariableCommunicationStepSize": "true",
+            "canInterpolateInputs": "true",
+            "canGetAndSetFMUstate": "true",
+            "canSerializeFMUstate": "true",
+            "providesDirectionalDerivative": "true",
+            "canNotUseMemoryManagementFunctions": "true",
+        },
+    )
+    _units(root, variables)
+    _experiment(root, device)
+    listed = SubElement(root, "ModelVariables")
+    structure = Element("ModelStructure")
+    outputs = SubElement(structure, "Outputs")
+    unknowns = SubElement(structure, "InitialUnknowns")
+    for reference, variable in enumerate(variables, 1):
+        described = _described(variable, reference)
+        if variable.name.endswith("_rate") and variable.kind == "input":
+            described["variability"] = "discrete"  # no rate of a rate is taken
+        entry = SubElement(listed, "ScalarVariable", described)
+        SubElement(entry, "Integer" if variable.whole else "Real", _attributes(variable))
+        if variable.kind == "output":
+            for parent in (outputs, unknowns):
+                SubElement(parent, "Unknown", {"index": str(reference)})
+    root.append(structure)
+    return _document(root)
+
+
+def _description_3(device: DeviceFile, variables: list[Variable], token: str) -> bytes:
+    root = _root(device, "3.0", "instantiationToken", token)
+    SubElement(
+        root,
+        "CoSimulation",
+        {
+            "modelIdentifier": IDENTIFIER,
+            "canGetAndSetFMUState": "true",
+            "canSerializeFMUState": "true",
+            "providesDirectionalDerivatives": "true",
+            "canHandleVariableCommunicationStepSize": "true",
+            "hasEventMode": "true",
+        },
+    )
+    _units(root, variables)
+    _experiment(root, device)
+    listed = SubElement(root, "ModelVariables")
+    time = {"name": "time", "valueReference": "0", "causality": "independent"}
+    SubElement(listed, "Float64", {**time, "variability": "continuous", "unit": "s"})
+    structure = Element("ModelStructure")
+    references = []
+    for reference, variable in enumerate(variables, 1):
+        described = _described(variable, reference) | _attributes(variable)
+        SubElement(listed, "Int32" if variable.whole else "Float64", described)
+        if variable.kind == "output":
+            references.append(str(reference))
+    for tag in ("Output", "InitialUnknown"):
+        for number in references:
+            SubElement(structure, tag, {"valueReference": number})
+    root.append(structure)
+    return _document(root)

@@ -1,0 +1,334 @@
+"""Drives as functional mock-up units, as an importer sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+
+from command import refused, run
+from pindrive import Profile, Release, load_device, simulate
+from pindrive.files.fmu import variables_of, write_fmu
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+MOUSE = EXAMPLES / "tactile-mouse.toml"
+SKIN = EXAMPLES / "stribeck-skin.toml"
+TIMES = (0.0, 0.013, 0.05, 0.11, 0.2)
+VELOCITIES = (0.06, 0.09, -0.04, -0.04, 0.02)
+LOADS = (1.0, 0.2, 1.5, 1.0, 0.0)
+END = 0.3
+
+
+class Unit:
+    """An instance of an FMU of either version, by the names of its variables."""
+
+    def __init__(self, folder: Path, description: Any, **events: bool) -> None:
+        self.numbers = {v.name: v.valueReference for v in description.modelVariables}
+        self.version = int(description.fmiVersion[0])
+        made = FMU2Slave if self.version == 2 else FMU3Slave
+        self.slave = made(
+            guid=description.guid if self.version == 2 else description.instantiationToken,
+            unzipDirectory=str(folder),
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName="pin",
+        )
+        self.slave.instantiate(**events)
+
+    def begin(self, **start: float) -> Unit:
+        """From instantiation to the first step."""
+        if self.version == 2:
+            self.slave.setupExperiment(startTime=0.0)
+            self.slave.enterInitializationMode()
+        else:
+            self.slave.enterInitializationMode(startTime=0.0)
+        self.set(**start)
+        self.slave.exitInitializationMode()
+        self.time = 0.0
+        return self
+
+    def set(self, **values: float) -> None:
+        for name, value in values.items():
+            put = self.slave.setReal if self.version == 2 else self.slave.setFloat64
+            put([self.numbers[name.replace("__", ".")]], [value])
+
+    def get(self, *names: str) -> list[float]:
+        real = self.slave.getReal if self.version == 2 else self.slave.getFloat64
+        whole = self.slave.getInteger if self.version == 2 else self.slave.getInt32
+        return [
+            (whole if name.endswith("_state") else real)([self.numbers[name]])[0] for name in names
+        ]
+
+    def step(self, until: float) -> Any:
+        size = until - self.time
+        said = self.slave.doStep(currentCommunicationPoint=self.time, communicationStepSize=size)
+        self.time = until if self.version == 2 else said[3]
+        return said
+
+    def derivative(self, unknown: str, **seeds: float) -> float:
+        numbers = [self.numbers[name.replace("__", ".")] for name in seeds]
+        found = self.slave.getDirectionalDerivative(
+            [self.numbers[unknown]], numbers, [*seeds.values()]
+        )
+        return float(found[0])
+
+
+class Archive:
+    """An FMU of an example, unpacked."""
+
+    def __init__(self, path: Path, device: Path, version: int) -> None:
+        self.path, self.version = path, version
+        self.device = load_device(device)
+        write_fmu(self.device, path, version)
+        self.folder = path.with_suffix("")
+        with ZipFile(path) as archive:
+            archive.extractall(self.folder)
+        self.description = fmpy.read_model_description(str(path), validate=True)
+
+    def unit(self, **events: bool) -> Unit:
+        return Unit(self.folder, self.description, **events)
+
+    def motion(self) -> Any:
+        """What one simulation says of the inputs of these tests."""
+        release = Release(
+            Profile(TIMES, VELOCITIES),
+            displacement=self.device.release.displacement,
+            plate_load=Profile(TIMES, LOADS),
+        )
+        return simulate(self.device.drive, release, duration=END)
+
+
+@pytest.fixture(scope="module", params=[(MOUSE, 2), (MOUSE, 3), (SKIN, 2), (SKIN, 3)], ids=str)
+def archive(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    device, version = request.param
+    return Archive(tmp_path_factory.mktemp("fmu") / f"{device.stem}.fmu", device, version)
+
+
+def test_a_strict_importer_finds_nothing_wrong(archive: Archive) -> None:
+    assert validate_fmu(str(archive.path)) == []
+    variables = archive.description.modelVariables
+    assert all(v.description for v in variables if v.causality != "independent")
+    named = {v.name: v for v in variables}
+    assert {v.name for v in variables_of(archive.device)} == named.keys() - {"time"}
+    assert float(named["drive.mass"].start) == archive.device.drive.mass
+    assert named["drive.mass"].unit == "kg" and float(named["drive.mass"].min) > 0
+    assert len(named) == len(variables)
+
+
+def rates(rows: tuple[float, ...], i: int) -> float:
+    """The rate of an input after row i."""
+    return (rows[i + 1] - rows[i]) / (TIMES[i + 1] - TIMES[i]) if i + 1 < len(rows) else 0.0
+
+
+def driven(unit: Unit, random: np.random.Generator, largest: float) -> Iterator[Unit]:
+    """Steps of random length under inputs that change, after each of them."""
+    for i, (begin, end) in enumerate(pairwise((*TIMES, END))):
+        assert unit.time == begin
+        unit.set(mouse_velocity=VELOCITIES[i], plate_load=LOADS[i])
+        slopes = {"mouse_velocity": rates(VELOCITIES, i), "plate_load": rates(LOADS, i)}
+        if unit.version == 2 and i % 2:  # FMI 2 sets a rate in either way
+            numbers = [unit.numbers[name] for name in slopes]
+            unit.slave.setRealInputDerivatives(numbers, [1, 1], [*slopes.values()])
+        else:
+            unit.set(**{f"{name}_rate": slope for name, slope in slopes.items()})
+        while unit.time < end:
+            until = min(end, unit.time + random.uniform(0, largest))
+            before = unit.time
+            unit.step(until)
+            assert before < unit.time <= until
+            yield unit
+
+
+def test_random_steps_lead_to_what_one_simulation_has(archive: Archive) -> None:
+    motion, random = archive.motion(), np.random.default_rng(2)
+    unit = archive.unit().begin(mouse_velocity=VELOCITIES[0])
+    size = np.abs(motion.position(motion.sample_times(300))).max()
+    fastest = np.abs(motion.velocity(motion.sample_times(300))).max()
+    worst, astray = 0.0, 0
+    for _ in driven(unit, random, 0.004):
+        if random.integers(4) == 0:  # back to a state after going astray, also as bytes
+            state = unit.slave.getFMUState()
+            kept, at = unit.slave.serializeFMUState(state), unit.time
+            before = unit.get("position", "velocity", "plate_force", "plate_state")
+            unit.set(mouse_velocity=0.3)
+            unit.step(at + 0.01)
+            if random.integers(2):
+                unit.slave.freeFMUState(state)
+                state = unit.slave.deserializeFMUState(kept)
+            unit.slave.setFMUState(state)
+            unit.slave.freeFMUState(state)
+            unit.time, astray = at, astray + 1
+            assert unit.get("position", "velocity", "plate_force", "plate_state") == before
+        x, v = unit.get("position", "velocity")
+        worst = max(
+            worst,
+            abs(x - motion.position(unit.time)) / size,
+            abs(v - motion.velocity(unit.time)) / fastest,
+        )
+    print(f"FMI {archive.version}: within {worst:.1e}, {astray} states gone back to")
+    assert worst < 1e-12 and astray > 5
+
+
+def end_of(unit: Unit, seed: int) -> list[float]:
+    """Where a unit comes to."""
+    *_, last = driven(unit, np.random.default_rng(seed), 0.01)
+    return last.get("position", "velocity", "acceleration", "plate_state", "finger_state")
+
+
+def test_instances_and_threads_do_not_meet(archive: Archive) -> None:
+    def ended(seed: int) -> list[float]:
+        return end_of(archive.unit().begin(mouse_velocity=VELOCITIES[0]), seed)
+
+    one = ended(0)
+    with ThreadPoolExecutor(4) as threads:
+        for other in threads.map(ended, range(8)):
+            assert other == pytest.approx(one, rel=1e-12, abs=1e-15)
+    unit, second = (archive.unit() for _ in range(2))
+    unit.begin(mouse_velocity=VELOCITIES[0])
+    second.begin(drive__mass=2 * archive.device.drive.mass)
+    second.step(0.02)
+    first = end_of(unit, 0)
+    assert first == one
+    unit.slave.reset()
+    assert end_of(unit.begin(mouse_velocity=VELOCITIES[0]), 0) == one
+    assert second.get("drive.mass") == [2 * archive.device.drive.mass]
+    for each in (unit, second):
+        each.slave.terminate()
+        each.slave.freeInstance()
+
+
+def test_an_importer_of_its_own_drives_it(archive: Archive) -> None:
+    result = fmpy.simulate_fmu(
+        str(archive.path),
+        stop_time=0.05,
+        output_interval=0.001,
+        start_values={"mouse_velocity": 0.06},
+        output=["position", "plate_state", "next_event_time"],
+    )
+    release = Release(0.06, displacement=archive.device.release.displacement)
+    motion = simulate(archive.device.drive, release, duration=0.06)
+    time, position = (np.asarray(result[name]) for name in ("time", "position"))
+    assert np.abs(position - motion.position(time)).max() < 1e-12 * np.abs(position).max()
+    assert (np.asarray(result["next_event_time"]) > time).all() and len(time) == 51
+
+
+def test_derivatives_are_exact(archive: Archive) -> None:
+    unit = archive.unit()
+    if unit.version == 2:
+        unit.slave.setupExperiment(startTime=0.0)
+    unit.slave.enterInitializationMode()
+    unit.set(plate_load=0.1)
+    mass = archive.device.drive.mass
+    (at,) = unit.get("acceleration")
+    assert unit.derivative("acceleration", drive__mass=1.0) == pytest.approx(-at / mass)
+    x0 = unit.derivative("acceleration", motion__displacement=1.0)
+    assert x0 == pytest.approx(-archive.device.drive.stiffness / mass)
+    unit.slave.exitInitializationMode()
+    unit.time = 0.0
+    unit.step(0.004)
+    assert unit.get("plate_state") != [0]
+    assert unit.derivative("acceleration", mouse_velocity_rate=2.0) == 2.0
+    of_load = unit.derivative("plate_force", plate_load=1.0)
+    assert of_load == pytest.approx(unit.get("plate_force")[0] / 0.1)
+    with pytest.raises(FMICallException):
+        unit.derivative("acceleration", drive__mass=1.0)
+
+
+@pytest.mark.parametrize("archive", [(MOUSE, 3)], indirect=True, ids=str)
+def test_steps_end_early_at_events(archive: Archive) -> None:
+    unit = archive.unit(eventModeUsed=True, earlyReturnAllowed=True).begin()
+    motion = simulate(archive.device.drive, archive.device.release)
+    events = sorted({event.time for event in motion.events})
+    found = []
+    unit.slave.enterStepMode()
+    while unit.time < 1.0:
+        (known,) = unit.get("next_event_time")
+        happens, terminate, early, time = unit.step(1.0)
+        assert not terminate and unit.time == time <= 1.0
+        assert early == (time < 1.0) == happens
+        if happens:
+            assert time == known
+            found.append(time)
+            unit.slave.enterEventMode()
+            update = unit.slave.updateDiscreteStates()
+            assert update[:4] == (False, False, False, False)
+            assert not update[4] or update[5] > time
+            unit.slave.enterStepMode()
+    assert found == pytest.approx(events, rel=1e-13) and len(found) > 3
+
+
+@pytest.mark.parametrize("archive", [(MOUSE, 2)], indirect=True, ids=str)
+def test_libcosim_drives_sixteen(archive: Archive) -> None:
+    """Sixteen drives in one system, each released from another place."""
+    cosim = pytest.importorskip("libcosimpy")
+    for name in ("CosimExecution", "CosimLogging", "CosimObserver", "CosimSlave"):
+        import_module(f"libcosimpy.{name}")
+    cosim.CosimLogging.log_output_level(cosim.CosimLogging.CosimLogLevel.ERROR)
+    execution = cosim.CosimExecution.CosimExecution.from_step_size(1_000_000)  # ns
+    observer = cosim.CosimObserver.CosimObserver.create_last_value()
+    numbers = {v.name: v.valueReference for v in archive.description.modelVariables}
+    places = [1e-3 + 1e-4 * i for i in range(16)]
+    slaves = []
+    for i, place in enumerate(places):
+        slave = cosim.CosimSlave.CosimLocalSlave(str(archive.path), f"pin{i}")
+        slaves.append(execution.add_local_slave(slave))
+        execution.real_initial_value(slaves[-1], numbers["motion.displacement"], place)
+    execution.add_observer(observer)
+    velocity = archive.device.release.mouse_velocity
+    motions = [simulate(archive.device.drive, Release(velocity, place)) for place in places]
+    for step in range(1, 61):
+        execution.step()
+        for slave, motion in zip(slaves, motions, strict=True):
+            (x,) = observer.last_real_values(slave, [numbers["position"]])
+            assert x == pytest.approx(motion.position(step * 1e-3), rel=1e-12, abs=1e-15)
+
+
+def test_it_says_what_is_refused(archive: Archive, capsys: pytest.CaptureFixture[str]) -> None:
+    unit, bad = archive.unit().begin(), archive.unit()
+    for call, words in (
+        (lambda: unit.set(drive__mass=1.0), "drive.mass is a fixed parameter"),
+        (lambda: unit.set(position=1.0), "position is an output"),
+        (lambda: unit.set(plate_load=-1.0), "plate_load must be at least 0 and finite, not -1"),
+        (lambda: unit.slave.doStep(5.0, 1.0), "a step must begin where the last one ended, at 0.0"),
+        (lambda: bad.begin(drive__mass=-1.0), "mass must be above 0 and finite, not -1"),
+    ):
+        with pytest.raises(FMICallException):
+            call()
+        assert words in capsys.readouterr().out
+    description = fmpy.read_model_description(str(archive.path))
+    setattr(description, "guid" if archive.version == 2 else "instantiationToken", "{other}")
+    with pytest.raises(Exception, match="instantiate"):
+        Unit(archive.folder, description)
+    assert "the token must be" in capsys.readouterr().out
+
+
+def test_the_command_writes_both_versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "drive.fmu"
+    done = run("fmu", str(MOUSE), "-o", str(target), "--fmi", "2", "--set", "mass=12 g")
+    assert done.exit_code == 0 and "FMI 2.0" in done.stdout, done.output
+    description = fmpy.read_model_description(str(target))
+    (mass,) = [v.start for v in description.modelVariables if v.name == "drive.mass"]
+    assert float(mass) == 0.012
+    again = run("fmu", str(SKIN), "-o", str(target))
+    assert again.exit_code == 0 and "mouse_velocity is an input" in again.stderr
+    assert fmpy.read_model_description(str(target)).fmiVersion == "3.0"
+    first = target.read_bytes()
+    run("fmu", str(SKIN), "-o", str(target))
+    assert target.read_bytes() == first
+    monkeypatch.chdir(tmp_path)
+    assert "--fmi must be" in refused("fmu", MOUSE, "-o", target, "--fmi", "1")
+    assert "mass must be" in refused("fmu", MOUSE, "-o", target, "--set", "mass=0 g")
+    copy = tmp_path / "device.toml"
+    copy.write_text(MOUSE.read_text("utf-8"), "utf-8")
+    assert "is read by this command" in refused("fmu", copy, "-o", copy)
