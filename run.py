@@ -8,7 +8,7 @@
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py studio [test|bench]
-                                      build the studio, a page of its own; test or time it in a browser
+                                      build the studio, a page; test or time it in a browser
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py

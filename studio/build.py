@@ -63,19 +63,18 @@ def core() -> Path:
     """The core as WebAssembly: the functions of pindrive.h that the page calls."""
     wrapper = (STUDIO / "src" / "core.ts").read_text("utf-8")
     header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
-    called = set(re.findall(r'(?:call|setRows|setNumber)\(\s*"(\w+)"', wrapper))
-    called |= set(re.findall(r'"(\w+_set\w*)"', wrapper))
-    found = {name for name in re.findall(r"pindrive_(\w+)\(", header)}
-    named = set(re.findall(r"wasm\.pindrive_(\w+)!", wrapper))
-    counted = {f"{of}_{what}" for of in ("number", "energy", "certificate") for what in ("count", "name")}
-    exported = sorted((called | named | counted) & found)
+    names = set(re.findall(r"pindrive_(\w+)\(", header))
+    called = {name for name in names if re.search(rf'(?:"|wasm\.pindrive_){name}\b', wrapper)}
+    for of in ("number", "energy", "certificate"):
+        called |= {f"{of}_count", f"{of}_name"}
     target = BUILD / "core.wasm"
+    compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
     call(
-        *(sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi", "-mexec-model=reactor"),
-        *("-std=c++17", "-O2", "-DNDEBUG", "-s", "-fno-exceptions", "-fno-rtti"),
-        *("-ffp-contract=off", "-Iinclude", "-Icapi", *sorted((ROOT / "capi").glob("*.cpp"))),
-        *("-o", target),
-        *(f"-Wl,--export=pindrive_{name}" for name in exported),
+        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-DNDEBUG", "-s"),
+        *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
+        *sorted((ROOT / "capi").glob("*.cpp")),
+        *("-o", str(target)),
+        *(f"-Wl,--export=pindrive_{name}" for name in sorted(called)),
         *(f"-Wl,--export={name}" for name in BESIDE),
         folder=ROOT,
     )

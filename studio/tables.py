@@ -1,6 +1,6 @@
 """Writes what the page knows of quantities, units, keys and colours as JSON, from their tables.
 
-    python studio/tables.py FILE
+python studio/tables.py FILE
 """
 
 from __future__ import annotations
@@ -35,7 +35,12 @@ from pindrive.quantities.results import MOTION, OUTPUTS
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
-PARTS = ("curve.slope", "profile.rate", "phase", *(name for pair in COLUMNS.values() for name in pair))
+PARTS = (
+    "curve.slope",
+    "profile.rate",
+    "phase",
+    *(name for pair in COLUMNS.values() for name in pair),
+)
 """Quantities of a drive's parts that the page checks."""
 
 
@@ -124,11 +129,8 @@ def units() -> dict[str, Any]:
             else:
                 one = registry.Quantity(Decimal(1), name).to_root_units()
                 # The root unit of mass is the gram here: SI counts kilograms.
-                found = {
-                    str(base): int(power)
-                    for base, power in one.unit_items()
-                    if str(base) != "radian"
-                }
+                powers = {str(base): int(str(power)) for base, power in one.unit_items()}
+                found = {base: power for base, power in powers.items() if base != "radian"}
                 factor = Decimal(one.magnitude) / Decimal(1000) ** found.get("gram", 0)
                 atoms[name] = [str(factor), found]
     return {"atoms": atoms, "prefixes": prefixes}

@@ -107,12 +107,9 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
     expected = np.array([float(numbers[name]) for name in NAMES])
     np.testing.assert_allclose(doubles(found["numbers"]), expected, rtol=1e-12, atol=1e-15)
     t = doubles(found["times"])
-    for values, quantity in zip(
-        np.split(doubles(found["values"]), 4),
-        (motion.position, motion.velocity, motion.acceleration, lambda t: motion.force("plate", t)),
-        strict=True,
-    ):
-        expected = quantity(t)
+    along = [motion.position(t), motion.velocity(t), motion.acceleration(t)]
+    along.append(motion.force("plate", t))
+    for values, expected in zip(np.split(doubles(found["values"]), 4), along, strict=True):
         # At a jump that lies at such a time the two sides may be exchanged by a rounding.
         off = np.abs(values - expected) > 1e-12 * np.abs(expected).max()
         for time in t[off]:

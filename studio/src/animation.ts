@@ -80,7 +80,7 @@ export class Animation {
     line(context, points);
     // Electromagnet and pin, in the colour of what they do.
     const name = { carried: "carried by the plate", resting: "resting on the finger", gripping: "gripped by the skin" };
-    context.fillStyle = look.curves[0]!.color;
+    context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;
     context.fillRect(pin - magnet, 0.48 * height, 2 * magnet, plateTop - 0.48 * height - 1);
     context.fillRect(pin - 0.012 * w, top - 0.05 * height, 0.024 * w, 0.25 * height);
     if (phase) {

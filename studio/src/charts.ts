@@ -57,7 +57,7 @@ export class Charts {
     const times = currentTimes(view);
     const milliseconds = scaledColumn(times, 1e3);
     for (const { plot, panel } of this.plots) {
-      const columns = view.lines.flatMap((line) => namesFor(panel, line).map((name) => column(line, name, times.length)));
+      const columns = inOrder(view).flatMap((line) => namesFor(panel, line).map((name) => column(line, name, times.length)));
       plot.batch(() => {
         plot.setData([milliseconds, ...columns] as unknown as uPlot.AlignedData, false);
         plot.setScale("x", { min: 0, max: 1e3 * view.end });
@@ -96,7 +96,7 @@ export class Charts {
     const { look } = this;
     const font = "12px system-ui, sans-serif";
     const axis = { stroke: look.muted, font, grid: { stroke: look.grid, width: 1 }, ticks: { show: false } };
-    const lines = this.view!.lines.flatMap((line) => namesFor(panel, line).map((name, i) => series(line, name, i, look)));
+    const lines = inOrder(this.view!).flatMap((line) => namesFor(panel, line).map((name, i) => series(line, name, i, look)));
     return {
       width: Math.max(this.element.clientWidth, 200),
       height: this.heightOf(last),
@@ -106,7 +106,7 @@ export class Charts {
       cursor: {
         y: false,
         drag: { x: false, y: false },
-        points: { size: 7, fill: look.curves[0]!.color },
+        points: { size: 7, fill: (plot: uPlot, i: number) => String((plot.series[i]!.stroke as (u: uPlot, i: number) => string)(plot, i)) },
       },
       axes: [
         { ...axis, size: last ? 20 : 8, values: last ? plainValues : () => [], label: last ? "time t, ms" : undefined, labelSize: 18, labelFont: font, gap: 2 },
@@ -192,6 +192,11 @@ export class Charts {
     }
     ctx.restore();
   }
+}
+
+/** As they are drawn: the current design last, over the others. */
+function inOrder(view: View): Line[] {
+  return [...view.lines].reverse();
 }
 
 function currentTimes(view: View): Float64Array {

@@ -2,7 +2,7 @@
 import type { Values } from "./checks";
 import type { Input } from "./core";
 import { coreInput, settlingBand, withValue } from "./design";
-import { SIZE, type MapTask } from "./mapgrid";
+import { SIZE, type MapTask, type Product } from "./mapgrid";
 import { rangeOf, valueAt, type Range } from "./range";
 import { DRIVE } from "./table";
 
@@ -34,10 +34,7 @@ function flat(input: Input): Flat {
   return { ...input.drive, ...input.release, ...Object.fromEntries(profiles.map(([k, r]) => [k, r[0]![1]])) };
 }
 
-/**
- * The grid, x fastest, rows from the smallest y. What follows an axis is a product of powers of both,
- * so it needs the values along each axis alone.
- */
+/** The grid. What follows an axis is a product of powers of both: it needs each axis alone. */
 export function mapTask(
   values: Values, x: string, y: string, axes: Axes, number: number, limits: MapTask["limits"],
 ): MapTask {
@@ -48,28 +45,22 @@ export function mapTask(
   const base = coreInput(values);
   const [along, across] = lines.map((line) => line.map(flat)) as [Flat[], Flat[]];
   const origin = flat(base);
-  const varied: Record<string, Float64Array> = {};
+  const ones = new Float64Array(SIZE).fill(1);
+  const varied: Record<string, Product> = {};
   for (const name of Object.keys(origin)) {
     const changes = (line: readonly Flat[]): boolean => line.some((at) => at[name] !== origin[name]);
-    const byX = changes(along) && name !== own(y);
-    const byY = changes(across) && name !== own(x);
-    if (!byX && !byY && name !== own(x) && name !== own(y)) continue;
-    varied[name] = grid((i, j) => {
-      const [u, v] = [along[i]![name]!, across[j]![name]!];
-      if (name === own(y)) return v;
-      if (name === own(x) || !byY) return u;
-      return byX ? (origin[name] ? (u / origin[name]) * v : 0) : v;
-    });
+    const byX = name === own(x) || (changes(along) && name !== own(y));
+    const byY = name === own(y) || (changes(across) && name !== own(x));
+    if (!byX && !byY) continue;
+    const [u, v] = [along, across].map((line) => Float64Array.from(line, (at) => at[name]!)) as [Float64Array, Float64Array];
+    const both = byX && byY && origin[name];
+    varied[name] = { x: byX ? u : ones, y: both ? v.map((value) => value / origin[name]!) : byY ? v : ones };
   }
-  const curves: Record<string, Float64Array> = {};
+  const curves: Record<string, Product> = {};
   for (const [contact, rows] of Object.entries(base.curves)) {
     const scale = (input: Input): number => (rows[0]![1] ? input.curves[contact]![0]![1] / rows[0]![1] : 1);
-    const [u, v] = lines.map((line) => line.map(scale)) as [number[], number[]];
-    if ([...u, ...v].some((one) => one !== 1)) curves[contact] = grid((i, j) => u[i]! * v[j]!);
+    const [u, v] = lines.map((line) => Float64Array.from(line, scale)) as [Float64Array, Float64Array];
+    if ([...u, ...v].some((one) => one !== 1)) curves[contact] = { x: u, y: v };
   }
   return { input: base, varied, curves, band: settlingBand(values), number, limits };
-}
-
-function grid(value: (i: number, j: number) => number): Float64Array {
-  return Float64Array.from({ length: SIZE * SIZE }, (_, p) => value(p % SIZE, Math.floor(p / SIZE)));
 }

@@ -17,7 +17,7 @@ export class MapRunner {
   private readonly view: MapView;
   private worker: Worker | null = null;
   private busy = false;
-  private next: MapTask | null = null;
+  private next: (() => MapTask) | null = null;
   private state: State | null = null;
 
   constructor(
@@ -59,13 +59,13 @@ export class MapRunner {
       x, y, axes, number: state.number, limited: limits.length > 0,
       at: [values[x] as number, values[y] as number],
     });
-    this.next = mapTask(values, x, y, axes, this.core.numberNames.indexOf(state.number), limits);
-    this.send();
+    this.next = () => mapTask(values, x, y, axes, this.core.numberNames.indexOf(state.number), limits);
+    setTimeout(() => this.send()); // after what is seen at once
   }
 
   private send(): void {
     if (this.busy || !this.next) return;
-    const task = (this.task = this.next);
+    const task = (this.task = this.next());
     this.next = null;
     if (this.worker) {
       this.busy = true;

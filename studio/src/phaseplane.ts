@@ -104,7 +104,7 @@ export class PhasePlane {
     const [x, v] = (["position", "velocity"] as const).map((name) => columnAt(curves, name, view.state.cursor)) as [number, number];
     context.beginPath();
     context.arc(toX(1e3 * x), toY(1e3 * v), 5, 0, 2 * Math.PI);
-    context.fillStyle = look.curves[0]!.color;
+    context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;
     context.fill();
     context.strokeStyle = look.surface;
     context.lineWidth = 2;

@@ -86,9 +86,11 @@ def page(browser: Any, page_file: Path) -> Iterator[Any]:
     opened.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
     opened.on(
         "request",
-        lambda request: wrong.append(request.url)
-        if not request.url.startswith(("file:", "blob:", "data:"))
-        else None,
+        lambda request: (
+            wrong.append(request.url)
+            if not request.url.startswith(("file:", "blob:", "data:"))
+            else None
+        ),
     )
     opened.goto(page_file.as_uri())
     opened.wait_for_selector("html[data-ready]")

@@ -121,9 +121,7 @@ def test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command(
     node: Ask, tmp_path: Path
 ) -> None:
     texts = spoiled()
-    asked = [
-        {"device": base64.b64encode(text.encode()).decode(), "file": "FILE"} for text in texts
-    ]
+    asked = [{"device": base64.b64encode(text.encode()).decode(), "file": "FILE"} for text in texts]
     differ = []
     for text, found in zip(texts, node(asked), strict=True):
         expected = said_by_python(text, tmp_path / "device.toml")
@@ -144,9 +142,7 @@ def test_what_is_no_text_is_said_so(node: Ask, tmp_path: Path, bad: bytes) -> No
 
 
 def read(node: Ask, texts: list[str]) -> list[Any]:
-    asked = [
-        {"device": base64.b64encode(text.encode()).decode(), "file": "FILE"} for text in texts
-    ]
+    asked = [{"device": base64.b64encode(text.encode()).decode(), "file": "FILE"} for text in texts]
     found = node(asked)
     assert [one.get("problem") for one in found] == [None] * len(texts)
     return found
@@ -155,14 +151,21 @@ def read(node: Ask, texts: list[str]) -> list[Any]:
 def test_device_files_are_read_as_python_reads_them_and_written_so(
     node: Ask, tmp_path: Path
 ) -> None:
-    texts = [template(), template(whole=True), GOOD, *(path.read_text("utf-8") for path in EXAMPLES)]
+    texts = [
+        template(),
+        template(whole=True),
+        GOOD,
+        *(path.read_text("utf-8") for path in EXAMPLES),
+    ]
     path = tmp_path / "device.toml"
     for text, found in zip(texts, read(node, texts), strict=True):
         path.write_text(text, "utf-8")
         expected = load_device(path).values()
         path.write_text(found["written"], "utf-8")
         again = load_device(path)
-        given = {key for key in expected if key.partition(".")[2] in again.tables[key.partition(".")[0]]}
+        given = {
+            key for key in expected if key.partition(".")[2] in again.tables[key.partition(".")[0]]
+        }
         for key, value in found["values"].items():
             assert np.array_equal(value, np.array(expected[key])), key
         assert given >= found["values"].keys()
@@ -227,5 +230,9 @@ def test_recordings_are_read_as_python_reads_them(node: Ask, tmp_path: Path) -> 
 
 def test_every_key_of_the_table_is_known_to_the_page(node: Ask) -> None:
     (found,) = read(node, [template()])
-    keys = {key for key in NUMBERS if key.partition(".")[2] in tomllib.loads(template()).get(key.partition(".")[0], {})}
+    keys = {
+        key
+        for key in NUMBERS
+        if key.partition(".")[2] in tomllib.loads(template()).get(key.partition(".")[0], {})
+    }
     assert found["values"].keys() == keys

@@ -47,7 +47,7 @@ def saved(page: Any, kind: str, folder: Path) -> Path:
     """Saves by the menu; the file."""
     with page.expect_download() as download:
         page.select_option("#save", kind)
-    path = folder / download.value.suggested_filename
+    path = folder / str(download.value.suggested_filename)
     download.value.save_as(path)
     return path
 
@@ -92,7 +92,10 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     assert value(page, "plate.static") == pytest.approx(0.03 * 26.5 / 22, rel=1e-15)
     page.fill("#plate-kinetic", "heavy")
     page.keyboard.press("Enter")
-    assert "plate.kinetic must be a number with its unit" in page.locator("#plate-kinetic-note").inner_text()
+    assert (
+        "plate.kinetic must be a number with its unit"
+        in page.locator("#plate-kinetic-note").inner_text()
+    )
     assert value(page, "plate.kinetic") == 0.03
 
 
@@ -124,18 +127,26 @@ def test_derivatives_are_those_of_python(page: Any) -> None:
     device = pd.load_device(EXAMPLE)
     base = motion_of(device).transient.settling_time
     step = 1e-6
-    for key, name in (("mass", "mass"), ("plate.kinetic", "plate kinetic"), ("displacement", "displacement")):
+    for key, name in (
+        ("mass", "mass"),
+        ("plate.kinetic", "plate kinetic"),
+        ("displacement", "displacement"),
+    ):
         values = device.values()
         full = next(full for full in values if full.endswith(key))
         given = values[full]
         assert isinstance(given, float)
-        more = motion_of(pd.load_device(EXAMPLE, {full: given * (1 + step)})).transient.settling_time
+        more = motion_of(
+            pd.load_device(EXAMPLE, {full: given * (1 + step)})
+        ).transient.settling_time
         expected = (more - base) / step * 0.01 * 1e3
         shown = float(bars[name].split(" ")[0].replace("−", "-").replace("+", ""))
         assert shown == pytest.approx(expected, rel=5e-3), name
 
 
-def test_every_file_goes_out_and_in_again(page: Any, browser: Any, page_file: Path, tmp_path: Path) -> None:
+def test_every_file_goes_out_and_in_again(
+    page: Any, browser: Any, page_file: Path, tmp_path: Path
+) -> None:
     opened(page, SKIN)
     toml = saved(page, "toml", tmp_path)
     assert pd.load_device(toml).values() == pd.load_device(SKIN).values()
@@ -170,9 +181,12 @@ def test_every_file_goes_out_and_in_again(page: Any, browser: Any, page_file: Pa
 
 
 @pytest.mark.parametrize(
-    ("old", "new"), [("10 g", "10"), ("mass", "mas"), ("kinetic = ", "kinetic "), ("22 mN", "-1 mN")]
+    ("old", "new"),
+    [("10 g", "10"), ("mass", "mas"), ("kinetic = ", "kinetic "), ("22 mN", "-1 mN")],
 )
-def test_a_mistake_is_said_in_the_words_of_the_command(page: Any, tmp_path: Path, old: str, new: str) -> None:
+def test_a_mistake_is_said_in_the_words_of_the_command(
+    page: Any, tmp_path: Path, old: str, new: str
+) -> None:
     path = tmp_path / "bad.toml"
     path.write_text(template().replace(old, new, 1), "utf-8")
     opened(page, path)
@@ -207,11 +221,11 @@ def test_designs_ghost_and_delete(page: Any) -> None:
 
 
 def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> None:
-    page.wait_for_function("document.querySelector('.map-holder').dataset.took")
+    page.wait_for_selector(".map-holder[data-took]")
     found = page.evaluate(
-        "(() => { const r = pindrive.page.map; return {values: [...r.last.values], met: [...r.last.met],"
-        " x: [...r.task.varied.mouse_velocity.slice(0, 64)],"
-        " y: [...r.task.varied['plate.kinetic']].filter((_, i) => i % 64 === 0)}; })()"
+        "(() => { const r = pindrive.page.map; return {values: [...r.last.values],"
+        " met: [...r.last.met],"
+        " x: [...r.task.varied.mouse_velocity.x], y: [...r.task.varied['plate.kinetic'].y]}; })()"
     )
     device = pd.load_device(EXAMPLE)
     for i, j in ((0, 0), (63, 5), (31, 40), (50, 63)):
@@ -240,7 +254,14 @@ def recorded(path: Path, rows: int, offset: float, **drive: Any) -> None:
     motion = motion_of(pd.load_device(EXAMPLE, drive))
     t = np.linspace(0, 0.2, rows)
     x = motion.position(np.clip(t - offset, 0, None))
-    np.savetxt(path, np.column_stack([1e3 * t, 1e3 * x]), "%.9g", ",", header="t [ms],position [mm]", comments="")
+    np.savetxt(
+        path,
+        np.column_stack([1e3 * t, 1e3 * x]),
+        "%.9g",
+        ",",
+        header="t [ms],position [mm]",
+        comments="",
+    )
 
 
 def test_a_recording_of_a_hundred_thousand_rows_is_fitted(page: Any, tmp_path: Path) -> None:
@@ -292,7 +313,9 @@ def test_axe_finds_no_violation_at_any_width(page: Any, tmp_path: Path, scheme: 
         page.set_viewport_size({"width": width, "height": 900})
         settled(page)
         found = page.evaluate("axe.run({resultTypes: ['violations']})")
-        assert [(v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found["violations"]] == []
+        assert [
+            (v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found["violations"]
+        ] == []
 
 
 def test_nothing_is_cut_off_from_320_to_3840_pixels(page: Any) -> None:
@@ -322,5 +345,7 @@ def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
     opened.wait_for_selector("html[data-ready]")
     name, mass = opened.evaluate(f"[pindrive.page.state.designs[0].name, {VALUES}['drive.mass']]")
     assert (name, mass) == ("tactile mouse", 0.01)
-    assert json.loads(opened.evaluate("document.getElementById('device').textContent"))["rows"] == {}
+    assert (
+        json.loads(opened.evaluate("document.getElementById('device').textContent"))["rows"] == {}
+    )
     opened.context.close()
