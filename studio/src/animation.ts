@@ -32,7 +32,7 @@ export class Animation {
     const { canvas, view, look } = this;
     const curves = view && currentCurves(view);
     if (!view || !canvas.width) return;
-    const context = canvas.begin();
+    const context = canvas.begin(look.font);
     if (!curves) return;
     const [w, height] = [canvas.width, canvas.height];
     const time = view.state.cursor;

@@ -15,12 +15,12 @@ export class Canvas {
   }
 
   /** Clears it; drawing is then in CSS pixels. */
-  begin(): CanvasRenderingContext2D {
+  begin(font: string): CanvasRenderingContext2D {
     const context = this.element.getContext("2d")!;
     const scale = this.element.width / Math.max(this.width, 1);
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.clearRect(0, 0, this.width, this.height);
-    context.font = "12px system-ui, sans-serif";
+    context.font = font;
     return context;
   }
 

@@ -94,7 +94,7 @@ export class Charts {
 
   private options(panel: Panel, last: boolean): uPlot.Options {
     const { look } = this;
-    const font = "12px system-ui, sans-serif";
+    const { font } = look;
     const axis = { stroke: look.muted, font, grid: { stroke: look.grid, width: 1 }, ticks: { show: false } };
     const lines = inOrder(this.view!).flatMap((line) => namesFor(panel, line).map((name, i) => series(line, name, i, look)));
     return {
@@ -114,7 +114,7 @@ export class Charts {
       ],
       series: [{}, ...lines],
       hooks: {
-        drawClear: [(plot) => this.drawPhases(plot)],
+        drawAxes: [(plot) => this.drawPhases(plot), (plot) => this.drawRecording(plot, panel)],
         draw: [(plot) => this.drawMarks(plot, panel)],
         setCursor: [
           (plot) => {
@@ -153,6 +153,21 @@ export class Charts {
     }
   }
 
+  /** Under the curves. */
+  private drawRecording(plot: uPlot, panel: Panel): void {
+    const overlay = this.view && overlayOf(this.view, panel);
+    if (!overlay) return;
+    const { ctx, bbox } = plot;
+    const ratio = devicePixelRatio;
+    ctx.fillStyle = this.look.recording;
+    for (let i = 0; i < overlay.times.length; ++i) {
+      const x = plot.valToPos(overlay.times[i]!, "x", true);
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      const y = plot.valToPos(overlay.values[i]!, "y", true);
+      ctx.fillRect(x - ratio, y - ratio, 2 * ratio, 2 * ratio);
+    }
+  }
+
   private drawMarks(plot: uPlot, panel: Panel): void {
     const view = this.view;
     if (!view) return;
@@ -162,16 +177,6 @@ export class Charts {
     ctx.beginPath();
     ctx.rect(bbox.left - 6, bbox.top - 6, bbox.width + 12, bbox.height + 12);
     ctx.clip();
-    const overlay = overlayOf(view, panel);
-    if (overlay) {
-      ctx.fillStyle = this.look.recording;
-      for (let i = 0; i < overlay.times.length; ++i) {
-        const x = plot.valToPos(overlay.times[i]!, "x", true);
-        if (x < bbox.left || x > bbox.left + bbox.width) continue;
-        const y = plot.valToPos(overlay.values[i]!, "y", true);
-        ctx.fillRect(x - ratio, y - ratio, 2 * ratio, 2 * ratio);
-      }
-    }
     const curves = currentCurves(view);
     if (curves && panel.names[0] !== "plate_force") {
       const name = panel.names[0]!;

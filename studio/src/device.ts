@@ -262,6 +262,10 @@ function notKnown(key: string): string {
 // ---- values ----------------------------------------------------------------------------------------
 
 function readValue(value: TomlValue, quantity: Quantity): Value {
+  if (quantity.rowsOf === "profile" && typeof value === "string" && /\.csv\s*$/i.test(value)) {
+    const words = "a value or rows in a page, which may open no files (`pindrive studio FILE` reads it)";
+    throw new Refusal(quantity.key, words, quoted(value));
+  }
   if (quantity.rows && (Array.isArray(value) || !quantity.mayBeConstant)) {
     return readRows(value, quantity);
   }

@@ -121,7 +121,7 @@ export class MapView {
   private draw(): void {
     const { canvas, shown, look } = this;
     if (!shown || !canvas.width) return;
-    const context = canvas.begin();
+    const context = canvas.begin(look.font);
     const { width, height } = this.box;
     context.imageSmoothingEnabled = false;
     context.drawImage(this.image, LEFT, TOP, width, height);

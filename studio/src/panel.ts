@@ -165,7 +165,7 @@ function absentWords(key: string, values: Values): string {
   const name = key.split(".")[1]!;
   const words: Record<string, string> = {
     static: "as kinetic", stiffness: "rigid", velocity: "plate's", skin_stretch: "none",
-    duration: "to its end", kinetic: "of curve",
+    duration: "ending", kinetic: "of curve",
   };
   const absent = DRIVE.get(key)!.absent;
   return words[name] ?? (absent === undefined ? "" : text(DRIVE.get(key)!, absent)) ?? String(values[key] ?? "");

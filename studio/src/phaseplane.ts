@@ -32,7 +32,7 @@ export class PhasePlane {
   draw(): void {
     const { canvas, view, look } = this;
     if (!view || !canvas.width) return;
-    const context = canvas.begin();
+    const context = canvas.begin(look.font);
     const lines = view.lines.flatMap((line) => {
       const curves = curvesOf(line);
       return curves ? [{ line, curves, x: curves.columns.position!, y: curves.columns.velocity! }] : [];

@@ -5,6 +5,8 @@ export type Scheme = "auto" | "light" | "dark";
 
 export interface Look {
   readonly dark: boolean;
+  /** Of what is written in plots: a little smaller than the page's. */
+  readonly font: string;
   readonly text: string;
   readonly muted: string;
   readonly grid: string;
@@ -40,6 +42,7 @@ export function currentLook(): Look {
   const shade = (color: string): string => (dark ? lightened(color, color === "#000000" ? 0.85 : 0.35) : color);
   return {
     dark,
+    font: `${Math.round(0.86 * parseFloat(style.fontSize))}px system-ui, sans-serif`,
     text: own("text"),
     muted: own("muted"),
     grid: own("grid"),

@@ -18,11 +18,9 @@ export function written(quantity: Quantity, value: number): string {
   return `${floatRepr(value)} ${unit}`;
 }
 
-/** A number as it stands in a field: without its unit, which stands beside it. */
+/** A number as it stands in a field, in the unit beside it. */
 export function fieldText(quantity: Quantity, value: number): string {
-  const text = written(quantity, value);
-  const unit = ` ${quantity.displayUnit}`;
-  return quantity.displayUnit && text.endsWith(unit) ? text.slice(0, -unit.length) : text;
+  return general(value * quantity.displayScale, 6);
 }
 
 /** The device file of a design: the same keys, each with its meaning. */

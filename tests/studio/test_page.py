@@ -90,6 +90,8 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     settled(page)
     assert value(page, "plate.kinetic") == 0.03
     assert value(page, "plate.static") == pytest.approx(0.03 * 26.5 / 22, rel=1e-15)
+    assert page.input_value("#plate-static") == "36.1364"
+    assert page.input_value("#plate-kinetic") == "30"
     page.fill("#plate-kinetic", "heavy")
     page.keyboard.press("Enter")
     assert (
