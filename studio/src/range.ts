@@ -34,9 +34,10 @@ export function rangeOf(quantity: Quantity, value: number): Range {
 /** The value at a part, from 0 to 1, of the range. */
 export function valueAt(range: Range, part: number): number {
   if (!range.logarithmic) {
-    // To four digits of the reach: a slider stops at plain numbers, 0 among them.
+    // In thousandths of the reach: a slider stops at plain numbers, 0 among them.
     const step = range.upper / 1000;
-    return Math.round((range.lower + part * (range.upper - range.lower)) / step) * step;
+    const count = Math.round((range.lower + part * (range.upper - range.lower)) / step);
+    return Number((count * step).toPrecision(6)) + 0; // no negative zero
   }
   if (part <= 0 && range.zero) return 0;
   return Number((range.lower * (range.upper / range.lower) ** part).toPrecision(4));

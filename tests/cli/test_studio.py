@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import webbrowser
 from pathlib import Path
 
 import pytest
@@ -65,7 +66,12 @@ def test_a_device_with_a_mistake_is_refused_as_by_check() -> None:
 
 def test_a_browser_that_does_not_open_is_said(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(studio.webbrowser, "open", lambda url: bool(opened.append(url)))
+
+    def fails(url: str) -> bool:
+        opened.append(url)
+        return False
+
+    monkeypatch.setattr(webbrowser, "open", fails)
     result = run("studio")
     assert opened == [page.as_uri()]
     assert (result.exit_code, result.stdout) == (0, f"{page}\n")
