@@ -118,7 +118,7 @@ def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: 
 
 @pytest.mark.usefixtures("in_empty_folder")
 def test_the_examples_run_one_after_the_other() -> None:
-    """All but `paper`, which takes long, and a studio that is not built: both are tested elsewhere."""
+    """All but `paper`, which takes long, and a studio that is not built; they have other tests."""
     times = [0.25 * i for i in range(200)]
     rows = "".join(f"{t},{2.0 * exp(-0.02 * t) * cos(0.1 * t):.4f}\n" for t in times)
     Path("pin.csv").write_text(f"t [ms],position [mm]\n{rows}")
