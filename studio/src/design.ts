@@ -1,0 +1,178 @@
+// A design: the values that a device file gives, what follows from them, and what the core is given.
+import { MOUSE, dampingOf, kineticOf, staticOf, type Value, type Values } from "./checks";
+import type { Input, Rows } from "./core";
+import type { Device } from "./device";
+import { DRIVE } from "./table";
+
+export interface Design extends Device {
+  /** Whether its curves are drawn beside those of the current one. */
+  readonly shown: boolean;
+}
+
+const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
+const OVER_TIME = ["mouse_velocity", "plate_load"] as const;
+
+export function isRows(value: Value | null | undefined): value is Rows {
+  return Array.isArray(value);
+}
+
+/** What holds for a key: what is given, or what holds where it is left out; null: nothing. */
+export function valueOf(values: Values, key: string): Value | null {
+  return values[key] ?? DRIVE.get(key)!.absent ?? null;
+}
+
+/** As pindrive.h has it. */
+export function coreInput(values: Values): Input {
+  const curves: Record<string, Rows> = {};
+  const drive: Record<string, number> = {
+    mass: values["drive.mass"] as number,
+    stiffness: values["drive.stiffness"] as number,
+    damping: dampingOf(values),
+  };
+  for (const contact of ["plate", "finger"]) {
+    const curve = values[`${contact}.curve`];
+    if (isRows(curve)) curves[contact] = curve;
+    drive[`${contact}.kinetic`] = kineticOf(values, contact);
+    drive[`${contact}.static`] = staticOf(values, contact);
+  }
+  const stiffness = values["finger.stiffness"];
+  if (typeof stiffness === "number") drive["finger.stiffness"] = stiffness;
+  const release: Record<string, number> = {};
+  for (const name of RELEASED) {
+    const value = valueOf(values, `motion.${name}`);
+    if (typeof value === "number") release[name] = value;
+  }
+  const profiles: Record<string, Rows> = {};
+  for (const name of OVER_TIME) {
+    const value = valueOf(values, `motion.${name}`)!;
+    // One that never changes is a constant, as it is in Python.
+    const changes = isRows(value) && value.some(([, y]) => y !== value[0]![1]);
+    profiles[name] = changes ? value : [[0, isRows(value) ? value[0]![1] : value]];
+  }
+  return { drive, curves, release, profiles };
+}
+
+/** The values with one set or, for null, left out; what keeps a ratio to it follows. */
+export function withValue(values: Values, key: string, value: Value | null): Values {
+  const next: Record<string, Value> = { ...values };
+  if (value === null) delete next[key];
+  else next[key] = value;
+  if (key === "drive.damping" && value !== null) delete next["drive.damping_ratio"];
+  if (key === "drive.damping_ratio" && value !== null) delete next["drive.damping"];
+  // Several may follow one another: in the order of the table, as for --set.
+  const moved = new Set([key]);
+  for (const [other, quantity] of DRIVE) {
+    const follows = quantity.follows ?? [];
+    if (moved.has(other) || !follows.some((name) => moved.has(name))) continue;
+    moved.add(other);
+    const given = values[other];
+    const [before, after] = [quotient(values, follows), quotient(next, follows)];
+    if (given === undefined || !before || after === null) continue;
+    const scale = (y: number): number => (y / before) * after;
+    next[other] = isRows(given)
+      ? given[0]![1] === 0
+        ? given
+        : given.map(([x, y]) => [x, (y / given[0]![1]) * after] as const)
+      : scale(given);
+  }
+  return next;
+}
+
+/** The value of the first key, over that of the second if there is one; null without one. */
+function quotient(values: Values, keys: readonly string[]): number | null {
+  const numbers = keys.map((key) => numberOf(values, key));
+  if (numbers[0] === null || numbers[0] === undefined) return null;
+  if (numbers.length < 2) return numbers[0];
+  return numbers[1] ? numbers[0] / numbers[1] : null;
+}
+
+function numberOf(values: Values, key: string): number | null {
+  const [contact, name] = key.split(".") as [string, string];
+  if (name === "kinetic") return kineticOf(values, contact);
+  if (name === "static") return staticOf(values, contact);
+  const value = valueOf(values, key);
+  return typeof value === "number" ? value : null;
+}
+
+/** How the core's numbers change with one key, a part of its value: the rate that withValue has. */
+export function direction(values: Values, key: string, part: number): Input {
+  const relative: Record<string, number> = { [key]: part };
+  for (const [other, quantity] of DRIVE) {
+    const [over, under] = quantity.follows ?? [];
+    if (over === undefined || other === key) continue;
+    const rate = (relative[over] ?? 0) - (under === undefined ? 0 : (relative[under] ?? 0));
+    if (rate) relative[other] = rate;
+  }
+  const of = (name: string): number => relative[name] ?? 0;
+  const input = coreInput(values);
+  const byRatio = values["drive.damping"] === undefined;
+  const drive: Record<string, number> = {
+    mass: of("drive.mass") * input.drive.mass!,
+    stiffness: of("drive.stiffness") * input.drive.stiffness!,
+    damping:
+      input.drive.damping! *
+      (byRatio
+        ? of("drive.damping_ratio") + (of("drive.mass") + of("drive.stiffness")) / 2
+        : of("drive.damping")),
+  };
+  const scaled = (rows: Rows, rate: number): Rows => rows.map(([, y]) => [0, rate * y] as const);
+  const curves: Record<string, Rows> = {};
+  for (const contact of ["plate", "finger"]) {
+    const curve = input.curves[contact];
+    // Of a curve the first force is the kinetic friction; without static friction that is it, too.
+    const kinetic = of(curve ? `${contact}.curve` : `${contact}.kinetic`);
+    const still = values[`${contact}.static`] === undefined ? kinetic : of(`${contact}.static`);
+    if (curve) curves[contact] = scaled(curve, kinetic);
+    drive[`${contact}.kinetic`] = kinetic * input.drive[`${contact}.kinetic`]!;
+    drive[`${contact}.static`] = still * input.drive[`${contact}.static`]!;
+  }
+  const stiffness = of("finger.stiffness");
+  if (stiffness) drive["finger.stiffness"] = stiffness * input.drive["finger.stiffness"]!;
+  const release: Record<string, number> = {};
+  for (const name of RELEASED) {
+    const rate = of(`motion.${name}`);
+    if (rate) release[name] = rate * input.release[name]!;
+  }
+  const profiles: Record<string, Rows> = {};
+  for (const name of OVER_TIME) {
+    profiles[name] = scaled(input.profiles[name]!, of(`motion.${name}`));
+  }
+  return { drive, curves, release, profiles };
+}
+
+/** The keys with a value of their own that is not 0, which derivatives and fits may change. */
+export function variedKeys(values: Values): string[] {
+  return [...DRIVE.keys()].filter((key) => {
+    if (key === "motion.duration" || key === "motion.settling_band") return false;
+    const value = values[key];
+    return value !== undefined && (isRows(value) ? value.some(([, y]) => y !== 0) : value !== 0);
+  });
+}
+
+export function settlingBand(values: Values): number {
+  return valueOf(values, "motion.settling_band") as number;
+}
+
+/** The plate's velocity in the housing at a time, m/s. */
+export function plateVelocity(values: Values, t: number): number {
+  const given = values[MOUSE];
+  if (!isRows(given)) return given ?? 0;
+  const after = given.findIndex(([time]) => time > t);
+  if (after === 0) return given[0]![1];
+  if (after < 0) return given[given.length - 1]![1];
+  const [[t0, y0], [t1, y1]] = [given[after - 1]!, given[after]!];
+  return y0 + ((y1 - y0) * (t - t0)) / (t1 - t0);
+}
+
+/** How far the plate went since the release, m. */
+export function plateDistance(values: Values, t: number): number {
+  const given = values[MOUSE];
+  if (!isRows(given)) return (given ?? 0) * t;
+  const times = [0, ...given.map(([time]) => time).filter((time) => time > 0 && time < t), t];
+  let sum = 0;
+  for (let i = 1; i < times.length; ++i) {
+    const [a, b] = [times[i - 1]!, times[i]!];
+    sum += ((plateVelocity(values, a) + plateVelocity(values, b)) / 2) * (b - a);
+  }
+  return sum;
+}

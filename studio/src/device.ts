@@ -1,0 +1,320 @@
+// Device files: TOML with units, read into the values of a drive and its release, and written again.
+// What is wrong is said in the lines that the command prints: file, key, value and bound.
+import {
+  MOUSE, Refusal, checkCurve, checkDrive, checkRows, checkSkin, checkStatic, checkStretch,
+  type Value, type Values,
+} from "./checks";
+import type { Row, Rows } from "./core";
+import { closest, floatRepr, general, quoted } from "./python";
+import { DRIVE, INPUTS, TABLES, columnsOf, required, type Quantity } from "./table";
+import { TomlError, isTable, parseToml, type TomlTable, type TomlValue } from "./toml";
+import { UnitError, toSi } from "./units";
+
+export interface Device {
+  readonly name: string;
+  readonly description: string;
+  /** Of the keys of DRIVE that are given. */
+  readonly values: Values;
+  /** The tables about the drive, as the file has them. */
+  readonly around: Readonly<Record<string, TomlTable>>;
+}
+
+/** A device file that cannot be used; `problems` holds one line each. */
+export class DeviceError extends Error {
+  constructor(readonly problems: readonly string[]) {
+    super(problems.join("\n"));
+  }
+}
+
+/** The text of a file, which begins with its own mark or not. Throws DeviceError. */
+export function decodeText(bytes: Uint8Array, file: string): string {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    if (bytes[0] === 0x89 && bytes[1] === 0x48 && bytes[2] === 0x44 && bytes[3] === 0x46) {
+      throw new DeviceError([
+        `${file}: is a NetCDF file; \`pindrive map\` draws one that a sweep wrote`,
+      ]);
+    }
+    throw new DeviceError([`${file}: is not UTF-8 text, at byte ${firstBadByte(bytes)}`]);
+  }
+}
+
+function firstBadByte(bytes: Uint8Array): number {
+  // The longest part that decodes, by halving: its end is where a character is broken.
+  let [good, bad] = [0, bytes.length];
+  const decodes = (end: number): boolean => {
+    try {
+      new TextDecoder("utf-8", { fatal: true }).decode(bytes.subarray(0, end), { stream: true });
+      return true;
+    } catch {
+      return false;
+    }
+  };
+  while (bad - good > 1) {
+    const middle = (good + bad) >> 1;
+    if (decodes(middle)) good = middle;
+    else bad = middle;
+  }
+  while (good > 0 && (bytes[good]! & 0xc0) === 0x80 && bytes[good - 1]! >= 0x80) --good;
+  return good;
+}
+
+/** The device that a file describes. `rows`: what stands in CSV files that it names, SI, by key. */
+export function readDevice(
+  text: string, file: string, rows: Readonly<Record<string, Rows>> = {},
+): Device {
+  return new Reader(readTables(text, file), file, rows).device();
+}
+
+function readTables(text: string, file: string): TomlTable {
+  if (!text.trim()) {
+    throw new DeviceError([`${file}: is empty; \`pindrive init FILE\` writes a device file`]);
+  }
+  try {
+    return parseToml(text);
+  } catch (error) {
+    if (!(error instanceof TomlError)) throw error;
+    const unquoted = error.message.includes("Expected newline");
+    const hint = unquoted ? "; a value with a unit stands in quotes" : "";
+    throw new DeviceError([`${file}: is not valid TOML: ${error.message}${hint}`]);
+  }
+}
+
+class Reader {
+  private readonly tables: Record<string, TomlTable> = {};
+  private readonly problems: string[] = [];
+  private readonly values: Record<string, Value | null> = {};
+
+  constructor(
+    private readonly given: TomlTable,
+    private readonly file: string,
+    private readonly rows: Readonly<Record<string, Rows>>,
+  ) {
+    this.refuseStudy();
+    const flat = TABLES.tables.filter((name) => name in given && !isTable(given[name]));
+    if (flat.length) {
+      throw new DeviceError(
+        flat.map((name) => `${file}: ${name} must be a table, [${name}], got ${quoted(given[name])}`),
+      );
+    }
+    for (const name of TABLES.tables) this.tables[name] = (given[name] ?? {}) as TomlTable;
+  }
+
+  private refuseStudy(): void {
+    const found = TABLES.studyKeys.filter((key) => key in this.given);
+    if (!found.length) return;
+    const shown = found.slice(0, 2).map((key) => (isTable(this.given[key]) ? `[${key}]` : key));
+    throw new DeviceError([
+      `${this.file}: is a study file, as it has ${shown.join(" and ")}; \`pindrive sweep\`, ` +
+        "`sensitivity` and `robustness` take it",
+    ]);
+  }
+
+  device(): Device {
+    const { file, tables, problems } = this;
+    const whole = TABLES.around.some((name) => Object.keys(tables[name]!).length > 0);
+    const unknown = this.unknownKeys();
+    const meant = new Set(unknown.map((key) => nearest(key)));
+    for (const key of unknown) problems.push(`${file}: ${notKnown(key)}`);
+    this.checkDamping(meant);
+    this.checkTexts();
+    const hand = whole && !("mouse_velocity" in tables.motion!);
+    if (hand) meant.add("motion.mouse_velocity");
+    const before = problems.length;
+    this.readValues(whole ? TABLES.tables : TABLES.alone, meant);
+    if (hand) this.values["motion.mouse_velocity"] = this.values["scan.hand_speed"] ?? null;
+    this.checkContacts();
+    const complete = problems.length === before;
+    if (complete || this.allRead(whole)) this.checkTogether();
+    if (problems.length) throw new DeviceError(problems);
+    this.attempt(() => checkDrive(this.values), "");
+    if (problems.length) throw new DeviceError(problems);
+    const of = tables.device!;
+    const given = [...DRIVE.keys()].filter((key) => this.isGiven(key) || (hand && key === MOUSE));
+    return {
+      name: String(of.name ?? ""),
+      description: String(of.description ?? ""),
+      values: Object.fromEntries(given.map((key) => [key, this.values[key]!])),
+      around: Object.fromEntries(
+        TABLES.around.filter((name) => name in this.given).map((name) => [name, tables[name]!]),
+      ),
+    };
+  }
+
+  private isGiven(key: string): boolean {
+    const [table, name] = split(key);
+    return name in this.tables[table]!;
+  }
+
+  private allRead(whole: boolean): boolean {
+    const names = whole ? TABLES.tables : TABLES.alone;
+    return [...INPUTS.keys()].every((key) => !names.includes(split(key)[0]) || key in this.values);
+  }
+
+  private unknownKeys(): string[] {
+    const unknown = Object.keys(this.given).filter((name) => !TABLES.tables.includes(name));
+    const full = TABLES.tables.flatMap((table) =>
+      Object.keys(this.tables[table]!).map((name) => `${table}.${name}`),
+    );
+    return [...unknown, ...full.filter((key) => !TABLES.keys.includes(key))];
+  }
+
+  private checkDamping(meant: ReadonlySet<string | undefined>): void {
+    const keys = ["drive.damping", "drive.damping_ratio"];
+    const given = keys.filter((key) => this.isGiven(key));
+    if (given.length === 1 || (!given.length && keys.some((key) => meant.has(key)))) return;
+    const found = given.length ? "both" : "neither";
+    this.problems.push(`${this.file}: give exactly one of ${keys.join(" and ")}, got ${found}`);
+  }
+
+  private checkTexts(): void {
+    for (const name of ["name", "description"]) {
+      const value = this.tables.device![name] ?? "";
+      if (typeof value === "string") continue;
+      this.problems.push(
+        `${this.file}: device.${name} must be text in quotes, got ${quoted(value)}`,
+      );
+    }
+  }
+
+  private readValues(names: readonly string[], meant: ReadonlySet<string | undefined>): void {
+    for (const [key, quantity] of INPUTS) {
+      const [table, name] = split(key);
+      if (!names.includes(table)) continue;
+      const alternative = split(quantity.alternative ?? ".")[1];
+      if (this.isGiven(key)) {
+        this.attempt(() => {
+          this.values[key] = this.rows[key] ?? readValue(this.tables[table]![name]!, quantity);
+        });
+      } else if (!quantity.mandatory || alternative in this.tables[table]!) {
+        this.values[key] = quantity.absent ?? null;
+      } else if (!meant.has(key) && !meant.has(quantity.alternative ?? "-")) {
+        this.problems.push(`${this.file}: ${key} is missing; write ${quantity.line} in [${table}]`);
+      }
+    }
+  }
+
+  /** Adds what a check refuses, with the place of `key`, of which its label may be the last part. */
+  private attempt(check: () => void, key = ""): void {
+    try {
+      check();
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      const own = error.label.split("[")[0]!;
+      const full = key.endsWith(`.${own}`) ? key : own;
+      this.problems.push(`${this.file}: ${full}${error.message.slice(own.length)}`);
+    }
+  }
+
+  private checkContacts(): void {
+    for (const table of ["plate", "finger"]) {
+      const [curve, still] = [this.values[`${table}.curve`], this.values[`${table}.static`]];
+      let kinetic = this.values[`${table}.kinetic`];
+      if (Array.isArray(curve)) {
+        const rows = curve as Rows;
+        kinetic ??= rows[0]![1];
+        this.attempt(() => checkCurve(rows, kinetic as number), `${table}.curve`);
+      }
+      if (typeof still === "number" && typeof kinetic === "number") {
+        this.attempt(() => checkStatic(still, kinetic as number), `${table}.static`);
+      }
+    }
+  }
+
+  private checkTogether(): void {
+    this.attempt(() => checkSkin(this.values), "finger.curve");
+    this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
+  }
+}
+
+function split(key: string): [string, string] {
+  const dot = key.indexOf(".");
+  return dot < 0 ? [key, ""] : [key.slice(0, dot), key.slice(dot + 1)];
+}
+
+// ---- names ---------------------------------------------------------------------------------------
+
+/** The known table or key most like `key`. */
+function nearest(key: string): string | undefined {
+  const names = new Map<string, string>();
+  for (const known of [...TABLES.keys].reverse()) names.set(split(known)[1], known);
+  if (!key.includes(".")) for (const table of TABLES.tables) names.set(table, table);
+  const dot = key.lastIndexOf(".");
+  const [table, name] = [key.slice(0, Math.max(dot, 0)), key.slice(dot + 1)];
+  const all = [...names.keys()];
+  const here = all.filter((known) => TABLES.keys.includes(`${table}.${known}`));
+  const near = closest(key, TABLES.keys, 0.8) ?? closest(name, here) ?? closest(name, all, 0.7);
+  return near === undefined ? undefined : (names.get(near) ?? near);
+}
+
+function notKnown(key: string): string {
+  if (key === "plate.stiffness") {
+    return `${key} cannot be given, the plate is rigid; skin gives way by finger.stiffness`;
+  }
+  const near = nearest(key);
+  const said = /^[\w.-]{1,60}$/u.test(key) ? key : quoted(key);
+  if (near) return `unknown key ${said}; did you mean ${near}?`;
+  const known = TABLES.keys.filter((other) => other.startsWith(`${split(key)[0]}.`));
+  return `unknown key ${said}; there are ${(known.length ? known : TABLES.tables).join(", ")}`;
+}
+
+// ---- values ----------------------------------------------------------------------------------------
+
+function readValue(value: TomlValue, quantity: Quantity): Value {
+  if (quantity.rowsOf === "profile" && typeof value === "string" && /\.csv\s*$/i.test(value)) {
+    const words = "a value or rows in a page, which may open no files (`pindrive studio FILE` reads it)";
+    throw new Refusal(quantity.key, words, quoted(value));
+  }
+  if (quantity.rows && (Array.isArray(value) || !quantity.mayBeConstant)) {
+    return readRows(value, quantity);
+  }
+  return readNumber(value, quantity, quantity.usual ?? "", quantity.key);
+}
+
+/** A number from text with a unit, or a bare one where the quantity has no unit. Throws in words. */
+export function readNumber(
+  value: TomlValue, quantity: Quantity, example: string, label: string,
+): number {
+  const bare = typeof value === "bigint" ? String(value) : typeof value === "number" ? floatRepr(value) : "";
+  let found: number;
+  try {
+    found = toSi(typeof value === "string" ? value : bare, quantity.unit || "1", example);
+  } catch (error) {
+    if (!(error instanceof UnitError)) throw error;
+    throw new Refusal(label, error.message, quoted(value));
+  }
+  const words = required(quantity, found);
+  if (words) throw new Refusal(label, words, quoted(value));
+  return found;
+}
+
+/** A value as a design has it: "22 mN". */
+function usualOf(quantity: Quantity, value: number): string {
+  return `${general(value * quantity.displayScale, 12)} ${quantity.displayUnit ?? ""}`.trimEnd();
+}
+
+function readRows(value: TomlValue, quantity: Quantity): Rows {
+  const key = quantity.key;
+  const [across, along] = columnsOf(quantity);
+  const [first, second] = TABLES.columns[quantity.rowsOf!]!.map((name) => name.split(".").pop()!) as [
+    string, string,
+  ];
+  const last = quantity.rows![quantity.rows!.length - 1]!;
+  const examples = [usualOf(across, last[0]), usualOf(quantity, last[1])] as const;
+  if (!Array.isArray(value) || !value.length) {
+    throw new Refusal(key, `rows, like ${quantity.usualRows}`, quoted(value));
+  }
+  const rows = value.map((row, i): Row => {
+    if (!Array.isArray(row) || row.length !== 2) {
+      const like = examples.map((example) => quoted(example)).join(", ");
+      throw new Refusal(`${key}[${i}]`, `a ${first} and a ${second}, like ${like}`, quoted(row));
+    }
+    return [
+      readNumber(row[0]!, across, examples[0], `${key}[${i}] ${first}`),
+      readNumber(row[1]!, along, examples[1], `${key}[${i}] ${second}`),
+    ];
+  });
+  if (quantity.rowsOf !== "places") checkRows(rows, quantity);
+  return rows;
+}

@@ -1,0 +1,61 @@
+// Elements made in one call, and files given to the person at the page.
+
+type Child = Node | string | null | false;
+type Properties = Readonly<Record<string, unknown>>;
+
+/** An element with properties ("class", "on…" listeners, "aria-…" attributes) and children. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K, properties: Properties = {}, ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) {
+      element.addEventListener(name.slice(2), value as EventListener);
+    } else {
+      element.setAttribute(name, value === true ? "" : String(value));
+    }
+  }
+  element.append(...children.filter((child) => child !== null && child !== false));
+  return element;
+}
+
+export function button(text: string, title: string, action: () => void): HTMLButtonElement {
+  return h("button", { type: "button", title, onclick: action }, text);
+}
+
+export function option(value: string, text: string, selected = false): HTMLOptionElement {
+  return h("option", { value, selected }, text);
+}
+
+/** A card: a part of the page with its heading. */
+export function card(name: string, title: string, ...children: Node[]): HTMLElement {
+  const id = `${name}-title`;
+  return h("section", { class: `card ${name}`, "aria-labelledby": id }, h("h2", { id }, title), ...children);
+}
+
+/** A symbol of the table, "F_p,s", with its index below. */
+export function symbol(text: string): HTMLElement {
+  const [, base, index, rest] = /^([^_(]*)(?:_([^(]*))?(.*)$/.exec(text)!;
+  return h("i", {}, base!, index ? h("sub", {}, index) : null, rest!);
+}
+
+/** Replaces the children, if their text or number is another. */
+export function refill(parent: Element, children: readonly Node[]): void {
+  parent.replaceChildren(...children);
+}
+
+/** Gives a file to the person at the page. */
+export function download(name: string, content: BlobPart, type: string): void {
+  const url = URL.createObjectURL(new Blob([content], { type }));
+  const link = h("a", { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/** A name of a file from a title. */
+export function fileName(title: string): string {
+  return title.trim().toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-+|-+$/g, "") || "design";
+}

@@ -1,0 +1,75 @@
+// A map computed: the numbers of each point, and whether they keep the limits.
+import type { Core, Input, Rows } from "./core";
+
+export const SIZE = 64;
+
+/** A number over the grid: x[i] times y[j]; x fastest, rows from the smallest y. */
+export interface Product {
+  readonly x: Float64Array;
+  readonly y: Float64Array;
+}
+
+export interface MapTask {
+  readonly input: Input;
+  readonly varied: Readonly<Record<string, Product>>;
+  /** Of friction curves that grow with an axis: what their forces are multiplied by. */
+  readonly curves: Readonly<Record<string, Product>>;
+  readonly band: number;
+  /** The place of the number among the core's, and the limits on others. */
+  readonly number: number;
+  readonly limits: readonly { readonly number: number; readonly atMost: number; readonly atLeast: number }[];
+}
+
+export interface MapResult {
+  readonly values: Float64Array;
+  /** 1 where every limit is kept. */
+  readonly met: Uint8Array;
+  /** What it took, ms. */
+  readonly took: number;
+}
+
+/** Computes a map. */
+export function computeMap(core: Core, task: MapTask): MapResult {
+  const begin = performance.now();
+  const points = SIZE * SIZE;
+  const width = core.numberNames.length;
+  const numbers = Object.keys(task.curves).length
+    ? pointByPoint(core, task, points)
+    : core.batch(task.input, expanded(task.varied), points, task.band).numbers;
+  const values = new Float64Array(points);
+  const met = new Uint8Array(points);
+  for (let p = 0; p < points; ++p) {
+    values[p] = numbers[p * width + task.number]!;
+    const kept = task.limits.every(({ number, atMost, atLeast }) => {
+      const value = numbers[p * width + number]!;
+      return value <= atMost && value >= atLeast;
+    });
+    met[p] = kept ? 1 : 0;
+  }
+  return { values, met, took: performance.now() - begin };
+}
+
+export function expanded(products: Readonly<Record<string, Product>>): Record<string, Float64Array> {
+  const grid = ({ x, y }: Product): Float64Array =>
+    Float64Array.from({ length: SIZE * SIZE }, (_, p) => x[p % SIZE]! * y[Math.floor(p / SIZE)]!);
+  return Object.fromEntries(Object.entries(products).map(([name, product]) => [name, grid(product)]));
+}
+
+/** A batch varies no curves: there each point is a batch of its own. */
+function pointByPoint(core: Core, task: MapTask, points: number): Float64Array {
+  const width = core.numberNames.length;
+  const numbers = new Float64Array(points * width);
+  const [scales, varied] = [expanded(task.curves), expanded(task.varied)];
+  for (let p = 0; p < points; ++p) {
+    const curves: Record<string, Rows> = { ...task.input.curves };
+    for (const [contact, scale] of Object.entries(scales)) {
+      curves[contact] = curves[contact]!.map(([speed, force]) => [speed, force * scale[p]!] as const);
+    }
+    const at = Object.entries(varied).map(([name, column]) => [name, column.slice(p, p + 1)] as const);
+    const changed = at.map(([name, column]) => [name, column[0]!] as const);
+    const drive = { ...task.input.drive, ...Object.fromEntries(changed.filter(([name]) => name in task.input.drive)) };
+    const one = core.batch({ ...task.input, drive, curves }, Object.fromEntries(at), 1, task.band);
+    numbers.set(one.numbers, p * width);
+  }
+  return numbers;
+}

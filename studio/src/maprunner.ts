@@ -1,0 +1,85 @@
+// The map kept up to date: the newest task goes to a thread of its own as soon as that is idle.
+import type { Values } from "./checks";
+import { withValue } from "./design";
+import type { Core } from "./core";
+import { axesOf, mapTask } from "./map";
+import { computeMap, type MapResult, type MapTask } from "./mapgrid";
+import { MapView } from "./mapview";
+import { currentDesign, type State } from "./state";
+import type { Look } from "./theme";
+
+declare const MAP_WORKER: string; // the text of mapworker.ts, which the build puts here
+
+export class MapRunner {
+  /** The last map, and what was asked for it. */
+  last: MapResult | null = null;
+  task: MapTask | null = null;
+  private readonly view: MapView;
+  private worker: Worker | null = null;
+  private busy = false;
+  private next: (() => MapTask) | null = null;
+  private state: State | null = null;
+
+  constructor(
+    private readonly core: Core, wasm: ArrayBuffer, look: Look,
+    change: (values: Values, kind: string) => void,
+  ) {
+    this.view = new MapView(look, (x, y) => {
+      const { map } = this.state!;
+      const { values } = currentDesign(this.state!);
+      change(withValue(withValue(values, map.x, x), map.y, y), "map");
+    });
+    try {
+      this.worker = new Worker(URL.createObjectURL(new Blob([MAP_WORKER], { type: "text/javascript" })));
+      this.worker.addEventListener("message", ({ data }: MessageEvent<MapResult>) => this.answered(data));
+      this.worker.addEventListener("error", () => (this.worker = null)); // then it is computed here
+      this.worker.postMessage({ wasm });
+    } catch {
+      this.worker = null;
+    }
+  }
+
+  get element(): HTMLElement {
+    return this.view.element;
+  }
+
+  setLook(look: Look): void {
+    this.view.setLook(look);
+  }
+
+  update(state: State): void {
+    this.state = state;
+    const { values } = currentDesign(state);
+    const { x, y } = state.map;
+    const axes = axesOf(values, x, y);
+    const limits = Object.entries(state.specification).map(([name, { atMost, atLeast }]) => ({
+      number: this.core.numberNames.indexOf(name), atMost: atMost ?? Infinity, atLeast: atLeast ?? -Infinity,
+    }));
+    this.view.show({
+      x, y, axes, number: state.number, limited: limits.length > 0,
+      at: [values[x] as number, values[y] as number],
+    });
+    this.next = () => mapTask(values, x, y, axes, this.core.numberNames.indexOf(state.number), limits);
+    setTimeout(() => this.send()); // after what is seen at once
+  }
+
+  private send(): void {
+    if (this.busy || !this.next) return;
+    const task = (this.task = this.next());
+    this.next = null;
+    if (this.worker) {
+      this.busy = true;
+      this.worker.postMessage({ task });
+    } else {
+      this.answered(computeMap(this.core, task));
+    }
+  }
+
+  private answered(result: MapResult): void {
+    this.busy = false;
+    this.last = result;
+    this.view.setResult(result);
+    this.view.element.dataset.took = result.took.toFixed(3);
+    this.send();
+  }
+}

@@ -1,0 +1,13 @@
+// A thread that computes maps: it is sent the core's program first, then tasks.
+import { Core } from "./core";
+import { computeMap, type MapTask } from "./mapgrid";
+
+let core: Promise<Core> | undefined;
+
+addEventListener("message", ({ data }: MessageEvent<{ wasm: ArrayBuffer } | { task: MapTask }>) => {
+  if ("wasm" in data) {
+    core = Core.load(data.wasm);
+    return;
+  }
+  void core?.then((ready) => postMessage(computeMap(ready, data.task)));
+});

@@ -1,0 +1,338 @@
+// The page: the state, what is computed of it at each change, and the parts that show it.
+import { Animation } from "./animation";
+import { Charts } from "./charts";
+import { problemOf, type Values } from "./checks";
+import { CoreError, type Core } from "./core";
+import { DeviceError, decodeText, readDevice } from "./device";
+import { Designs } from "./designs";
+import { button, card, download, fileName, h, option } from "./dom";
+import { figureSvg, pngOf } from "./figure";
+import { acceptDrops, choose, type Given } from "./files";
+import { fit, fitOffset } from "./fit";
+import { FitPanel } from "./fitpanel";
+import { MapControls, mapKeys } from "./mapcontrols";
+import { MapRunner } from "./maprunner";
+import { Panel } from "./panel";
+import { PhasePlane } from "./phaseplane";
+import { Player } from "./player";
+import { RecordingError, readRecording } from "./recording";
+import { Bars, EventsTable, NumbersTable, effects, sentence } from "./results";
+import { simulateAll } from "./sample";
+import { History, currentDesign, toHash, withDesign, type State } from "./state";
+import { NUMBERS } from "./table";
+import { currentLook, setScheme, type Scheme } from "./theme";
+import { currentCurves, currentValues, type Line, type Overlay, type View } from "./view";
+import { deviceFile, eventsCsv, samplesCsv } from "./write";
+
+export class Page {
+  readonly history: History;
+  view!: View;
+  private overlay: Overlay | null = null;
+  private look = currentLook();
+  private asked = false;
+  private linkTimer = 0;
+  private readonly charts: Charts;
+  private readonly phase: PhasePlane;
+  private readonly animation: Animation;
+  private readonly player: Player;
+  private readonly panel = new Panel((values, kind) => this.setValues(values, kind));
+  private readonly designs = new Designs((state, kind) => this.change(state, kind));
+  private readonly controls = new MapControls((state, kind) => this.change(state, kind));
+  private readonly numbers = new NumbersTable((number) => this.change({ ...this.state, number }, ""));
+  private readonly events = new EventsTable((time) => this.setCursor(time));
+  private readonly bars = new Bars();
+  private readonly map: MapRunner;
+  private readonly fitting: FitPanel;
+  private readonly words = h("p", { id: "summary", role: "status" });
+  private readonly problem = h("pre", { id: "problem", role: "alert", hidden: true });
+  private readonly undo = button("Undo", "Undo (Ctrl+Z)", () => this.step("undo"));
+  private readonly redo = button("Redo", "Redo (Ctrl+Shift+Z)", () => this.step("redo"));
+
+  constructor(readonly core: Core, wasm: ArrayBuffer, state: State) {
+    this.history = new History(state);
+    this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
+    this.phase = new PhasePlane(this.look);
+    this.animation = new Animation(this.look);
+    this.player = new Player((time) => this.setCursor(time), () => ({ curves: currentCurves(this.view), end: this.view.end }));
+    this.map = new MapRunner(core, wasm, this.look, (values, kind) => this.setValues(values, kind));
+    this.fitting = new FitPanel({
+      open: () => choose(".csv,.txt", (file) => void this.takeFile(file)),
+      remove: () => this.setOverlay(null),
+      offset: (offset) => this.setOverlay({ ...this.overlay!, offset }),
+      fitOffset: () => this.setOverlay({ ...this.overlay!, offset: fitOffset(this.core, this.overlay!.recording, currentValues(this.view)) }),
+      fit: (keys, freeOffset) => this.fit(keys, freeOffset),
+    });
+    acceptDrops((file) => void this.takeFile(file));
+    document.addEventListener("keydown", (event) => this.key(event));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.setLook());
+  }
+
+  get state(): State {
+    return this.history.now;
+  }
+
+  mount(parent: HTMLElement): void {
+    const main = h(
+      "main", { id: "main" },
+      this.problem,
+      h("div", { class: "column" },
+        card("curves", "Motion", this.words, this.player.element, this.charts.element, legend()),
+        card("bars-card", "Derivatives", this.bars.element),
+        card("events", "Events", this.events.element)),
+      h("div", { class: "columns" },
+        h("div", { class: "column" },
+          card("device-view", "Device", this.animation.element),
+          card("plane", "Phase plane", this.phase.element),
+          card("fit-card", "Recording", this.fitting.element)),
+        h("div", { class: "column" },
+          card("map-card", "Map", this.controls.element, this.map.element, this.controls.specification),
+          card("numbers", "Numbers", this.numbers.element))),
+    );
+    const aside = h("aside", { "aria-label": "designs and parameters" },
+      
+      card("designs-card", "Designs", this.designs.element), card("parameters-card", "Parameters", this.panel.element));
+    parent.append(this.header(), h("div", { class: "layout" }, aside, main));
+    this.render();
+  }
+
+  // ---- changes -----------------------------------------------------------------------------------
+
+  change(next: State, kind: string): void {
+    this.history.change(next, kind, performance.now());
+    this.ask();
+  }
+
+  setValues(values: Values, kind: string): void {
+    this.change(withDesign(this.state, { values }), kind);
+  }
+
+  setCursor(time: number, fromCharts = false): void {
+    const cursor = Math.min(Math.max(time, 0), this.view.end);
+    this.history.replace({ ...this.state, cursor });
+    this.view = { ...this.view, state: this.state };
+    if (!fromCharts) this.charts.setCursor(cursor);
+    this.phase.update(this.view);
+    this.animation.update(this.view);
+    this.player.update(this.view);
+  }
+
+  setOverlay(overlay: Overlay | null): void {
+    this.overlay = overlay;
+    this.ask();
+  }
+
+  /** Loads the text of a device file as a new design; what is wrong is said at the top. */
+  load(given: Given, replace: boolean): boolean {
+    try {
+      const device = readDevice(given.text, given.file, given.rows);
+      const problem = problemOf(device.values);
+      if (problem) throw new DeviceError([problem]);
+      const design = { ...device, name: device.name || given.file.replace(/\.toml$/i, ""), shown: true };
+      const { designs } = this.state;
+      const next = replace ? [design] : [...designs, design];
+      this.change({ ...this.state, designs: next, current: next.length - 1 }, "");
+      this.say("");
+      return true;
+    } catch (error) {
+      if (!(error instanceof DeviceError)) throw error;
+      this.say(error.message);
+      return false;
+    }
+  }
+
+  async takeFile(file: File): Promise<void> {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    try {
+      const text = decodeText(bytes, file.name);
+      if (/\.(csv|txt)$/i.test(file.name)) {
+        const recording = readRecording(text, file.name);
+        this.fitting.setResult(null);
+        this.setOverlay({ recording, offset: Math.max(0, recording.times[0]!) });
+        this.say("");
+      } else {
+        this.load({ file: file.name, text, rows: {} }, false);
+      }
+    } catch (error) {
+      if (!(error instanceof RecordingError || error instanceof DeviceError)) throw error;
+      this.say(error.message);
+    }
+  }
+
+  private fit(keys: readonly string[], freeOffset: boolean): void {
+    if (!this.overlay || (!keys.length && !freeOffset)) {
+      this.say("choose at least one parameter, or the time of the release, to be fitted");
+      return;
+    }
+    try {
+      const found = fit(this.core, this.overlay.recording, currentValues(this.view), keys, this.overlay.offset, freeOffset);
+      this.overlay = { ...this.overlay, offset: found.offset };
+      this.fitting.setResult(found);
+      this.setValues(found.values, "");
+      this.say("");
+    } catch (error) {
+      if (!(error instanceof CoreError)) throw error;
+      this.say(error.message);
+    }
+  }
+
+  private step(which: "undo" | "redo"): void {
+    this.history[which]();
+    this.ask();
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    const typing = target.matches("input[type=text], textarea, select");
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !typing) {
+      event.preventDefault();
+      this.step(event.shiftKey ? "redo" : "undo");
+    } else if (event.key === " " && !typing && !target.closest("button, input, summary, select, textarea")) {
+      event.preventDefault();
+      this.player.toggle();
+    }
+  }
+
+  private say(problem: string): void {
+    this.problem.textContent = problem;
+    this.problem.hidden = problem === "";
+  }
+
+  // ---- what is shown -----------------------------------------------------------------------------
+
+  private ask(): void {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.render();
+    });
+  }
+
+  /** Computes everything anew and draws it, but for the map, whose thread answers later. */
+  render(): void {
+    const state = this.settled(this.state);
+    this.history.replace(state);
+    const { lines, end } = this.lines(state);
+    this.history.replace({ ...state, cursor: Math.min(state.cursor, end) });
+    this.view = { state: this.state, lines, end, overlay: this.overlay };
+    this.charts.update(this.view);
+    this.phase.update(this.view);
+    this.animation.update(this.view);
+    this.player.update(this.view);
+    this.numbers.update(this.view);
+    this.events.update(this.view);
+    this.panel.update(currentValues(this.view));
+    this.designs.update(state, this.look);
+    this.controls.update(state);
+    this.fitting.update(currentValues(this.view), this.overlay);
+    this.words.textContent = sentence(this.view, (status) => this.core.statusText(status));
+    const curves = currentCurves(this.view);
+    const number = NUMBERS.get(state.number)!;
+    this.bars.update(
+      curves ? effects(this.core, currentValues(this.view), state.number, curves.duration) : [],
+      number, curves?.numbers[state.number] ?? NaN,
+    );
+    this.map.update(state);
+    this.undo.disabled = !this.history.canUndo;
+    this.redo.disabled = !this.history.canRedo;
+    document.title = `${currentDesign(state).name || "design"} – pindrive studio`;
+    clearTimeout(this.linkTimer);
+    this.linkTimer = window.setTimeout(() => void this.link(), 700);
+  }
+
+  /** The axes of the map must be numbers of the current design. */
+  private settled(state: State): State {
+    const keys = mapKeys(state);
+    const x = keys.includes(state.map.x) ? state.map.x : keys[0]!;
+    const y = keys.includes(state.map.y) && state.map.y !== x ? state.map.y : keys.find((key) => key !== x)!;
+    return x === state.map.x && y === state.map.y ? state : { ...state, map: { x, y } };
+  }
+
+  private lines(state: State): { lines: Line[]; end: number } {
+    const shown: Omit<Line, "result">[] = [
+      { name: currentDesign(state).name || "current", kind: "current", values: currentDesign(state).values, index: state.current },
+      ...(state.ghost ? [{ name: "ghost", kind: "ghost" as const, values: state.ghost, index: -1 }] : []),
+      ...state.designs.flatMap((design, index) =>
+        design.shown && index !== state.current ? [{ name: design.name, kind: "other" as const, values: design.values, index }] : []),
+    ];
+    const { end, found } = simulateAll(this.core, shown.map(({ values }) => values), null);
+    return { lines: shown.map((line, i) => ({ ...line, result: found[i]! })), end };
+  }
+
+  private setLook(): void {
+    this.look = currentLook();
+    for (const part of [this.charts, this.phase, this.animation, this.map]) part.setLook(this.look);
+    this.ask();
+  }
+
+  async link(): Promise<string> {
+    const hash = await toHash(this.state);
+    history.replaceState(null, "", `#${hash}`);
+    return location.href;
+  }
+
+  // ---- the head of the page ------------------------------------------------------------------------
+
+  private header(): HTMLElement {
+    const scheme = h("select", { id: "scheme", "aria-label": "colours" }, option("auto", "auto"), option("light", "light"), option("dark", "dark"));
+    scheme.addEventListener("change", () => {
+      setScheme(scheme.value as Scheme);
+      this.setLook();
+    });
+    const save = h("select", { id: "save", "aria-label": "save as" }, option("", "Save as …"),
+      option("toml", "Device file (TOML)"), option("csv", "Samples (CSV)"), option("events", "Events (CSV)"),
+      option("svg", "Curves (SVG)"), option("png", "Curves (PNG)"), option("link", "Link to this state"));
+    save.addEventListener("change", () => {
+      void this.save(save.value);
+      save.value = "";
+    });
+    return h(
+      "header", {},
+      h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); document.getElementById("main")!.scrollIntoView(); } }, "To the curves"),
+      h("h1", {}, "pindrive studio"),
+      h("div", { class: "buttons" },
+        button("Open …", "A device file (TOML) or a recording (CSV)", () => choose(".toml,.csv,.txt", (file) => void this.takeFile(file))),
+        save, this.undo, this.redo, scheme),
+    );
+  }
+
+  async save(kind: string): Promise<void> {
+    const design = currentDesign(this.state);
+    const name = fileName(design.name);
+    const curves = currentCurves(this.view);
+    if (kind === "toml") download(`${name}.toml`, deviceFile(design), "application/toml");
+    if (kind === "csv" && curves) download(`${name}.csv`, samplesCsv(this.evenly()), "text/csv");
+    if (kind === "events" && curves) download(`${name}-events.csv`, eventsCsv(curves), "text/csv");
+    if (kind === "svg") download(`${name}.svg`, figureSvg(this.view, design.name), "image/svg+xml");
+    if (kind === "png") download(`${name}.png`, await pngOf(figureSvg(this.view, design.name)), "image/png");
+    if (kind === "link") {
+      const link = await this.link();
+      try {
+        await navigator.clipboard.writeText(link);
+        this.say("");
+        this.words.textContent = "The link is in the clipboard.";
+      } catch {
+        this.words.textContent = "The link is in the address bar.";
+      }
+    }
+  }
+
+  /** The current design at even times, each once: a recording has no time twice. */
+  private evenly(): NonNullable<ReturnType<typeof currentCurves>> {
+    const curves = currentCurves(this.view)!;
+    const keep = curves.times.map((time, i) => (i > 0 && time === curves.times[i - 1] ? 0 : 1));
+    const thin = (column: Float64Array): Float64Array => column.filter((_, i) => keep[i] === 1);
+    const columns = Object.fromEntries(Object.entries(curves.columns).map(([name, column]) => [name, thin(column)]));
+    return { ...curves, times: thin(curves.times), columns };
+  }
+}
+
+/** What the signs in the plots mean. */
+function legend(): HTMLElement {
+  const entry = (classes: string, words: string): HTMLElement => h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
+  return h("p", { class: "legend note" },
+    entry("swatch carried", "carried by the plate"), entry("swatch resting", "resting on the finger"), entry("swatch gripping", "gripped by skin"),
+    entry("mark stick plate", "sticks"), entry("mark slip plate", "breaks loose"), entry("mark cross plate", "reverses"),
+    h("span", {}, "filled at the plate, open at the finger"));
+}
+

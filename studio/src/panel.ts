@@ -1,0 +1,223 @@
+// The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
+import { problemOf, type Value, type Values } from "./checks";
+import { isRows, valueOf, withValue } from "./design";
+import { readNumber } from "./device";
+import { h, symbol } from "./dom";
+import { partOf, rangeOf, valueAt, type Range } from "./range";
+import { DRIVE, TABLES, columnsOf, plausible, text, unitOf, type Quantity } from "./table";
+import { fieldText, written } from "./write";
+
+const GROUPS: readonly (readonly [string, string])[] = [
+  ["drive", "Drive"], ["plate", "Plate"], ["finger", "Finger"], ["motion", "Release"],
+];
+const STEPS = 1000;
+
+type Change = (values: Values, kind: string) => void;
+
+interface Control {
+  readonly element: HTMLElement;
+  readonly update: (values: Values) => void;
+}
+
+export class Panel {
+  readonly element = h("div", { class: "parameters" });
+  private readonly controls: Control[] = [];
+  private values: Values = {};
+
+  constructor(private readonly change: Change) {
+    for (const [table, title] of GROUPS) {
+      const rows = [...DRIVE.values()]
+        .filter((quantity) => quantity.key.startsWith(`${table}.`))
+        .map((quantity) => (quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity)));
+      this.controls.push(...rows);
+      this.element.append(
+        h("details", { open: true }, h("summary", {}, title), ...rows.map(({ element }) => element)),
+      );
+    }
+  }
+
+  update(values: Values): void {
+    this.values = values;
+    for (const control of this.controls) control.update(values);
+  }
+
+  private set(key: string, value: Value | null, kind: string): void {
+    this.change(withValue(this.values, key, value), kind);
+  }
+
+  /** A number, which may be left out unless it is mandatory, and may be rows where those exist. */
+  private number(quantity: Quantity): Control {
+    const { key } = quantity;
+    const id = key.replace(".", "-");
+    const unit = unitOf(quantity);
+    const slider = h("input", {
+      type: "range", id: `${id}-slider`, min: 0, max: STEPS, step: 1,
+      "aria-label": `${nameOf(quantity)}, ${quantity.meaning}`,
+    });
+    const field = h("input", {
+      type: "text", id, inputmode: "decimal", autocomplete: "off", spellcheck: "false",
+      "aria-describedby": `${id}-note`,
+    });
+    const note = h("p", { class: "problem", id: `${id}-note`, role: "status" });
+    const rows = quantity.rows ? rowsEditor(quantity, (value) => this.set(key, value, "")) : null;
+    let range: Range = rangeOf(quantity, 0);
+    const optional = !quantity.mandatory && !partner(key);
+    const given = optional
+      ? h("input", { type: "checkbox", id: `${id}-given`, "aria-label": `give ${nameOf(quantity)}` })
+      : null;
+
+    const type = (content: string): void => {
+      try {
+        const bare = /^[\s+\-−]?[\d.]+(e[+-]?\d+)?\s*$/i.test(content.trim());
+        const value = readNumber(bare && unit ? `${content.trim()} ${quantity.displayUnit}` : content.trim(), quantity, quantity.usual!, key);
+        const problem = problemOf(withValue(this.values, key, value));
+        note.textContent = problem;
+        if (!problem) this.set(key, value, "");
+      } catch (error) {
+        note.textContent = (error as Error).message;
+      }
+      field.setAttribute("aria-invalid", String(note.textContent !== ""));
+    };
+    field.addEventListener("change", () => type(field.value));
+    slider.addEventListener("input", () => {
+      const value = valueAt(range, Number(slider.value) / STEPS);
+      const problem = problemOf(withValue(this.values, key, value));
+      note.textContent = problem;
+      if (!problem) this.set(key, value, `slider ${key}`);
+    });
+    given?.addEventListener("change", () => {
+      this.set(key, given.checked ? this.usual(quantity) : null, "");
+    });
+
+    const words = `${quantity.meaning}. ${quantity.bounds![1]!.words ?? quantity.bounds![0]!.words ?? ""}${quantity.remark ? `; ${quantity.remark}` : ""}.`;
+    const element = h(
+      "div", { class: "parameter", title: words },
+      h("label", { for: id, class: "name" }, given, h("span", {}, nameOf(quantity)), symbol(quantity.symbol)),
+      h("span", { class: "value" }, field, h("span", { class: "unit" }, unit)),
+      slider, rows?.element ?? null, note,
+    );
+    const update = (values: Values): void => {
+      const own = values[key];
+      const value = valueOf(values, key);
+      const damping = partner(key);
+      element.hidden = damping !== null && own === undefined;
+      if (given) given.checked = own !== undefined;
+      const constant = typeof value === "number";
+      const enabled = own !== undefined || !optional;
+      field.disabled = slider.disabled = !enabled || !constant;
+      slider.hidden = !enabled || !constant;
+      rows?.update(isRows(own) ? own : null, constant ? value : null);
+      if (!constant || !enabled) {
+        field.value = "";
+        field.placeholder = isRows(value) ? "rows" : absentWords(key, values);
+        note.textContent = "";
+        return;
+      }
+      range = rangeOf(quantity, value);
+      if (document.activeElement !== slider) slider.value = String(Math.round(STEPS * partOf(range, value)));
+      slider.setAttribute("aria-valuetext", text(quantity, value));
+      const shown = fieldText(quantity, value);
+      if (field.value !== shown && (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true")) field.value = shown;
+      if (!note.textContent || field.getAttribute("aria-invalid") !== "true") {
+        note.textContent = plausible(quantity, value)
+          ? ""
+          : `no such device has ${text(quantity, value)}; any has ${quantity.seen!.map((end) => text(quantity, end)).join(" to ")}`;
+      }
+    };
+    return { element, update };
+  }
+
+  /** What holds usually, or what holds now. */
+  private usual(quantity: Quantity): number {
+    const [contact, name] = quantity.key.split(".") as [string, string];
+    const kinetic = this.values[`${contact}.kinetic`];
+    if (name === "static" && typeof kinetic === "number") return kinetic * 1.2;
+    const limit = this.values["finger.static"] ?? this.values["finger.kinetic"];
+    if (name === "skin_stretch" && typeof limit === "number") {
+      return limit / 2 / ((this.values["finger.stiffness"] as number | undefined) ?? Infinity);
+    }
+    return quantity.default ?? quantity.example ?? quantity.absent ?? 0;
+  }
+
+  private rowsOnly(quantity: Quantity): Control {
+    const { key } = quantity;
+    const editor = rowsEditor(quantity, (value) => this.set(key, value, ""));
+    const element = h(
+      "div", { class: "parameter", title: `${quantity.meaning}. ${quantity.remark ?? ""}` },
+      h("span", { class: "name" }, h("span", {}, nameOf(quantity)), symbol(quantity.symbol)),
+      editor.element,
+    );
+    return { element, update: (values) => editor.update((values[key] as Value | undefined) ?? null, null) };
+  }
+}
+
+function nameOf(quantity: Quantity): string {
+  return quantity.name.replace(/^(plate|finger)\./, "").replaceAll("_", " ");
+}
+
+/** The other way to give the same: damping or damping ratio. */
+function partner(key: string): string | null {
+  return { "drive.damping": "drive.damping_ratio", "drive.damping_ratio": "drive.damping" }[key] ?? null;
+}
+
+/** What holds where a key is left out. */
+function absentWords(key: string, values: Values): string {
+  const name = key.split(".")[1]!;
+  const words: Record<string, string> = {
+    static: "as kinetic", stiffness: "rigid", velocity: "plate's", skin_stretch: "none",
+    duration: "ending", kinetic: "of curve",
+  };
+  const absent = DRIVE.get(key)!.absent;
+  return words[name] ?? (absent === undefined ? "" : text(DRIVE.get(key)!, absent)) ?? String(values[key] ?? "");
+}
+
+/** Rows as lines of text: "0 mm/s, 22 mN". Empty: none. */
+function rowsEditor(
+  quantity: Quantity, set: (value: Value | null) => void,
+): { element: HTMLElement; update: (value: Value | null, constant: number | null) => void } {
+  const [across] = columnsOf(quantity);
+  const heads = TABLES.columns[quantity.rowsOf!]!.map((name) => name.split(".").pop()!);
+  const id = `${quantity.key.replace(".", "-")}-rows`;
+  const area = h("textarea", { id, rows: 3, spellcheck: "false", "aria-label": `${nameOf(quantity)}: rows of ${heads[0]} and ${quantity.name.split(".").pop()}, one in a line` });
+  const note = h("p", { class: "problem", role: "status" });
+  const apply = h("button", { type: "button" }, "Apply");
+  const clear = h("button", { type: "button" }, "No rows");
+  const details = h("details", { class: "rows" }, h("summary", {}, "rows"), area, h("span", { class: "buttons" }, apply, clear), note);
+  const example = quantity.rows!.map(([x, y]) => `${written(across, x)}, ${written(quantity, y)}`).join("\n");
+  area.placeholder = example;
+  let constant: number | null = null;
+  apply.addEventListener("click", () => {
+    try {
+      const lines = (area.value.trim() || example).split("\n").filter((row) => row.trim());
+      const rows = lines.map((row, i) => {
+        const cells = row.split(",");
+        if (cells.length !== 2) throw new Error(`row ${i} must be two values with a comma between, got ${JSON.stringify(row)}`);
+        return [
+          readNumber(cells[0]!.trim(), across, across.usual!, `row ${i} ${heads[0]}`),
+          readNumber(asUnitless(cells[1]!.trim(), quantity), quantity, quantity.usual!, `row ${i} ${heads[1]}`),
+        ] as const;
+      });
+      note.textContent = "";
+      set(rows);
+    } catch (error) {
+      note.textContent = (error as Error).message;
+    }
+  });
+  clear.addEventListener("click", () => {
+    note.textContent = "";
+    set(quantity.mandatory ? (constant ?? quantity.default ?? 0) : null);
+  });
+  return {
+    element: details,
+    update: (value, now) => {
+      constant = now;
+      const shown = isRows(value) ? value.map(([x, y]) => `${written(across, x)}, ${written(quantity, y)}`).join("\n") : "";
+      if (document.activeElement !== area) area.value = shown;
+      clear.disabled = !isRows(value);
+    },
+  };
+}
+
+function asUnitless(cell: string, quantity: Quantity): string {
+  return quantity.unit === "1" ? String(Number(cell)) : cell;
+}

@@ -1,0 +1,186 @@
+// What the plots show of motions: columns at common times, with both limits at each event.
+import type { Values } from "./checks";
+import { CoreError, type Core, type Motion, type QuantityName, type Transition } from "./core";
+import { coreInput, settlingBand, valueOf } from "./design";
+
+export type EventKind = Exclude<Transition, "none">;
+export type ContactName = "plate" | "finger" | "both";
+export interface ContactEvent {
+  readonly time: number;
+  readonly contact: ContactName;
+  readonly kind: EventKind;
+  readonly position: number;
+  readonly velocity: number;
+}
+export type PhaseKind = "carried" | "resting" | "gripping";
+export interface Phase {
+  readonly kind: PhaseKind;
+  readonly begin: number;
+  readonly end: number;
+}
+
+/** One motion: its numbers, its events in the window, and columns at the times of the window. */
+export interface Curves {
+  readonly times: Float64Array;
+  readonly columns: Partial<Record<QuantityName, Float64Array>>;
+  readonly events: readonly ContactEvent[];
+  readonly phases: readonly Phase[];
+  readonly numbers: Readonly<Record<string, number>>;
+  readonly energy: Readonly<Record<string, number>>;
+  readonly certificate: Readonly<Record<string, number>>;
+  readonly end: string;
+  readonly status: number;
+  /** How long the motion is looked at for its numbers, s. */
+  readonly duration: number;
+  readonly compliant: boolean;
+}
+
+/** A motion that exists, or why it does not. */
+export type Simulated = { readonly curves: Curves } | { readonly problem: string };
+
+export const SAMPLES = 801;
+const EVENTS = 400; // markers that a plot can show
+
+interface Made {
+  readonly motion: Motion;
+  readonly values: Values;
+  readonly duration: number;
+  readonly events: readonly ContactEvent[];
+}
+
+/** Motions of several designs over one window: as long as the longest of them, unless given. */
+export function simulateAll(
+  core: Core, designs: readonly Values[], windowEnd: number | null, samples = SAMPLES,
+): { end: number; found: Simulated[] } {
+  const made = designs.map((values): Made | string => {
+    try {
+      return begin(core, values);
+    } catch (error) {
+      if (error instanceof CoreError) return error.message;
+      throw error;
+    }
+  });
+  const good = made.filter((one): one is Made => typeof one !== "string");
+  try {
+    const end = windowEnd ?? good.reduce((most, { duration }) => Math.max(most, duration), 1e-3);
+    const grid = commonTimes(good, end, samples);
+    const found = made.map((one): Simulated =>
+      typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) },
+    );
+    return { end, found };
+  } finally {
+    for (const { motion } of good) motion.free();
+  }
+}
+
+function begin(core: Core, values: Values): Made {
+  const motion = core.simulate(coreInput(values));
+  const given = valueOf(values, "motion.duration");
+  const known = motion.outcome.knownUntil;
+  const long = typeof given === "number" ? given : motion.duration(settlingBand(values));
+  const duration = Math.min(long, known);
+  const events = motion.events(0, duration, EVENTS).flatMap(({ plate, finger, ...at }): ContactEvent[] => {
+    if (plate === finger) return plate === "none" ? [] : [{ ...at, contact: "both", kind: plate }];
+    return [["plate", plate] as const, ["finger", finger] as const].flatMap(([contact, kind]) =>
+      kind === "none" ? [] : [{ ...at, contact, kind }],
+    );
+  });
+  return { motion, values, duration, events };
+}
+
+interface Grid {
+  readonly times: Float64Array;
+  /** Of these indices the left limit is taken. */
+  readonly left: readonly number[];
+}
+
+function commonTimes(made: readonly Made[], end: number, samples: number): Grid {
+  const events = made.flatMap(({ events }) => events.map(({ time }) => time));
+  const jumps = [...new Set(events.filter((time) => time > 0 && time < end))].sort((a, b) => a - b);
+  const times = new Float64Array(samples + 2 * jumps.length);
+  const left: number[] = [];
+  let [at, next] = [0, 0];
+  for (let i = 0; i < samples; ++i) {
+    const time = i === samples - 1 ? end : (end * i) / (samples - 1);
+    for (; next < jumps.length && jumps[next]! <= time; ++next) {
+      left.push(at);
+      times[at++] = jumps[next]!;
+      times[at++] = jumps[next]!;
+    }
+    times[at++] = time;
+  }
+  return { times, left };
+}
+
+function sampled({ motion, values, duration, events }: Made, grid: Grid, end: number): Curves {
+  const compliant = values["finger.stiffness"] !== undefined;
+  const names: QuantityName[] = ["position", "velocity", "acceleration", "plate_force", "finger_force"];
+  if (compliant) names.push("stretch", "stretch_rate");
+  const { knownUntil } = motion.outcome;
+  const known = grid.times.findIndex((time) => time > knownUntil);
+  const asked = known < 0 ? grid.times : grid.times.subarray(0, known);
+  const left = grid.left.filter((index) => index < asked.length);
+  const before = Float64Array.from(left, (index) => grid.times[index]!);
+  const columns: Partial<Record<QuantityName, Float64Array>> = {};
+  for (const name of names) {
+    const column = new Float64Array(grid.times.length).fill(NaN);
+    column.set(motion.evaluate(name, asked));
+    const limits = motion.evaluate(name, before, "left");
+    left.forEach((index, i) => (column[index] = limits[i]!));
+    columns[name] = column;
+  }
+  return {
+    times: grid.times,
+    columns,
+    events: events.filter(({ time }) => time <= end),
+    phases: phasesOf(motion, Math.min(end, knownUntil)),
+    numbers: motion.numbers(duration, settlingBand(values)),
+    energy: motion.energy(duration),
+    certificate: motion.certificate(duration),
+    end: motion.outcome.end,
+    status: motion.outcome.status,
+    duration,
+    compliant,
+  };
+}
+
+/** When the plate carries the pin, when it rests on the finger, when skin grips it. */
+function phasesOf(motion: Motion, end: number): Phase[] {
+  const { cycleBegin, simulated } = motion.outcome;
+  const found: Phase[] = [];
+  const add = (kind: PhaseKind, begin: number, until: number): void => {
+    const last = found.findLast((phase) => phase.kind === kind);
+    if (last && last.end === begin) found[found.indexOf(last)] = { ...last, end: until };
+    else found.push({ kind, begin, end: until });
+  };
+  const segments = motion.segments(end);
+  const round = simulated - cycleBegin;
+  for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
+    for (const segment of segments) {
+      if (rounds > 0 && segment.begin < cycleBegin) continue;
+      const [begin, until] = [segment.begin + shift, Math.min(segment.end + shift, end)];
+      if (begin >= end || until <= begin) continue;
+      if (segment.plate === "sticks") add("carried", begin, until);
+      if (segment.finger === "sticks") add("resting", begin, until);
+      if (segment.finger === "grips") add("gripping", begin, until);
+    }
+    if (!(round > 0) || simulated + shift >= end) break;
+  }
+  return found;
+}
+
+/** The value of a column at any time of the window, between its neighbours. */
+export function columnAt(curves: Curves, name: QuantityName, time: number): number {
+  const { times } = curves;
+  const column = curves.columns[name];
+  if (!column) return NaN;
+  let [low, high] = [0, times.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle]! <= time) low = middle;
+    else high = middle;
+  }
+  const span = times[high]! - times[low]!;
+  const part = span > 0 ? Math.min(Math.max((time - times[low]!) / span, 0), 1) : 0;
+  return column[low]! + part * (column[high]! - column[low]!);
+}

@@ -1,0 +1,139 @@
+// The table of quantities, generated from the one of the Python package, and how values are written.
+import generated from "../build/tables.json";
+import type { Rows } from "./core";
+
+export interface Bounds {
+  readonly lower?: number;
+  readonly upper?: number;
+  readonly lowerClosed?: boolean;
+  readonly upperClosed?: boolean;
+  readonly infinite?: boolean;
+  readonly zero?: boolean;
+  readonly words?: string;
+}
+
+/** A row of the table; what is missing is empty. */
+export interface Quantity {
+  readonly key: string;
+  readonly name: string;
+  readonly symbol: string;
+  readonly unit?: string;
+  readonly displayUnit?: string;
+  readonly displayScale: number;
+  readonly meaning: string;
+  readonly bounds?: readonly Bounds[];
+  readonly seen?: readonly [number, number];
+  readonly default?: number;
+  readonly absent?: number;
+  readonly example?: number;
+  readonly remark?: string;
+  readonly source?: string;
+  readonly mandatory?: boolean;
+  readonly alternative?: string;
+  readonly follows?: readonly string[];
+  readonly rowsOf?: "curve" | "profile" | "places";
+  readonly rows?: Rows;
+  readonly mayBeConstant?: boolean;
+  readonly usual?: string;
+  readonly usualRows?: string;
+  readonly line?: string;
+}
+
+interface Tables {
+  readonly version: string;
+  readonly inputs: readonly Quantity[];
+  readonly drive: readonly string[];
+  readonly parts: Readonly<Record<string, Quantity>>;
+  readonly columns: Readonly<Record<string, readonly [string, string]>>;
+  readonly numbers: readonly Quantity[];
+  readonly series: readonly Quantity[];
+  readonly keys: readonly string[];
+  readonly tables: readonly string[];
+  readonly alone: readonly string[];
+  readonly around: readonly string[];
+  readonly studyKeys: readonly string[];
+  readonly inputRows: number;
+  readonly units: {
+    readonly atoms: Readonly<Record<string, readonly [string, Readonly<Record<string, number>>]>>;
+    readonly prefixes: Readonly<Record<string, string>>;
+  };
+  readonly palette: Readonly<Record<string, string>>;
+  readonly shapes: Readonly<Record<string, string>>;
+  readonly curves: readonly { readonly color: string; readonly dash: readonly number[] }[];
+  readonly events: Readonly<Record<string, Readonly<Record<string, string>>>>;
+  readonly template: string;
+}
+
+export const TABLES = generated as unknown as Tables;
+
+/** The keys of a device file that hold a quantity, in their order. */
+export const INPUTS: ReadonlyMap<string, Quantity> = new Map(TABLES.inputs.map((q) => [q.key, q]));
+/** Those that describe the drive and its release. */
+export const DRIVE: ReadonlyMap<string, Quantity> = new Map(
+  TABLES.drive.map((key) => [key, INPUTS.get(key)!]),
+);
+/** What is found of a motion, by name. */
+export const NUMBERS: ReadonlyMap<string, Quantity> = new Map(TABLES.numbers.map((q) => [q.name, q]));
+/** What is known of a motion at a time, by name. */
+export const SERIES: ReadonlyMap<string, Quantity> = new Map(TABLES.series.map((q) => [q.name, q]));
+
+export function part(name: string): Quantity {
+  return TABLES.parts[name]!;
+}
+
+/** The two columns of rows, the second with the unit of the quantity itself. */
+export function columnsOf(quantity: Quantity): readonly [Quantity, Quantity] {
+  return [part(TABLES.columns[quantity.rowsOf!]![0]), quantity];
+}
+
+function within(value: number, of: Bounds): boolean {
+  const lower = of.lower ?? -Infinity;
+  const upper = of.upper ?? Infinity;
+  const above = value > lower || (of.lowerClosed === true && value === lower);
+  const below = value < upper || (of.upperClosed === true && value === upper);
+  return (above && below) || (of.infinite === true && value === Infinity) ||
+    (of.zero === true && value === 0);
+}
+
+/** What a value (SI) must be, if it is not: "finite and greater than 0 kg"; else empty. */
+export function required(quantity: Quantity, value: number): string {
+  return quantity.bounds?.find((of) => !within(value, of))?.words ?? "";
+}
+
+/** Whether any such device has a value (SI), either way. */
+export function plausible(quantity: Quantity, value: number): boolean {
+  if (!quantity.seen || !Number.isFinite(value)) return true;
+  const size = Math.abs(value);
+  return size >= quantity.seen[0] && size <= quantity.seen[1];
+}
+
+// ---- numbers as text -----------------------------------------------------------------------------
+
+/** Four significant digits, plain where that stays short; "–" where there is no such number. */
+export function digits(value: number, count = 4): string {
+  if (Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  if (value === 0) return "0";
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  const plain = exponent >= -4 && exponent < 7;
+  const text = plain
+    ? value.toFixed(Math.min(Math.max(0, count - 1 - exponent), 20))
+    : value.toExponential(count - 1).replace("e+", "e");
+  return text.replace("-", "−");
+}
+
+/** A value (SI) for a person to read: "1.500 mm". */
+export function text(quantity: Quantity, value: number): string {
+  return `${digits(value * quantity.displayScale)} ${unitOf(quantity)}`.trim();
+}
+
+/** The unit in which a person reads it, with its signs. */
+export function unitOf(quantity: Quantity): string {
+  return (quantity.displayUnit ?? "").replace("*", "·").replace("^2", "²");
+}
+
+/** A label for an axis or a heading: "position x, mm". */
+export function label(quantity: Quantity): string {
+  const name = quantity.name.replace(/^(transient|ending|motion)\./, "").replaceAll("_", " ");
+  return name.replace(".", " ");
+}

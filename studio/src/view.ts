@@ -1,0 +1,57 @@
+// What the page shows at one time: the state, and what was computed of it.
+import type { Values } from "./checks";
+import type { Recording } from "./recording";
+import type { ContactName, Curves, EventKind, Simulated } from "./sample";
+import { currentDesign, type State } from "./state";
+
+/** A curve of the plots: the current design first, the ghost, then the others that are shown. */
+export interface Line {
+  readonly name: string;
+  readonly kind: "current" | "ghost" | "other";
+  readonly values: Values;
+  readonly result: Simulated;
+  /** Its place among the designs, for its colour. */
+  readonly index: number;
+}
+
+export interface Overlay {
+  readonly recording: Recording;
+  readonly offset: number;
+}
+
+export interface View {
+  readonly state: State;
+  readonly lines: readonly Line[];
+  /** The end of the window, s. */
+  readonly end: number;
+  readonly overlay: Overlay | null;
+}
+
+export function curvesOf(line: Line | undefined): Curves | null {
+  return line && "curves" in line.result ? line.result.curves : null;
+}
+
+/** Of the current design; null where it has no motion. */
+export function currentCurves(view: View): Curves | null {
+  return curvesOf(view.lines[0]);
+}
+
+export function currentValues(view: View): Values {
+  return currentDesign(view.state).values;
+}
+
+/** The shape of an event: a square sticks, a triangle breaks loose, a diamond reverses. */
+export function eventPath(kind: EventKind, x: number, y: number, size: number): readonly (readonly [number, number])[] {
+  if (kind === "stick") {
+    return [[x - size, y - size], [x + size, y - size], [x + size, y + size], [x - size, y + size]];
+  }
+  if (kind === "slip") {
+    return [[x, y - 1.25 * size], [x + 1.15 * size, y + 0.85 * size], [x - 1.15 * size, y + 0.85 * size]];
+  }
+  return [[x, y - 1.35 * size], [x + 1.35 * size, y], [x, y + 1.35 * size], [x - 1.35 * size, y]];
+}
+
+/** Filled at the plate, open at the finger. */
+export function isOpen(contact: ContactName): boolean {
+  return contact === "finger";
+}

@@ -1,0 +1,86 @@
+// What the page writes: device files (TOML), samples and events (CSV).
+import { isRows, type Design } from "./design";
+import { floatRepr, general } from "./python";
+import type { QuantityName } from "./core";
+import type { Curves } from "./sample";
+import { DRIVE, SERIES, TABLES, columnsOf, type Quantity } from "./table";
+import { TomlDate, type TomlTable, type TomlValue } from "./toml";
+import { toSi } from "./units";
+
+/** A value (SI) as a device file has it, with the fewest digits that give it back to the bit. */
+export function written(quantity: Quantity, value: number): string {
+  const unit = quantity.unit || "1";
+  if (unit === "1") return floatRepr(value);
+  for (let digits = 6; digits <= 17; ++digits) {
+    const text = `${general(value * quantity.displayScale, digits)} ${quantity.displayUnit}`;
+    if (toSi(text, unit, "") === value) return text;
+  }
+  return `${floatRepr(value)} ${unit}`;
+}
+
+/** A number as it stands in a field, in the unit beside it. */
+export function fieldText(quantity: Quantity, value: number): string {
+  return general(value * quantity.displayScale, 6);
+}
+
+/** The device file of a design: the same keys, each with its meaning. */
+export function deviceFile(design: Design): string {
+  const lines = ["[device]", `name = ${JSON.stringify(design.name)}`];
+  if (design.description) lines.push(`description = ${JSON.stringify(design.description)}`);
+  let table = "device";
+  for (const [key, quantity] of DRIVE) {
+    const value = design.values[key];
+    if (value === undefined) continue;
+    const [own, name] = key.split(".") as [string, string];
+    if (own !== table) lines.push("", `[${(table = own)}]`);
+    lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
+    lines.push(`${name} = ${isRows(value) ? rowsText(quantity, value) : valueText(quantity, value)}`);
+  }
+  for (const [name, rest] of Object.entries(design.around)) {
+    lines.push("", `[${name}]`, ...Object.entries(rest).map(([key, value]) => `${key} = ${toml(value)}`));
+  }
+  return `${lines.join("\n")}\n`;
+}
+
+function valueText(quantity: Quantity, value: number): string {
+  const text = written(quantity, value);
+  return (quantity.unit || "1") === "1" ? text : JSON.stringify(text);
+}
+
+function rowsText(quantity: Quantity, rows: readonly (readonly [number, number])[]): string {
+  const [across] = columnsOf(quantity);
+  return `[${rows.map(([x, y]) => `[${valueText(across, x)}, ${valueText(quantity, y)}]`).join(", ")}]`;
+}
+
+function toml(value: TomlValue): string {
+  if (typeof value === "string") return JSON.stringify(value);
+  if (typeof value === "number") return floatRepr(value);
+  if (Array.isArray(value)) return `[${value.map(toml).join(", ")}]`;
+  if (typeof value === "object" && !(value instanceof TomlDate)) {
+    const entries = Object.entries(value as TomlTable);
+    return `{${entries.map(([key, item]) => `${JSON.stringify(key)} = ${toml(item)}`).join(", ")}}`;
+  }
+  return String(value);
+}
+
+/** Samples of a motion, SI, with a header that a recording has: they can be read again. */
+export function samplesCsv(curves: Curves): string {
+  const names = [...SERIES.keys()].filter((name) => name === "time" || curves.columns[name as QuantityName]);
+  const head = names.map((name) => `${name === "time" ? "t" : name} [${SERIES.get(name)!.unit}]`).join(",");
+  const rows = Array.from(curves.times, (time, i) =>
+    names.map((name) => floatRepr(name === "time" ? time : curves.columns[name as QuantityName]![i]!)).join(","),
+  );
+  return `${[head, ...rows].join("\r\n")}\r\n`;
+}
+
+/** The events of a motion, SI. */
+export function eventsCsv(curves: Curves): string {
+  const rows = curves.events.map((event) =>
+    [event.time, event.contact, event.kind, event.position, event.velocity]
+      .map((cell) => (typeof cell === "number" ? floatRepr(cell) : cell))
+      .join(","),
+  );
+  return `${["t [s],contact,kind,position [m],velocity [m/s]", ...rows].join("\r\n")}\r\n`;
+}
+
+export const TEMPLATE = TABLES.template;

@@ -1,0 +1,353 @@
+"""The page in headless Chromium, opened from disk."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import pindrive as pd
+from command import EXAMPLE, SKIN, run
+from pindrive.files.device import motion_of
+from pindrive.files.template import template
+from pindrive.fitting.recording import read_recording
+from studio_cases import NAMES, Ask, questions
+
+AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
+FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
+
+
+def settled(page: Any) -> None:
+    """After what was asked is drawn."""
+    page.evaluate(FRAMES)
+
+
+def value(page: Any, key: str) -> Any:
+    return page.evaluate(f"{VALUES}[{key!r}] ?? null")
+
+
+def opened(page: Any, *files: Path) -> None:
+    """Opens files as a person does, by the button."""
+    for file in files:
+        with page.expect_file_chooser() as chooser:
+            page.get_by_role("button", name="Open …", exact=True).click()
+        chooser.value.set_files(file)
+        settled(page)
+    page.wait_for_timeout(100)
+    settled(page)
+
+
+def saved(page: Any, kind: str, folder: Path) -> Path:
+    """Saves by the menu; the file."""
+    with page.expect_download() as download:
+        page.select_option("#save", kind)
+    path = folder / str(download.value.suggested_filename)
+    download.value.save_as(path)
+    return path
+
+
+def numbers_shown(page: Any) -> dict[str, float]:
+    found: dict[str, float] = page.evaluate(
+        "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
+        ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
+    )
+    return found
+
+
+def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
+    """Which move as in Python: test_core.py."""
+    _, asked = questions(1000, 16)
+    answers = page.evaluate(
+        "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))", asked
+    )
+    assert answers == node(asked)
+
+
+def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
+    slider = page.locator("#drive-mass-slider")
+    before = page.locator("#summary").inner_text()
+    slider.focus()
+    page.keyboard.press("PageUp")
+    settled(page)
+    heavier = value(page, "drive.mass")
+    assert heavier > 0.01
+    assert page.locator("#summary").inner_text() != before
+    page.keyboard.press("Control+z")
+    settled(page)
+    assert value(page, "drive.mass") == 0.01
+    assert page.locator("#summary").inner_text() == before
+    page.keyboard.press("Control+Shift+z")
+    settled(page)
+    assert value(page, "drive.mass") == heavier
+    page.fill("#plate-kinetic", "0.03 N")
+    page.keyboard.press("Enter")
+    settled(page)
+    assert value(page, "plate.kinetic") == 0.03
+    assert value(page, "plate.static") == pytest.approx(0.03 * 26.5 / 22, rel=1e-15)
+    assert page.input_value("#plate-static") == "36.1364"
+    assert page.input_value("#plate-kinetic") == "30"
+    page.fill("#plate-kinetic", "heavy")
+    page.keyboard.press("Enter")
+    assert (
+        "plate.kinetic must be a number with its unit"
+        in page.locator("#plate-kinetic-note").inner_text()
+    )
+    assert value(page, "plate.kinetic") == 0.03
+
+
+@pytest.mark.parametrize("device", [EXAMPLE, SKIN], ids=lambda path: path.stem)
+def test_what_is_shown_is_what_python_computes(page: Any, device: Path) -> None:
+    opened(page, device)
+    motion = motion_of(pd.load_device(device))
+    shown = numbers_shown(page)
+    for name in NAMES:
+        expected = float(motion.numbers()[name])
+        assert shown[name] == (
+            pytest.approx(expected, rel=1e-12, abs=1e-15) if np.isfinite(expected) else None
+        ), name
+    events = page.evaluate("pindrive.page.view.lines[0].result.curves.events")
+    assert [(e["contact"], e["kind"]) for e in events] == [
+        (event.contact, event.kind) for event in motion.events
+    ]
+    rows = page.locator("section.events tbody tr").count()
+    assert rows == min(len(motion.events), 100)
+
+
+def test_derivatives_are_those_of_python(page: Any) -> None:
+    opened(page, EXAMPLE)
+    bars = page.evaluate(
+        "(() => { const rows = {}; for (const row of document.querySelectorAll('.bars tbody tr'))"
+        " rows[row.querySelector('th').textContent] = row.querySelector('td.figure').textContent;"
+        " return rows; })()"
+    )
+    device = pd.load_device(EXAMPLE)
+    base = motion_of(device).transient.settling_time
+    step = 1e-6
+    for key, name in (
+        ("mass", "mass"),
+        ("plate.kinetic", "plate kinetic"),
+        ("displacement", "displacement"),
+    ):
+        values = device.values()
+        full = next(full for full in values if full.endswith(key))
+        given = values[full]
+        assert isinstance(given, float)
+        more = motion_of(
+            pd.load_device(EXAMPLE, {full: given * (1 + step)})
+        ).transient.settling_time
+        expected = (more - base) / step * 0.01 * 1e3
+        shown = float(bars[name].split(" ")[0].replace("−", "-").replace("+", ""))
+        assert shown == pytest.approx(expected, rel=5e-3), name
+
+
+def test_every_file_goes_out_and_in_again(
+    page: Any, browser: Any, page_file: Path, tmp_path: Path
+) -> None:
+    opened(page, SKIN)
+    toml = saved(page, "toml", tmp_path)
+    assert pd.load_device(toml).values() == pd.load_device(SKIN).values()
+    opened(page, toml)
+    assert page.evaluate("JSON.stringify(pindrive.page.state.designs[1].values)") == page.evaluate(
+        "JSON.stringify(pindrive.page.state.designs[2].values)"
+    )
+    csv = saved(page, "csv", tmp_path)
+    recording = read_recording(csv)
+    motion = motion_of(pd.load_device(SKIN))
+    expected = motion.position(recording.time)
+    np.testing.assert_allclose(recording.channels["position"], expected, rtol=0, atol=1e-17)
+    opened(page, csv)
+    assert page.evaluate("pindrive.page.view.overlay.recording.times.length") == len(recording.time)
+    events = saved(page, "events", tmp_path).read_text("utf-8").splitlines()
+    times = [float(row.split(",")[0]) for row in events[1:]]
+    assert times == pytest.approx([event.time for event in motion.events], rel=1e-14)
+    svg = ET.fromstring(saved(page, "svg", tmp_path).read_text("utf-8"))
+    drawn = {g.get("data-quantity") for g in svg.iter("{http://www.w3.org/2000/svg}g")}
+    assert drawn >= {"position", "velocity", "acceleration", "plate_force", "stretch"}
+    with Image.open(saved(page, "png", tmp_path)) as picture:
+        assert picture.format == "PNG"
+        assert picture.width == 3 * 640
+        assert len(picture.convert("RGB").getcolors(1 << 24) or ()) > 20
+    link = page.evaluate("pindrive.page.link()")
+    other = browser.new_context().new_page()
+    other.goto(link)
+    other.wait_for_selector("html[data-ready]")
+    state = "JSON.stringify({...pindrive.page.state, cursor: 0})"
+    assert other.evaluate(state) == page.evaluate(state)
+    other.context.close()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("10 g", "10"), ("mass", "mas"), ("kinetic = ", "kinetic "), ("22 mN", "-1 mN")],
+)
+def test_a_mistake_is_said_in_the_words_of_the_command(
+    page: Any, tmp_path: Path, old: str, new: str
+) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(template().replace(old, new, 1), "utf-8")
+    opened(page, path)
+    said = page.locator("#problem").inner_text().strip()
+    assert said == run("check", path).stderr.strip().replace(str(path), path.name)
+    opened(page, EXAMPLE)
+    assert page.locator("#problem").is_hidden()
+
+
+def test_designs_ghost_and_delete(page: Any) -> None:
+    page.get_by_role("button", name="Keep ghost").click()
+    page.fill("#drive-stiffness", "150")
+    page.keyboard.press("Enter")
+    settled(page)
+    kinds = "pindrive.page.view.lines.map(line => [line.kind, line.values['drive.stiffness']])"
+    assert page.evaluate(kinds) == [["current", 150], ["ghost", 100]]
+    page.get_by_role("button", name="Copy").click()
+    settled(page)
+    page.fill("#design-name", "soft")
+    page.keyboard.press("Enter")
+    page.fill("#drive-stiffness", "50")
+    page.keyboard.press("Enter")
+    settled(page)
+    assert page.evaluate(kinds) == [["current", 50], ["ghost", 100], ["other", 150]]
+    assert page.locator("section.numbers thead").inner_text().split() == [
+        "number", "unit", "soft", "ghost", "my", "pin", "drive",
+    ]  # fmt: skip
+    page.get_by_role("button", name="Delete").click()
+    page.get_by_role("button", name="Drop ghost").click()
+    settled(page)
+    assert page.evaluate(kinds) == [["current", 150]]
+
+
+def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> None:
+    page.wait_for_selector(".map-holder[data-took]")
+    found = page.evaluate(
+        "(() => { const r = pindrive.page.map; return {values: [...r.last.values],"
+        " met: [...r.last.met],"
+        " x: [...r.task.varied.mouse_velocity.x], y: [...r.task.varied['plate.kinetic'].y]}; })()"
+    )
+    device = pd.load_device(EXAMPLE)
+    for i, j in ((0, 0), (63, 5), (31, 40), (50, 63)):
+        given = {"motion.mouse_velocity": found["x"][i], "plate.kinetic": found["y"][j]}
+        time = motion_of(pd.load_device(EXAMPLE, given)).transient.settling_time
+        assert device.drive.plate.static is not None
+        assert found["values"][64 * j + i] == pytest.approx(time, rel=1e-9)
+        assert found["met"][64 * j + i] == (time <= 0.1)
+    canvas = page.locator("canvas.map")
+    canvas.focus()
+    page.keyboard.press("ArrowRight")
+    settled(page)
+    assert value(page, "motion.mouse_velocity") > 0.06
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 100, box["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 110, box["y"] + 80)
+    page.mouse.up()
+    settled(page)
+    assert value(page, "motion.mouse_velocity") < 0
+    assert value(page, "plate.kinetic") > 0.022
+
+
+def recorded(path: Path, rows: int, offset: float, **drive: Any) -> None:
+    """Writes a recording of a release of the template's drive with other values, in ms and mm."""
+    motion = motion_of(pd.load_device(EXAMPLE, drive))
+    t = np.linspace(0, 0.2, rows)
+    x = motion.position(np.clip(t - offset, 0, None))
+    np.savetxt(
+        path,
+        np.column_stack([1e3 * t, 1e3 * x]),
+        "%.9g",
+        ",",
+        header="t [ms],position [mm]",
+        comments="",
+    )
+
+
+def test_a_recording_of_a_hundred_thousand_rows_is_fitted(page: Any, tmp_path: Path) -> None:
+    path = tmp_path / "bench.csv"
+    recorded(path, 100_000, 0.012, mass=0.0125, **{"drive.damping_ratio": 0.11})
+    opened(page, EXAMPLE, path)
+    page.wait_for_selector("#recording-words", timeout=20_000)
+    assert "100000 samples of position" in page.locator("#recording-words").inner_text()
+    page.get_by_role("button", name="by least squares").click()
+    settled(page)
+    assert page.evaluate("pindrive.page.view.overlay.offset") == pytest.approx(0.012, abs=5e-3)
+    for box in ("#fit-drive-mass", "#fit-drive-damping_ratio", "#fit-offset"):
+        page.check(box)
+    page.get_by_role("button", name="Fit", exact=True).click()
+    settled(page)
+    assert value(page, "drive.mass") == pytest.approx(0.0125, rel=1e-4)
+    assert value(page, "drive.damping_ratio") == pytest.approx(0.11, rel=1e-3)
+    assert page.evaluate("pindrive.page.view.overlay.offset") == pytest.approx(0.012, abs=1e-5)
+
+
+def test_the_device_moves_with_the_cursor_and_can_be_heard(page: Any) -> None:
+    picture = "document.querySelector('canvas.animation').toDataURL()"
+    before = page.evaluate(picture)
+    page.evaluate("pindrive.page.setCursor(0.03)")
+    assert page.locator(".player output").inner_text() == "30.00 ms"
+    assert page.evaluate(picture) != before
+    positions = page.evaluate("document.querySelector('.u-cursor-x').style.transform")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(250)
+    page.get_by_role("button", name="Pause").click()
+    assert page.evaluate("pindrive.page.state.cursor") > 0.03
+    assert page.evaluate("document.querySelector('.u-cursor-x').style.transform") != positions
+    page.get_by_role("button", name="Listen").click()
+    page.get_by_role("button", name="Stop").click()
+    page.get_by_role("button", name="Listen").wait_for()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_no_violation_at_any_width(page: Any, tmp_path: Path, scheme: str) -> None:
+    page.emulate_media(color_scheme=scheme)
+    recorded(tmp_path / "r.csv", 50, 0.0)
+    bad = tmp_path / "bad.toml"
+    bad.write_text("x", "utf-8")
+    page.get_by_role("button", name="Keep ghost").click()
+    page.get_by_role("button", name="Copy").click()
+    opened(page, SKIN, tmp_path / "r.csv", bad)
+    page.evaluate(AXE.read_text("utf-8"))
+    for width in (320, 1280):
+        page.set_viewport_size({"width": width, "height": 900})
+        settled(page)
+        found = page.evaluate("axe.run({resultTypes: ['violations']})")
+        assert [
+            (v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found["violations"]
+        ] == []
+
+
+def test_nothing_is_cut_off_from_320_to_3840_pixels(page: Any) -> None:
+    for width, height in ((320, 640), (768, 1024), (1440, 900), (2560, 1440), (3840, 2160)):
+        page.set_viewport_size({"width": width, "height": height})
+        settled(page)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, width
+        chart = page.locator(".chart").first.bounding_box()
+        assert chart["width"] > 0.3 * min(width, 800)
+
+
+def test_the_network_is_refused_by_the_page_itself(browser: Any, page_file: Path) -> None:
+    opened = browser.new_context().new_page()
+    opened.goto(page_file.as_uri())
+    refused = opened.evaluate("fetch('https://example.org').then(() => '', error => String(error))")
+    assert refused
+    assert "default-src 'none'" in page_file.read_text("utf-8")
+    assert page_file.stat().st_size <= 400_000
+    opened.context.close()
+
+
+def test_the_command_opens_a_device(browser: Any, page_file: Path) -> None:
+    said = run("studio", EXAMPLE, "--no-browser")
+    assert said.exit_code == 0, said.output
+    opened = browser.new_context().new_page()
+    opened.goto(Path(said.stdout.strip()).as_uri())
+    opened.wait_for_selector("html[data-ready]")
+    name, mass = opened.evaluate(f"[pindrive.page.state.designs[0].name, {VALUES}['drive.mass']]")
+    assert (name, mass) == ("tactile mouse", 0.01)
+    assert (
+        json.loads(opened.evaluate("document.getElementById('device').textContent"))["rows"] == {}
+    )
+    opened.context.close()

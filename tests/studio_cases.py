@@ -1,0 +1,116 @@
+"""What the tests of the studio share: random releases, and how the page answers beside Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from pindrive import Contact, Drive, Profile, Release
+from pindrive.motion.motion import Motion
+from pindrive.quantities.results import ENDING, TRANSIENT
+
+Ask = Callable[[list[dict[str, Any]]], list[Any]]
+"""Many questions to the page's program in Node; one answer each."""
+
+NAMES = [number.name for number in (*TRANSIENT, *ENDING) if number.name != "transient.settled"]
+
+
+def questions(count: int, seed: int) -> tuple[list[Any], list[dict[str, Any]]]:
+    """Random cases (drive, release, duration), and what the page is asked of them."""
+    random = np.random.default_rng(seed)
+    cases = [drawn(random) for _ in range(count)]
+    asked = []
+    for drive, release, duration in cases:
+        given = as_input(drive, release)
+        if duration is not None:
+            given["release"]["duration"] = duration
+        asked.append({"simulate": given, "duration": duration})
+    return cases, asked
+
+
+def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
+    """A drive and a release of any kind that a device file can describe."""
+
+    def between(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    kind = random.integers(4)
+    contacts: dict[str, Contact] = {}
+    for name, largest in (("plate", 0.1), ("finger", 0.05)):
+        kinetic = between(1e-3, largest) * bool(random.integers(5))
+        curve = ((0.0, kinetic), (0.05, kinetic * between(0.3, 1.1)), (0.3, kinetic))
+        more: dict[str, Any] = {"curve": curve} if kind == 2 else {}
+        if kind == 1 and name == "finger":
+            more["stiffness"] = between(500, 5000)
+        static = kinetic * (1.0 if random.integers(2) else between(1, 2))
+        contacts[name] = Contact(kinetic=kinetic, static=static, **more)
+    mass, stiffness = between(2e-3, 2e-2), between(20, 400)
+    ratio = (0.0, between(0, 0.3), between(0, 2), 1.0)[random.integers(4)]
+    drive = Drive.with_damping_ratio(
+        mass=mass, stiffness=stiffness, damping_ratio=ratio, **contacts
+    )
+    times = (0.0, between(0.01, 0.1), between(0.11, 0.3))
+    velocity = between(-0.3, 0.3)
+    inputs: dict[str, Any] = {"mouse_velocity": velocity}
+    if kind == 3:
+        inputs["mouse_velocity"] = Profile(times, [between(-0.3, 0.3) for _ in times])
+        inputs["plate_load"] = Profile(times, [between(0, 2) for _ in times])
+    release = Release(
+        displacement=between(-3e-3, 3e-3),
+        velocity=None if random.integers(2) else velocity,
+        **inputs,
+    )
+    return drive, release, between(0.01, 1) if random.integers(3) == 0 else None
+
+
+def as_input(drive: Drive, release: Release) -> dict[str, Any]:
+    """In the names of pindrive.h; infinity as text, since JSON has none."""
+
+    def rows(given: float | Profile) -> Any:
+        return given.rows if isinstance(given, Profile) else [(0.0, given)]
+
+    numbers = {"mass": drive.mass, "stiffness": drive.stiffness, "damping": drive.damping}
+    for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
+        numbers |= {f"{name}.kinetic": contact.kinetic, f"{name}.static": contact.static_friction}
+    stiffness = drive.finger.stiffness
+    skin: dict[str, Any] = {} if drive.finger.rigid else {"finger.stiffness": stiffness}
+    curves = {"plate": drive.plate.curve, "finger": drive.finger.curve}
+    velocity: Any = {} if release.velocity is None else {"velocity": release.velocity}
+    return {
+        "drive": numbers | skin,
+        "curves": {name: curve for name, curve in curves.items() if curve},
+        "release": {"displacement": release.displacement} | velocity,
+        "profiles": {
+            "mouse_velocity": rows(release.mouse_velocity),
+            "plate_load": rows(release.plate_load),
+        },
+    }
+
+
+def doubles(bits: str) -> np.ndarray[Any, Any]:
+    return np.frombuffer(bytes.fromhex(bits))
+
+
+def compare(found: dict[str, Any], motion: Motion) -> None:
+    """A motion from the page is that of Python: the same events, and all else to rounding.
+
+    sin, cos and exp of C libraries differ by a unit in the last place, and so do times; positions
+    and what follows from them by as much of the largest.
+    """
+    assert found["status"] == int(motion.status)
+    assert found["end"] == motion.ending.end.name
+    ends = [end for segment in motion.segments for end in (segment.begin, segment.end)]
+    np.testing.assert_allclose(doubles(found["segments"]), ends, rtol=1e-14, atol=1e-15)
+    numbers = motion.numbers()
+    expected = np.array([float(numbers[name]) for name in NAMES])
+    np.testing.assert_allclose(doubles(found["numbers"]), expected, rtol=1e-12, atol=1e-15)
+    t = doubles(found["times"])
+    along = [motion.position(t), motion.velocity(t), motion.acceleration(t)]
+    along.append(motion.force("plate", t))
+    for values, expected in zip(np.split(doubles(found["values"]), 4), along, strict=True):
+        # At a jump that lies at such a time the two sides may be exchanged by a rounding.
+        off = np.abs(values - expected) > 1e-12 * np.abs(expected).max()
+        for time in t[off]:
+            assert motion.events_between(max(0.0, time - 1e-9), time + 1e-9)
