@@ -19,6 +19,7 @@ COMMAND_GROUPS: Final = (
     "Measurements",
     "The whole device",
     "Studies",
+    "Designs",
     "The paper behind the model",
 )
 """The order in which the help lists them; a group that is not here comes after them."""
@@ -33,6 +34,7 @@ _PANELS: Final = ("Arguments", WRITTEN, PAGE, ASKED, COMPUTED, FILES, "Help")
 
 _SHARED: Final = (
     "app",
+    "design_tables",
     "errors",
     "fit_tables",
     "help",

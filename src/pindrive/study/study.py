@@ -89,8 +89,8 @@ class Study(Plan):
             raise ValueError(refusal("device", "what load_device reads", repr(device)))
         tables: dict[str, Any] = {
             "name": name or None,
-            "axes": _as_written(axes),
-            "tolerances": _as_written(tolerances),
+            "axes": as_written(axes),
+            "tolerances": as_written(tolerances),
             "outputs": None if outputs is None else list(outputs),
             "sample": None if sample is None else dict(sample),
             "specification": None if specification is None else dict(specification),
@@ -186,8 +186,12 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Stud
     return study
 
 
-def _as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Axes as a study file writes them: numbers, which are SI, with their unit."""
+def as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Axes as a study file writes them: numbers, which are SI, with their unit.
+
+    Raises:
+        ValueError: they are no mapping.
+    """
     if axes is None:
         return None
     if not isinstance(axes, Mapping):
