@@ -28,7 +28,8 @@ FILES = ("design.toml", "design.nc", "design.png", "transient.png", "speed.png")
 def design(
     wish: Annotated[Path, typer.Argument(metavar="WISH", help="Wish file (TOML).")],
     output: Annotated[
-        Path, file_option("A folder for the design and its figures.", "--output", "-o", metavar="DIR")
+        Path,
+        file_option("A folder for the design and its figures.", "--output", "-o", metavar="DIR"),
     ],
     seed: Annotated[int, count_option("--seed", "Of all draws.", least=0)] = 1,
     threads: ThreadsOption = None,
@@ -41,7 +42,7 @@ def design(
     the folder holds the closest.
     """
     from pindrive.files.output import check_folder, write_files
-    from pindrive.optimisation.optimise import optimise
+    from pindrive.optimisation.designing import optimise
     from pindrive.optimisation.wish import read_wish
 
     with refusing():

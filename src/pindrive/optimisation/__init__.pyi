@@ -1,7 +1,7 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
-from pindrive.optimisation.optimise import Effort as Effort
-from pindrive.optimisation.optimise import optimise as optimise
+from pindrive.optimisation.designing import optimise as optimise
+from pindrive.optimisation.effort import Effort as Effort
 from pindrive.optimisation.results import Alternative as Alternative
 from pindrive.optimisation.results import Demanded as Demanded
 from pindrive.optimisation.results import Design as Design

@@ -59,7 +59,9 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
 def _parts(variable: Variable, resolution: int) -> Array:
     if not variable.choices:
         return np.linspace(0.0, 1.0, resolution)
-    rows = np.unique(np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round())
+    rows = np.unique(
+        np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round()
+    )
     return (rows + 0.5) / variable.choices
 
 

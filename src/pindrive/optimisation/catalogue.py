@@ -25,7 +25,7 @@ _EXAMPLE: Final = "part, drive.stiffness [N/m], price"
 
 @dataclass(frozen=True, slots=True)
 class Catalogue:
-    """Parts of one kind, of which a design takes one; in the order of the values of their first key.
+    """Parts of one kind, of which a design takes one, in the order of their first key's values.
 
     Attributes:
         name: of the kind, such as "spring".

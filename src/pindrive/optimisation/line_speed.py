@@ -1,8 +1,8 @@
 """The largest hand speed at which lines stay distinct, for many devices, with few trials each.
 
 The criterion and the grid of speeds are those of `largest_speeds`; a trial is a hand that goes over
-two lines once. Where only a device that beats a speed matters, one trial at that speed tells most of
-them.
+two lines once. Where only a device that beats a speed matters, one trial at that speed tells most
+of them.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from pindrive.device.device import Criteria, Device
     from pindrive.study.design import Plan
 
-PRECISION: Final = 5e-3
+PRECISION: Final = 1e-2
 """Of a speed, a part of it, during a search."""
 GAIN: Final = 1.01
 """By which a device must beat a speed: by less it does not matter."""
-SLOWEST: Final = default("speed.slowest")
-FASTEST: Final = default("speed.fastest")
+SLOWEST: Final[float] = default("speed.slowest")
+FASTEST: Final[float] = default("speed.fastest")
 Asked = tuple["Mapping[str, float]", float]
 """The values of keys, SI, and the speed to beat; NaN: there is none."""
 
@@ -49,7 +49,7 @@ def _speed(plan: Plan, at: Mapping[str, float], beat: float) -> tuple[float, int
         file = device_at(plan, at)
         assert file.whole
         device, criteria = file.device, file.criteria
-        pitches = plan.page.page.grating
+        pitches = plan.page.page.grating or ()
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
             climb = _Climb(device, pitch, criteria)
@@ -71,7 +71,7 @@ class _Climb:
     criteria: Criteria
     trials: int = 0
     grid: list[float] = field(
-        default_factory=lambda: np.geomspace(SLOWEST, FASTEST, TRIED).tolist()
+        default_factory=lambda: [float(v) for v in np.geomspace(SLOWEST, FASTEST, TRIED)]
     )
 
     def distinct(self, speed: float) -> bool:
@@ -103,7 +103,7 @@ class _Climb:
         return FASTEST
 
     def unbroken(self, below: list[float]) -> bool:
-        """Whether no gap is among these speeds: below the first at which they are distinct, none."""
+        """Whether the lines are distinct at all these speeds from the first at which they are."""
         place = len(below)
         while place and self.distinct(below[place - 1]):
             place -= 1

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
-    from pindrive.optimisation.problem import Count
+    from pindrive.optimisation.effort import Count
     from pindrive.study.robustness import Share
 
 __all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
@@ -191,8 +191,11 @@ class Design(lazy.NotebookHtml):
         """The goals of the design, or what it misses, in a line."""
         if not self.feasible:
             return f"<No design: {self.closest}, {self.status.name}>"
-        reached = ", ".join(f"{label(r.goal.name)} {shown(r.goal.name, r.value)}" for r in self.goals)
-        return f"<Design of {self.device.name or self.device.path.name}: {reached}, {self.status.name}>"
+        reached = ", ".join(
+            f"{label(r.goal.name)} {shown(r.goal.name, r.value)}" for r in self.goals
+        )
+        name = self.device.name or self.device.path.name
+        return f"<Design of {name}: {reached}, {self.status.name}>"
 
     @property
     def status(self) -> Status:

@@ -84,7 +84,7 @@ def search(
     Returns:
         As many points, the best first.
     """
-    size, keys = first.points.shape
+    size = len(first.points)
     several = first.goals.shape[1] > 1
     now, still = first.best(size), 0
     for _ in range(generations):
@@ -151,7 +151,8 @@ def _directions(goals: int, count: int) -> Array:
     rng = np.random.default_rng(0)
     ways = np.maximum(rng.dirichlet(np.ones(goals), count), 1e-3)
     ways[:goals] = np.maximum(np.eye(goals), 1e-3)
-    return ways / ways.sum(axis=1, keepdims=True)
+    found: Array = ways / ways.sum(axis=1, keepdims=True)
+    return found
 
 
 def non_dominated(goals: Array) -> NDArray[np.bool_]:

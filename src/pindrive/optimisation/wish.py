@@ -25,7 +25,7 @@ from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted
-from pindrive.study.axes import written_axes
+from pindrive.study.axes import as_written, written_axes
 from pindrive.study.design import COUNTS, Dimension, Plan
 from pindrive.study.distributions import Distribution, Grid
 from pindrive.study.outputs import (
@@ -40,7 +40,6 @@ from pindrive.study.outputs import (
     label,
 )
 from pindrive.study.spec import device_in, plan_of
-from pindrive.study.study import as_written
 
 __all__ = ["Goal", "Variable", "Wish", "read_wish", "wish_of"]
 
@@ -232,7 +231,8 @@ def _wish(
         for key in _keys(tables.get(name, {})):
             if name != "tolerances" and key in chosen:
                 problems.append(
-                    f"{place}: {key} is in [{name}] and in the catalogue {chosen[key]}; leave one out"
+                    f"{place}: {key} is in [{name}] and in the catalogue {chosen[key]}; "
+                    "leave one out"
                 )
             if name != "conditions" and key in conditions:
                 problems.append(f"{place}: {key} is in [{name}] and in [conditions]; leave one out")

@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from pindrive.lazy import matplotlib
 from pindrive.plot.contours import MAP
-from pindrive.plot.style import GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
+from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.design import variable
 from pindrive.study.slices import QUANTITY, axis_label
 
@@ -61,9 +61,10 @@ def plot_design(found: Design) -> Figure:
             _draw_map(figure, axes, found, drawn)
         for axes in panels[count:]:
             axes.set_axis_off()
-        figure.legend(handles=_key(found), loc="outside lower left", ncols=4)
+        figure.legend(handles=_key(found), loc="outside lower left", ncols=4 if columns > 2 else 2)
         name = found.wish.plan.name or found.device.name
-        figure.head(plain(f"{name}: {_outcome(found)}", _WIDTH))
+        title = plain(f"{name}: {_outcome(found)}", _WIDTH if columns > 2 else 2 * _WIDTH // 3)
+        figure.head(title + ("\nmaps: all else as the design has it" if found.maps else ""))
     return figure
 
 
@@ -93,8 +94,7 @@ def _draw_map(figure: Figure, axes: Axes, found: Design, drawn: Map) -> None:
     goal = found.goals[0].goal.name
     names = [variable(key) for key in drawn.keys]
     x, y = (
-        QUANTITY[name].display_scale * along
-        for name, along in zip(names, drawn.along, strict=True)
+        QUANTITY[name].display_scale * along for name, along in zip(names, drawn.along, strict=True)
     )
     values = QUANTITY[goal].display_scale * drawn.goal
     finite = values[np.isfinite(values)]
@@ -138,6 +138,4 @@ def _key(found: Design) -> list[Artist]:
     if any(not drawn.met.all() for drawn in found.maps):
         handles.append(Patch(color=_UNMET, label="a demand is not met"))
         handles.append(Line2D([], [], color="black", lw=0.7, label="border of the demands"))
-    if found.maps:
-        handles.append(Line2D([], [], color=GREY, lw=0.0, label="all else as the design has it"))
     return handles

@@ -310,7 +310,7 @@ DESIGNED: Final[tuple[Quantity, ...]] = (
         "design.distinct_speed",
         "v_d",
         "m/s",
-        "largest hand speed at which the lines of a grating stay distinct, the least of its pitches",
+        "largest hand speed at which the lines of a grating stay distinct, least of its pitches",
     ),
 )
 """Numbers of a design beside those of its motions and scans."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite, nan
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Final
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from pindrive.evaluation.resolution import largest_speeds
 from pindrive.lazy import qmc
 from pindrive.optimisation.around import alternatives, at_ends, maps
+from pindrive.optimisation.effort import Count, Effort, usual_effort
 from pindrive.optimisation.problem import (
-    Count,
     Problem,
     first_cases,
     spread_cases,
@@ -45,35 +45,6 @@ WORSE: Final = 1e-3
 """Of a goal or a limit, a part of it: a condition that is worse by less is no other."""
 
 
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """How much is tried.
-
-    Attributes:
-        motions: or scans, of the screening.
-        population: members of the search.
-        generations: of it, at most.
-        conditions: spread over their ranges to find the worst, a power of two.
-        resolution: of a map, along each axis; 0: no map.
-        draws: within the tolerances.
-    """
-
-    motions: int
-    population: int
-    generations: int
-    conditions: int
-    resolution: int
-    draws: int
-
-
-BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
-"""Of what `simulate_batch` follows."""
-SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500)
-"""Of motions that are followed one by one."""
-SCANNED: Final = Effort(16, 12, 24, 8, 5, 100)
-"""Of scans."""
-
-
 def optimise(
     device: DeviceFile | None,
     wish: Mapping[str, Any] | Wish | str | PathLike[str],
@@ -86,8 +57,8 @@ def optimise(
     """Find the design that meets a wish best.
 
     Candidates are spread over what may vary by a Sobol' sequence and simulated as a batch; the best
-    of them are improved by differential evolution, of one goal or of several. Every demand counts by
-    its worst condition, and so does every goal: conditions that are worse than those considered are
+    of them are improved by differential evolution, of one goal or of several. Every demand and
+    every goal counts by its worst condition: conditions that are worse than those considered are
     looked for at the design that was found, and the search is repeated with them. The same seed
     gives the same design.
 
@@ -103,8 +74,8 @@ def optimise(
 
     Returns:
         The best design, or where none meets the demands the closest one: its device file, the front
-        of several goals, what the demands cost, maps around it, the nearest catalogue parts, and the
-        part of the designs built within the tolerances that meets the demands.
+        of several goals, what the demands cost, maps around it, the nearest catalogue parts, and
+        the part of the designs built within the tolerances that meets the demands.
 
     Raises:
         ConfigError: the wish holds anything unknown, malformed, out of bounds or contradictory. It
@@ -115,7 +86,7 @@ def optimise(
         >>> device = pd.load_device("tactile-mouse.toml")
         >>> design = pd.optimise(device, {
         ...     "axes": {"drive.damping": {"uniform": ["0 N*s/m", "1 N*s/m"]}},
-        ...     "specification": {"peak_displacement": ">= 2.2 mm"},
+        ...     "specification": {"peak_displacement": ">= 2.01 mm"},
         ...     "goals": {"minimise": "settling_time"},
         ... })
         >>> design.feasible
@@ -158,8 +129,7 @@ class _Optimisation:
             threads=threads,
             count=Count(),
         )
-        usual = SCANNED if self.problem.scans else SINGLE if self.problem.slow else BATCHED
-        self.effort = effort or usual
+        self.effort = effort or usual_effort(scans=self.problem.scans, slow=self.problem.slow)
         self.done, self.total = 0, 8 + self.effort.generations
         self.progress = progress
         self.warnings: list[str] = []
@@ -228,7 +198,7 @@ class _Optimisation:
     def _with_yield(
         self, found: Population, chosen: int, excess: Array | None, least: float
     ) -> tuple[Population, int, Array | None]:
-        """Repeat the search with tighter limits until so many of the devices built meet the demands.
+        """Repeat the search with tighter limits until enough of the devices built meet the demands.
 
         Each limit is tightened by how far devices within the tolerances scatter beyond the design,
         as in sequential optimisation and reliability assessment (Du and Chen 2004).
@@ -258,26 +228,29 @@ class _Optimisation:
 
     def _screened(self) -> Population:
         """The best of many candidates, improved."""
-        size = max(self.effort.population, 8)
-        count = max(size, self.effort.motions // len(self.problem.cases))
-        count = 1 << (count - 1).bit_length()  # a Sobol' sequence is even over powers of two
-        sequence = qmc.Sobol(len(self.problem.variables), scramble=True, rng=self.seed)
-        kept = None
-        each = 1 << 16
-        for begin in range(0, count, each):
-            drawn = sequence.random(min(each, count - begin))
-            found = self.problem.population(drawn)
-            kept = found if kept is None else kept + found
-            kept = kept.best(4 * size)
-        assert kept is not None
+        first = self._candidates(self.problem, self.effort.motions)
         self.step()
         return search(
             self.problem,
-            kept.best(size),
+            first,
             generations=self.effort.generations,
             rng=self.rng,
             progress=self.step,
         )
+
+    def _candidates(self, problem: Problem, motions: int) -> Population:
+        """The best of candidates that are spread over all that may vary."""
+        size = max(self.effort.population, 8)
+        count = max(size, motions // len(problem.cases))
+        count = 1 << (count - 1).bit_length()  # a Sobol' sequence is even over powers of two
+        sequence = qmc.Sobol(len(problem.variables), scramble=True, rng=self.seed)
+        kept = None
+        each = 1 << 16
+        for begin in range(0, count, each):
+            found = problem.population(sequence.random(min(each, count - begin)))
+            kept = (found if kept is None else kept + found).best(4 * size)
+        assert kept is not None
+        return kept.best(size)
 
     def _with_worst_conditions(self, found: Population) -> tuple[Population, int]:
         """Repeat the search with conditions that are worse for the design, until there are none.
@@ -319,7 +292,8 @@ class _Optimisation:
         with np.errstate(invalid="ignore"):
             misses = (excess > np.maximum(over, 0.0) + WORSE * problem.scales) & (excess > 0.0)
             slower = new > old + WORSE * np.abs(old)
-        return worst[np.concatenate([misses, slower])]
+        found: Array = worst[np.concatenate([misses, slower])]
+        return found
 
     # ---- what the demands cost -------------------------------------------------------------------
 
@@ -338,10 +312,13 @@ class _Optimisation:
                 demands=(*demands[:i], *demands[i + 1 :], *self._no_worse(found.goals[chosen])),
                 goals=(Goal(demand.name, not demand.at_most),),
             )
+            known = relaxed.population(found.points)
             result = search(
                 relaxed,
-                relaxed.population(found.points),
-                generations=max(1, self.effort.generations // 3),
+                (known + self._candidates(relaxed, self.effort.motions // 8)).best(
+                    len(known.points)
+                ),
+                generations=max(1, self.effort.generations // 2),
                 rng=self.rng,
             )
             self.step()
@@ -400,7 +377,8 @@ class _Optimisation:
             value = reached.value
             if reached.goal.name == SPEED and page and isfinite(value):
                 file = device_at(self.wish.plan, {**self._values(point), **reached.case})
-                limits = largest_speeds(file.device, page.page.grating, criteria=file.criteria)
+                pitches = page.page.grating or ()
+                limits = largest_speeds(file.device, pitches, criteria=file.criteria)
                 whole = min(limit.speed for limit in limits)
                 value = whole
             checked.append(replace(reached, value=value))
