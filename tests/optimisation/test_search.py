@@ -23,7 +23,9 @@ def test_one_goal_within_a_limit_ends_where_both_meet() -> None:
         goal = ((points - 0.1) ** 2).sum(axis=1)
         return goal[:, None], np.maximum(1.5 - points.sum(axis=1), 0.0)
 
-    found = search(worth, started(worth, 3), generations=300, rng=np.random.default_rng(2))
+    found = search(
+        worth, started(worth, 3), generations=300, patience=25, rng=np.random.default_rng(2)
+    )
     assert found.violation[0] == 0.0
     assert found.points[0] == pytest.approx(np.full(3, 0.5), abs=2e-3)
 
@@ -32,7 +34,9 @@ def test_what_no_point_meets_ends_at_the_nearest() -> None:
     def worth(points: Array, _: Array | None) -> tuple[Array, Array]:
         return points[:, :1], 2.0 - points.sum(axis=1) + 0.5
 
-    found = search(worth, started(worth, 2), generations=200, rng=np.random.default_rng(2))
+    found = search(
+        worth, started(worth, 2), generations=200, patience=25, rng=np.random.default_rng(2)
+    )
     assert found.violation[0] == pytest.approx(0.5, abs=1e-3)
 
 
@@ -50,7 +54,7 @@ def test_a_front_is_where_it_must_be_and_spread(goals: int) -> None:
         return np.array(columns).T, np.zeros(len(points))
 
     first = started(worth, goals + 3, size=60)
-    found = search(worth, first, generations=200, rng=np.random.default_rng(3)).goals
+    found = search(worth, first, generations=200, patience=25, rng=np.random.default_rng(3)).goals
     front = found[non_dominated(found)]
     assert len(front) > 40
     radius = np.sqrt((front**2).sum(axis=1))

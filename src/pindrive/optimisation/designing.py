@@ -234,6 +234,7 @@ class _Optimisation:
             self.problem,
             first,
             generations=self.effort.generations,
+            patience=self.effort.patience,
             rng=self.rng,
             progress=self.step,
         )
@@ -277,6 +278,7 @@ class _Optimisation:
             self.problem,
             self.problem.population(found.points),
             generations=max(1, self.effort.generations // 2),
+            patience=self.effort.patience,
             rng=self.rng,
         )
 
@@ -319,6 +321,7 @@ class _Optimisation:
                     len(known.points)
                 ),
                 generations=max(1, self.effort.generations // 2),
+                patience=self.effort.patience,
                 rng=self.rng,
             )
             self.step()

@@ -17,6 +17,7 @@ class Effort:
         conditions: spread over their ranges to find the worst, a power of two.
         resolution: of a map, along each axis; 0: no map.
         draws: within the tolerances.
+        patience: generations without progress after which a search ends.
     """
 
     motions: int
@@ -25,13 +26,14 @@ class Effort:
     conditions: int
     resolution: int
     draws: int
+    patience: int = 25
 
 
 BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
 """Of what `simulate_batch` follows."""
-SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500)
+SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500, 12)
 """Of motions that are followed one by one."""
-SCANNED: Final = Effort(16, 12, 24, 8, 5, 100)
+SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 6)
 """Of scans."""
 
 

@@ -22,8 +22,6 @@ the unit cube. The second argument are the goals to beat, one by one: a goal tha
 own may be any that does not."""
 BEST: Final = 0.15
 """Part of the population that children are drawn to."""
-PATIENCE: Final = 25
-"""Generations without progress after which the search ends."""
 PROGRESS: Final = 1e-5
 """Of the goal, a part of it."""
 
@@ -69,6 +67,7 @@ def search(
     first: Population,
     *,
     generations: int,
+    patience: int,
     rng: np.random.Generator,
     progress: Callable[[], None] = lambda: None,
 ) -> Population:
@@ -78,6 +77,7 @@ def search(
         function: what points are worth.
         first: at least 4 points.
         generations: at most.
+        patience: generations without progress after which it ends.
         rng: of the children.
         progress: called after each generation.
 
@@ -106,7 +106,7 @@ def search(
         now = (kept + found[beside]).best(size)
         progress()
         still = 0 if _gained(before, now) else still + 1
-        if still >= PATIENCE:
+        if still >= patience:
             break
     return now
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -231,6 +232,16 @@ class Demand:
         """The limit in its display unit."""
         quantity = NUMBERS[self.name]
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
+
+
+def as_attribute(demanded: Sequence[Demand]) -> str:
+    """Demands as an attribute of a study's file holds them; empty where there are none."""
+    return json.dumps([[d.name, d.at_most, d.limit] for d in demanded]) if demanded else ""
+
+
+def from_attribute(text: str) -> tuple[Demand, ...]:
+    """The demands that `as_attribute` wrote."""
+    return tuple(Demand(*parts) for parts in json.loads(text or "[]"))
 
 
 def demands(

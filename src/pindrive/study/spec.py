@@ -109,6 +109,7 @@ def plan_of(
         page = _gathered(tables["page"], place, problems)
         device = device if device.whole else device.with_whole()
     reader = _Reader(place, tables, device, problems)
+    demanded = demands(reader.table("specification"), place, problems, reader.among)
     plan = Plan(
         path=path,
         name=reader.text("name") or device.name,
@@ -116,11 +117,11 @@ def plan_of(
         device=device,
         dimensions=reader.dimensions,
         links=reader.links,
-        outputs=reader.outputs(),
+        outputs=tuple(dict.fromkeys((*reader.outputs(), *(d.name for d in demanded)))),
         chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
-        demands=demands(reader.table("specification"), place, problems, reader.among),
+        demands=demanded,
         page=page,
     )
     problems += _too_much(plan)

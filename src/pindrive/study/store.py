@@ -182,6 +182,7 @@ def lay_out(path: Path, plan: Plan) -> None:
                 "study": plan.text,
                 **({"page": plan.page.page.words} if plan.page else {}),
                 **({"links": _links(plan)} if plan.links else {}),
+                "specification": outputs.as_attribute(plan.demands),
                 "identity": identity(plan),
             }
         )
