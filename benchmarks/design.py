@@ -6,8 +6,8 @@
   each variable at nine hand speeds, and beside SciPy's vectorised differential evolution with the
   demands as a penalty;
 - `parts`: examples/catalogue-wish.toml without the yield, beside a grid of all parts;
-- `reader`: examples/tactile-reader-wish.toml beside a grid of `LEVELS` values of each variable, every
-  device of which takes the grid of hand speeds up to its own; the trials of both are counted.
+- `reader`: examples/tactile-reader-wish.toml beside a grid of `LEVELS` values of each variable, all
+  of whose devices take the grid of hand speeds up to their own; the trials of both are counted.
 """
 
 from __future__ import annotations

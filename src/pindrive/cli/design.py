@@ -11,7 +11,13 @@ import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import command
-from pindrive.cli.options import OverridesOption, ThreadsOption, count_option, file_option
+from pindrive.cli.options import (
+    ClusterOption,
+    OverridesOption,
+    ThreadsOption,
+    count_option,
+    file_option,
+)
 from pindrive.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -33,6 +39,7 @@ def design(
     ],
     seed: Annotated[int, count_option("--seed", "Of all draws.", least=0)] = 1,
     threads: ThreadsOption = None,
+    cluster: ClusterOption = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Find the design that meets a wish best.
@@ -46,12 +53,16 @@ def design(
     from pindrive.optimisation.wish import read_wish
 
     with refusing():
+        if threads and cluster:
+            raise ValueError("give --threads or --cluster, not both: workers have their own")
         wanted = read_wish(wish, overrides or ())
         _check_folder(output)
         check_folder(output)
         with bar("Designs") as progress:
             tell = progress or (lambda done, total: None)
-            found = optimise(None, wanted, seed=seed, threads=threads, progress=tell)
+            found = optimise(
+                None, wanted, seed=seed, threads=threads, cluster=cluster, progress=tell
+            )
         write_files(output, _files(found, output))
     from pindrive.cli.design_tables import design_report
     from pindrive.cli.tables import show

@@ -63,6 +63,12 @@ PlotOption = Annotated[Path | None, file_option("Draw it: .png, .svg or .pdf.")]
 CsvOption = Annotated[
     Path | None, file_option("Even samples; events go beside it, to FILE-events.csv.")
 ]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS", help="Work on a Dask cluster instead.", rich_help_panel=COMPUTED
+    ),
+]
 ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
 
 

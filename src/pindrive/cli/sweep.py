@@ -10,6 +10,7 @@ import typer
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import COMPUTED, command
 from pindrive.cli.options import (
+    ClusterOption,
     OverridesOption,
     StudyArgument,
     ThreadsOption,
@@ -41,12 +42,7 @@ def sweep(
         int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
     threads: ThreadsOption = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS", help="Work on a Dask cluster instead.", rich_help_panel=COMPUTED
-        ),
-    ] = None,
+    cluster: ClusterOption = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Compute all points of a study and write them into one NetCDF file.

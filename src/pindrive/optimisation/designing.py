@@ -26,6 +26,7 @@ from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
 from pindrive.optimisation.wish import PRICE, SPEED, Goal, Wish, read_wish, wish_of
 from pindrive.quantities.table import check_whole
+from pindrive.study.cluster import Cluster, crew
 from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
 from pindrive.study.outputs import Demand
@@ -52,6 +53,7 @@ def optimise(
     seed: int = 1,
     effort: Effort | None = None,
     threads: int | None = None,
+    cluster: str | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Design:
     """Find the design that meets a wish best.
@@ -70,6 +72,7 @@ def optimise(
         seed: of all draws, at least 0.
         effort: how much is tried; as the kind of the wish needs unless given.
         threads: how many work, at least 1; all cores unless given.
+        cluster: the address of a Dask scheduler, whose workers do the work instead.
         progress: called with the parts of the work done and in all.
 
     Returns:
@@ -102,7 +105,12 @@ def optimise(
         if device is None:
             raise ValueError("device must be what load_device reads, got None")
         wanted = wish_of(device, wish)
-    return _Optimisation(wanted, seed, effort, threads, progress).run()
+    if threads is not None and cluster is not None:
+        raise ValueError("give threads or cluster, not both: workers have their own")
+    run = _Optimisation(wanted, seed, effort, threads, progress)
+    with crew(cluster) as workers:
+        run.problem.crew = workers if isinstance(workers, Cluster) else None
+        return run.run()
 
 
 class _Optimisation:

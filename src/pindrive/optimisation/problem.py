@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +24,16 @@ from pindrive.study.workers import standing
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from pindrive.study.cluster import Cluster
     from pindrive.study.design import Plan
 
 Array = NDArray[np.float64]
 POINTS: Final = 1 << 18
 """Motions that are simulated together."""
 PORTION: Final = 4
-"""Devices whose speeds a process finds at a time."""
+"""Scans, or devices whose speeds are found, that a process takes at a time."""
+SENT: Final = 1 << 14
+"""Motions that a worker elsewhere takes at a time."""
 BEATEN: Final = 0.6
 """Part of a population that a device must be faster than to be followed further."""
 FAR: Final = 1e3
@@ -64,6 +67,8 @@ class Problem:
     demands: tuple[Demand, ...]
     goals: tuple[Goal, ...]
     threads: int | None = None
+    crew: Cluster | None = None
+    """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
     price: float = 0.0
     """Of parts that are no variables."""
     count: Count = field(default_factory=Count)
@@ -144,7 +149,7 @@ class Problem:
         asked = [name for name in self.names if name not in DESIGN_OUTPUTS]
         if asked:
             size = shape[0] * shape[1]
-            table = evaluate(self.plan, columns, size, (*asked, "status"), self.threads)
+            table = self._evaluated(columns, size, (*asked, "status"))
             exists = exist(table["status"])
             for name in asked:
                 found[name] = np.where(exists, table[name], np.nan).reshape(shape)
@@ -158,6 +163,21 @@ class Problem:
             found[SPEED] = self._speeds(columns, shape, beat)
         return found
 
+    def _evaluated(
+        self, columns: dict[str, Array], size: int, outputs: tuple[str, ...]
+    ) -> dict[str, Any]:
+        """The outputs at points, by the workers elsewhere where there are any."""
+        each = PORTION if self.scans or self.slow else SENT
+        if self.crew is None or size <= each:
+            return evaluate(self.plan, columns, size, outputs, self.threads)
+        portions = []
+        for begin in range(0, size, each):
+            end = min(begin + each, size)
+            part = {key: values[begin:end] for key, values in columns.items()}
+            portions.append((part, end - begin, outputs))
+        done = [*self.crew.spread(_evaluate, self.plan, portions)]
+        return {name: np.concatenate([table[name] for table in done]) for name in outputs}
+
     def _speeds(
         self, columns: dict[str, Array], shape: tuple[int, int], beat: Array | None
     ) -> Array:
@@ -168,7 +188,9 @@ class Problem:
         ]
         portions = [asked[i : i + PORTION] for i in range(0, len(asked), PORTION)]
         processes = worker_count(self.threads)
-        if processes == 1 or len(portions) == 1:
+        if self.crew is not None:
+            rows = [*self.crew.spread(speeds, self.plan, portions)]
+        elif processes == 1 or len(portions) == 1:
             rows = [speeds(self.plan, portion) for portion in portions]
         else:
             rows = standing(processes).spread(speeds, self.plan, portions)
@@ -209,6 +231,12 @@ class Problem:
     def population(self, points: Array) -> Population:
         """Points with what they are worth."""
         return Population(points, *self(points))
+
+
+def _evaluate(plan: Plan, portion: tuple[dict[str, Array], int, tuple[str, ...]]) -> dict[str, Any]:
+    """The outputs at a portion of points, with one thread."""
+    columns, size, outputs = portion
+    return evaluate(plan, columns, size, outputs, 1)
 
 
 def first_cases(conditions: tuple[Variable, ...]) -> Array:
