@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from rich.console import Console
 
 from command import GOOD, refused, run
 from pindrive import load_device
 from pindrive.cli.design import NONE_MEETS
-from pindrive.optimisation import effort
+from pindrive.cli.design_tables import design_report
+from pindrive.optimisation import effort, optimise
 from wishes import SMALL
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -66,6 +68,27 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     text = Path("out/design.toml").read_text("utf-8")
     assert "# No design meets the demands; the closest misses peak_displacement" in text
     load_device("out/design.toml")
+
+
+def test_tables_show_values_in_their_units() -> None:
+    """Every number of the report is one of the result, in its display unit."""
+    found = optimise(None, "wish.toml", effort=SMALL)
+    text = Path("report.txt")
+    with text.open("w", encoding="utf-8") as file:
+        Console(file=file, width=120).print(design_report(found))
+    lines = [line.split() for line in text.read_text("utf-8").splitlines()]
+    rows = {words[0]: words for words in lines if words}
+    damping = found.values["drive.damping"]
+    assert float(rows["drive.damping"][1]) == pytest.approx(damping, rel=1e-3)
+    assert float(rows["finger.kinetic"][1]) == pytest.approx(
+        1e3 * found.values["finger.kinetic"], rel=1e-3
+    )
+    (demanded,) = found.demands
+    _, sign, limit, unit, worst, _, room, *_ = rows["peak_displacement"]
+    assert (sign, limit, unit) == ("≥", "2.2", "mm")
+    assert float(worst) == pytest.approx(1e3 * demanded.value, rel=1e-3)
+    assert float(room) == pytest.approx(-1e3 * demanded.excess, rel=1e-2) and float(room) >= 0.0
+    assert float(rows["least"][2]) == pytest.approx(1e3 * found.goals[0].value, rel=1e-3)
 
 
 def test_a_folder_that_holds_something_else_is_refused() -> None:

@@ -285,3 +285,23 @@ def test_progress_is_told_and_ctrl_c_ends_it() -> None:
     with pytest.raises(Stop):
         optimise(pd.load_device(MOUSE), PAPER, effort=SMALL, progress=tell)
     assert told == [(i, told[0][1]) for i in range(1, 6)]
+
+
+def test_a_demand_whose_worst_condition_lies_inside_is_met_there() -> None:
+    """The trough is deepest for a hand between the slowest and the fastest."""
+    wish = {
+        "axes": {"drive.damping_ratio": {"uniform": [0.02, 0.6]}},
+        "conditions": {"mouse_velocity": {"uniform": ["1 mm/s", "200 mm/s"]}},
+        "specification": {"swing": ">= 1 mm", "settling_time": "<= 90 ms"},
+        "goals": {"minimise": "trough_displacement"},
+    }
+    found = pd.optimise(pd.load_device(MOUSE), wish, effort=SMALL)
+    dense = np.linspace(1e-3, 0.2, 3001)
+    longest, _ = worst(
+        dense,
+        stiffness=[100.0],
+        finger_kinetic=[5e-3],
+        damping_ratio=[found.values["drive.damping_ratio"]],
+    )
+    assert found.feasible == bool(longest[0] <= 0.09 * (1.0 + 1e-6))
+    assert found.demands[1].value >= longest[0] * (1.0 - 2e-3)

@@ -144,6 +144,8 @@ def _words(found: Design) -> list[str]:
             f"(95 % interval {100.0 * share.low:.3f} to {100.0 * share.high:.3f} %)"
             + (f", ≥ {100.0 * least:g} % demanded" if (least := found.wish.least_yield) else "")
         )
+        if not found.wish.least_yield and share.met < 0.9 * share.of:
+            lines.append('A demand for it leaves room: yield = ">= 95 %" in [specification]')
     binding = [d.demand.text() for d in found.demands if d.binds]
     if binding:
         lines.append(f"Binding: {', '.join(binding)}")

@@ -65,7 +65,7 @@ def optimise(
     gives the same design.
 
     Args:
-        device: what varies; None where `wish` is a file that names one.
+        device: what varies; None where `wish` is a file that names one, which it stands for else.
         wish: the tables of a wish file, in which a number is SI and text has a unit, or the path of
             one: `axes` and `catalogues` (what may vary), `conditions`, `specification` (what is
             demanded), `tolerances`, `goals` and `page`.
@@ -97,8 +97,7 @@ def optimise(
     """
     check_whole(seed, "seed", 0)
     if isinstance(wish, str | PathLike):
-        read = read_wish(wish)
-        wanted = read if device is None else wish_of(device, read.tables)
+        wanted = read_wish(wish, device=device)
     elif isinstance(wish, Wish):
         wanted = wish
     else:
@@ -275,6 +274,9 @@ class _Optimisation:
                 self.problem, cases=np.unique(np.concatenate([self.problem.cases, worst]), axis=0)
             )
             found = self._again(found)
+        for i in np.argsort(found.goals[:, 0], kind="stable"):  # a little beside the best, then
+            if found.violation[i] <= 0.0 and not len(self._worse_cases(found.points[i], ROUNDS)):
+                return found, int(i)
         self.warnings.append(
             f"worse conditions were found in each of {ROUNDS} searches; there may be others yet"
         )
@@ -300,7 +302,7 @@ class _Optimisation:
         over, excess = (problem.excess(n)[:, 0].max(axis=1) for n in (before, now))
         old, new = (problem.minimised(n)[:, 0].max(axis=1) for n in (before, now))
         with np.errstate(invalid="ignore"):
-            misses = (excess > np.maximum(over, 0.0) + WORSE * problem.scales) & (excess > 0.0)
+            misses = excess > np.maximum(over, 0.0) * (1.0 + WORSE)
             slower = new > old + WORSE * np.abs(old)
         found: Array = worst[np.concatenate([misses, slower])]
         return found

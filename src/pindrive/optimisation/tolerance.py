@@ -49,6 +49,7 @@ def excess_as_built(
     drawn = replace(
         problem,
         plan=plan,
+        goals=(),
         variables=tuple(Variable(key, {key: axis}) for key, axis in plan.tolerances.items()),
         links=implied_links(device, varied, problem.scans) | dict(plan.tolerance_links),
         price=float(problem.prices(point[None])[0]),

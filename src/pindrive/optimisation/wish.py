@@ -23,10 +23,11 @@ from pindrive.files.device import ConfigError, DeviceFile, keys_meant, read_tabl
 from pindrive.files.schema import written
 from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
+from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import as_written, written_axes
-from pindrive.study.design import COUNTS, Dimension, Plan
+from pindrive.study.design import COUNTS, Dimension, Plan, read_page
 from pindrive.study.distributions import Distribution, Grid
 from pindrive.study.outputs import (
     DESIGN_OUTPUTS,
@@ -149,12 +150,15 @@ class Wish:
         return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
 
 
-def read_wish(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Wish:
+def read_wish(
+    path: str | PathLike[str], overrides: Iterable[str] = (), device: DeviceFile | None = None
+) -> Wish:
     """The wish that a file describes.
 
     Args:
         path: a TOML file.
         overrides: "key=value" each, as for `load_device`.
+        device: what varies in place of the device that the file names.
 
     Raises:
         ConfigError: it cannot be read, or holds anything unknown, malformed, out of bounds or
@@ -166,12 +170,14 @@ def read_wish(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Wish:
         what = "is a device file" if tables.keys() & {*TABLES} else "is no wish"
         raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
     problems = [*_unknown(tables, file)]
-    device, text = device_in(tables, file, overrides, problems)
-    return _wish(tables, device, file, str(file), text, problems)
+    own, text = device_in(tables, file, overrides, problems)
+    return _wish(tables, device or own, file, str(file), text, problems)
 
 
 def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     """The wish that tables describe, as a wish file has them; numbers are SI, text has a unit.
+
+    Paths are relative to the folder of the device file.
 
     Args:
         device: what varies.
@@ -190,7 +196,7 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     if isinstance(given.get("page"), str):
         given["page"] = Page(text=given["page"])
     if isinstance(given.get("page"), Mapping):
-        given["page"] = Page(**given["page"])
+        given["page"] = read_page(dict(given["page"]), device.path)
     if isinstance(given.get("page"), Page):
         given["page"].check("page.{}")
     text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
@@ -240,6 +246,10 @@ def _wish(
         problems.append(f"{place}: nothing may vary; write what may in [axes] or [catalogues]")
     goals = _goals(tables.get("goals", {}), place, _among(scans), problems)
     demanded = demands(tables.get("specification", {}), place, problems, _among(scans))
+    try:
+        budgets.DEMANDS.check(len(demanded), where=place)
+    except ValueError as error:
+        problems.append(str(error))
     least = _least_yield(demanded, goals, tables, place, problems)
     demanded = tuple(demand for demand in demanded if demand.name != YIELD)
     if problems:
@@ -248,7 +258,8 @@ def _wish(
     axes = {**tables.get("axes", {}), **listed}
     rest = {k: v for k, v in tables.items() if k not in ("catalogues", "goals", "specification")}
     study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
-    study |= {"sample": {"count": 1}, "chunk": 1 << 12}
+    chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
+    study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
     plan = plan_of(study, device, path=path, place=place, text=text, problems=problems)
     problems += _contradictions(plan, demanded, goals, catalogues, place)
     problems += _no_ranges(plan, conditions, place)

@@ -125,7 +125,8 @@ def _draw_map(figure: Figure, axes: Axes, found: Design, drawn: Map) -> None:
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.06, aspect=20)
     bar.set_label(axis_label(goal))
     bar.outline.set_linewidth(0.0)
-    axes.set_title(f"demands met in {100.0 * drawn.share:.3g} %", fontsize=SMALL, loc="left")
+    if found.demands:
+        axes.set_title(f"demands met in {100.0 * drawn.share:.3g} %", fontsize=SMALL, loc="left")
 
 
 def _key(found: Design) -> list[Artist]:
