@@ -18,7 +18,7 @@ import pindrive as pd
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 FUNCTIONS = [name for name in pd.__all__ if isinstance(getattr(pd, name), FunctionType)]
 WITH_EXAMPLES = ["Study", "load_device", "load_study", "local_sensitivity", "robustness"]
-WITH_EXAMPLES += ["scan", "sobol"]
+WITH_EXAMPLES += ["optimise", "scan", "sobol"]
 
 
 def test_completion_offers_the_public_names() -> None:
@@ -34,7 +34,11 @@ def test_the_package_is_imported_without_its_modules() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["quantities", "motion", "device", "evaluation", "files", "study", "fitting"]
+    "name",
+    [
+        *("quantities", "motion", "device", "evaluation", "files", "study", "fitting"),
+        "optimisation",
+    ],
 )
 def test_a_package_says_what_is_public(name: str) -> None:
     """Its docstring has a line for each name, and each name is what it is said to be."""

@@ -18,6 +18,7 @@ from pindrive.motion.drive import Profile as Profile
 from pindrive.motion.motion import Motion as Motion
 from pindrive.motion.release import Release as Release
 from pindrive.motion.simulate import simulate as simulate
+from pindrive.optimisation.designing import optimise as optimise
 from pindrive.quantities.status import Status as Status
 from pindrive.quantities.table import ImplausibleValueWarning as ImplausibleValueWarning
 from pindrive.study.local_sensitivity import local_sensitivity as local_sensitivity

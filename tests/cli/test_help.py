@@ -19,12 +19,14 @@ from command import run
 from pindrive.cli.app import app
 from pindrive.cli.help import COMMAND_GROUPS
 from pindrive.cli.studio import PAGE as STUDIO_PAGE
+from pindrive.optimisation import effort
+from wishes import SMALL
 
 PROGRAM: Any = typer.main.get_command(app)
 NAMES: list[str] = PROGRAM.list_commands(None)
 SHARED = {
     *("__init__", "app", "errors", "help", "options", "progress"),
-    *("fit_tables", "scan_tables", "study_tables", "tables"),
+    *("design_tables", "fit_tables", "scan_tables", "study_tables", "tables"),
 }
 HEADINGS = (
     *("Arguments", "What is written", "What is on the page", "What is asked"),
@@ -117,12 +119,15 @@ def test_the_help_of_a_command_shows_its_options_by_group_and_its_example(name: 
 
 
 @pytest.mark.usefixtures("in_empty_folder")
-def test_the_examples_run_one_after_the_other() -> None:
+def test_the_examples_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
     """All but `paper`, which takes long, and a studio that is not built; they have other tests."""
     times = [0.25 * i for i in range(200)]
     rows = "".join(f"{t},{2.0 * exp(-0.02 * t) * cos(0.1 * t):.4f}\n" for t in times)
     Path("pin.csv").write_text(f"t [ms],position [mm]\n{rows}")
     assert run("init", "study.toml", "--study").exit_code == 0
+    vary = 'base = "device.toml"\n[axes]\ndrive.stiffness = ["200 N/m", "300 N/m"]\n'
+    Path("wish.toml").write_text(f'{vary}[goals]\nminimise = "settling_time"\n')
+    monkeypatch.setattr(effort, "BATCHED", SMALL)
     for name in sorted(NAMES, key=lambda name: name not in BEFORE_OTHERS):
         if name == "paper" or (name == "studio" and not STUDIO_PAGE.exists()):
             continue

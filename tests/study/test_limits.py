@@ -131,7 +131,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
 
 def test_a_cluster_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
-    monkeypatch.setattr("pindrive.study.runner._PATIENCE", "0.2s")
+    monkeypatch.setattr("pindrive.study.cluster._PATIENCE", "0.2s")
     plan()
     said = run("study.toml", "--cluster", "tcp://127.0.0.1:9")
     assert said.exit_code == 2
@@ -141,7 +141,7 @@ def test_a_cluster_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_workers_of_another_version_are_refused() -> None:
     from pindrive import __version__
-    from pindrive.study.runner import _check_versions
+    from pindrive.study.cluster import _check_versions
 
     _check_versions({"tcp://one": __version__, "tcp://two": __version__})
     with pytest.raises(ValueError, match=r"must be version .*, got 0\.0\.1 on tcp://two"):

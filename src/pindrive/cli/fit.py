@@ -11,6 +11,7 @@ import typer
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import ASKED, COMPUTED, command
 from pindrive.cli.options import (
+    ClusterOption,
     ForceOption,
     OverridesOption,
     PlotOption,
@@ -58,6 +59,7 @@ def fit(
     ] = False,
     plot: PlotOption = None,
     seed: Annotated[int, count_option("--seed", "Of the candidates.", least=0)] = 1,
+    cluster: ClusterOption = None,
     overrides: OverridesOption = None,
     force: ForceOption = False,
 ) -> None:
@@ -84,7 +86,15 @@ def fit(
         from pindrive.fitting.comparison import compare_models
         from pindrive.fitting.estimation import fit as fitted
 
-        found = fitted(given, loaded.drive, loaded.release, free=keys, bounds=bounds, seed=seed)
+        found = fitted(
+            given,
+            loaded.drive,
+            loaded.release,
+            free=keys,
+            bounds=bounds,
+            seed=seed,
+            cluster=cluster,
+        )
         compared = compare_models(found, seed) if compare else None
         if output:
             from pindrive.fitting.device_file import fitted_file

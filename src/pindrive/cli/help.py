@@ -19,6 +19,7 @@ COMMAND_GROUPS: Final = (
     "Measurements",
     "The whole device",
     "Studies",
+    "Designs",
     "Other simulators",
     "The paper behind the model",
 )
@@ -34,6 +35,7 @@ _PANELS: Final = ("Arguments", WRITTEN, PAGE, ASKED, COMPUTED, FILES, "Help")
 
 _SHARED: Final = (
     "app",
+    "design_tables",
     "errors",
     "fit_tables",
     "help",

@@ -49,4 +49,8 @@ def map_study(
             with writing([target], [file]) as parts, naming(output):
                 figure = plot_study(view, names, *chosen, held)
                 save_picture(figure, output, parts[output])
+    from pindrive.cli.study_tables import compliance_words
+
+    for line in compliance_words(file):
+        typer.echo(line)
     typer.echo(f"Wrote {output}")

@@ -72,6 +72,9 @@ ForceOption = Annotated[bool, option(FILES, "Replace such a file that is there."
 RateOption = Annotated[
     str | None, file_option('Of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY")
 ]
+ClusterOption = Annotated[
+    str | None, option(COMPUTED, "Work on a Dask cluster instead.", metavar="ADDRESS")
+]
 ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
 
 

@@ -17,6 +17,7 @@ from pindrive.files.device import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
+from pindrive.study.compliance import points_that_meet
 from pindrive.study.distributions import base_value
 from pindrive.study.evaluate import why
 from pindrive.study.outputs import NUMBERS, label
@@ -26,6 +27,7 @@ from pindrive.study.validation import coefficient_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from rich.console import RenderableType
     from rich.table import Table
@@ -63,10 +65,21 @@ def sweep_report(plan: Plan, done: Result) -> list[str]:
     if numbered and done.settled >= 0:
         of_them = " of those with numbers" if done.refused else ""
         lines.append(f"settled: {percent(done.settled, numbered)}{of_them}")
+    if done.complete:
+        lines += compliance_words(done.path)
     if done.refused and done.complete:
         lines.append(f"without numbers: {percent(done.refused, done.points)}, by their status")
         lines += [_why_without(plan, done, *status) for status in _statuses(done)]
     return lines
+
+
+def compliance_words(path: Path) -> list[str]:
+    """How many points of a study's file meet its specification; no line where it has none."""
+    counts = points_that_meet(path)
+    if counts is None or not counts[1]:
+        return []
+    of = counted(counts[1], "point")
+    return [f"specification met: {percent(*counts)} of {of} that exist"]
 
 
 def _why_without(plan: Plan, done: Result, status: str, number: int, first: int) -> str:

@@ -10,6 +10,7 @@ import typer
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import COMPUTED, command
 from pindrive.cli.options import (
+    ClusterOption,
     OverridesOption,
     StudyArgument,
     ThreadsOption,
@@ -34,9 +35,7 @@ def sweep(
         int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
     threads: ThreadsOption = None,
-    cluster: Annotated[
-        str | None, option(COMPUTED, "Work on a Dask cluster instead.", metavar="ADDRESS")
-    ] = None,
+    cluster: ClusterOption = None,
     overrides: OverridesOption = None,
 ) -> None:
     """Compute all points of a study and write them into one NetCDF file.

@@ -153,7 +153,7 @@ def largest_speeds(
     for pitch, line in zip(steps, lines, strict=True):
         if not line < pitch:
             raise ValueError(refusal("width", f"less than the pitch, {pitch!r} m", f"{line!r} m"))
-    _check_work(device, steps, lines, (least, most))
+    check_work(device, steps, lines, (least, most))
     found = []
     for pitch, line in zip(steps, lines, strict=True):
         found.append(_limit(device, pitch, line, needed, (least, most), limits))
@@ -162,10 +162,19 @@ def largest_speeds(
     return tuple(found)
 
 
-def _check_work(
+def check_work(
     device: Device, pitches: Sequence[float], widths: Sequence[float], tried: Band
 ) -> None:
     """Refuse trials whose counts are beyond the budgets, before the first of them.
+
+    Args:
+        device: as for `largest_speeds`.
+        pitches: m.
+        widths: of the lines of each pitch, m.
+        tried: the slowest hand and the fastest, m/s.
+
+    Raises:
+        ValueError: they are.
 
     The slowest trial takes the most looks, the fastest the most pixels; that the looks of all are
     so many times those of the slowest follows from the grid.

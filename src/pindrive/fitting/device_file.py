@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import os
-import re
 from math import isfinite
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pindrive.files.recording import files_named
+from pindrive.files.device_text import device_text
 from pindrive.files.schema import written, written_rows
 from pindrive.fitting.parameters import key_of
 from pindrive.fitting.results import Estimate, is_of_sensor
@@ -17,6 +13,8 @@ from pindrive.motion.drive import Profile
 from pindrive.quantities.quantity import significant
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from pindrive.files.device import DeviceFile
     from pindrive.fitting.results import Fit
 
@@ -33,41 +31,19 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
         found: the fit.
         target: where the text will stand; paths in it are relative to that.
     """
-    tables = {name: dict(table) for name, table in device.tables.items() if table}
-    for key, path in files_named(device.tables, device.path.parent).items():
-        _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
+    values = _values(device, found)
+    values["drive.damping"] = written("drive.damping", found.drive.damping)
     comments: dict[str, list[str]] = {}
-    for key, value in _values(device, found).items():
-        _put(tables, key, value)
-    tables["drive"].pop("damping_ratio", None)
-    _put(tables, "drive.damping", written("drive.damping", found.drive.damping))
     for estimate in found.estimates:
         if not is_of_sensor(estimate) and estimate.parameter.recording in (None, 0):
             comments.setdefault(key_of(estimate.parameter.key), []).append(_comment(estimate))
     names = ", ".join(recording.name for recording in found.recordings)
     lines = [
-        f"# {device.path.name}, fitted by pindrive to {names}.",
-        f"# Intervals hold {100.0 * found.confidence:g} %; status: {found.status.name}.",
-        *(f"# {_plain(warning)}" for warning in found.warnings),
+        f"{device.path.name}, fitted by pindrive to {names}.",
+        f"Intervals hold {100.0 * found.confidence:g} %; status: {found.status.name}.",
+        *found.warnings,
     ]
-    order = ["device", *(name for name in tables if name != "device")]
-    for name in order:
-        if not tables.get(name):
-            continue
-        lines += ["", f"[{name}]"]
-        for key, value in tables[name].items():
-            lines += [f"# {text}" for text in comments.get(f"{name}.{key}", ())]
-            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
-    return "\n".join(lines) + "\n"
-
-
-def _plain(text: str) -> str:
-    return re.sub(r"[\x00-\x1f\x7f]", " ", text)
-
-
-def _put(tables: dict[str, dict[str, Any]], key: str, value: Any) -> None:
-    table, _, name = key.partition(".")
-    tables.setdefault(table, {})[name] = value
+    return device_text(device, values, target, lines, comments)
 
 
 def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:

@@ -15,15 +15,15 @@ from pindrive.fitting.profiles import BetterOptimum, Profile, profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
-from pindrive.fitting.search import Problem, polished, search
+from pindrive.fitting.search import Optimum, Problem, polished, search
 from pindrive.lazy import stats
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.table import check_whole, refusal
+from pindrive.study.cluster import Cluster, Here, crew
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from pindrive.fitting.search import Optimum
     from pindrive.motion.drive import Drive
 
     Array = NDArray[np.float64]
@@ -50,6 +50,7 @@ def fit(
     seed: int = 1,
     confidence: float = 0.95,
     profiles: bool = True,
+    cluster: str | None = None,
 ) -> Fit:
     """Fit parameters of a drive and its releases to recordings.
 
@@ -73,6 +74,8 @@ def fit(
         seed: of the candidates, from 0 on.
         confidence: of the intervals, between 0 and 1.
         profiles: whether to compute them; without, intervals are those of the derivatives alone.
+        cluster: the address of a Dask scheduler, whose workers compute the profiles, which take
+            most of the time.
 
     Returns:
         Values with standard errors, intervals, correlations and whether the recordings tell them;
@@ -107,8 +110,19 @@ def fit(
     solved = _Solved(model, noise, best, tried, confidence)
     solved.settle_noise()
     solved.polish(seed)
-    traced = solved.profiled(seed) if profiles else [None] * len(found)
-    return solved.result(traced)
+    if not profiles:
+        return solved.result([None] * len(found))
+    with crew(cluster) as workers:
+        return solved.result(solved.profiled(seed, workers))
+
+
+def _profiled(shared: tuple[Problem, Optimum, Array, float], i: int) -> Profile | Optimum:
+    """The profile of one parameter, or the better optimum that it meets."""
+    problem, best, covariance, threshold = shared
+    try:
+        return profile(problem, best, i, covariance, threshold)
+    except BetterOptimum as better:
+        return better.end
 
 
 class _Solved:
@@ -166,24 +180,23 @@ class _Solved:
             self.settle_noise()
             self._rank()
 
-    def profiled(self, seed: int) -> list[Profile | None]:
+    def profiled(self, seed: int, workers: Here | Cluster) -> list[Profile | None]:
         """The profile of each parameter; a better fit that one meets is taken instead."""
         for turn in range(RESTARTS):
             hidden = {i for group in self.rank.groups for i in group}
-            try:
-                return [
-                    None
-                    if i in hidden
-                    else profile(
-                        self._problem, self._best, i, self.rank.covariance, self._threshold
-                    )
-                    for i in range(len(self._best.theta))
-                ]
-            except BetterOptimum as better:
-                again = self._problem.refined(better.end.theta)
-                self._best = again if again.cost <= better.end.cost else better.end
-                self.settle_noise()
-                self.polish(seed + turn + 1)
+            shown = [i for i in range(len(self._best.theta)) if i not in hidden]
+            shared = (self._problem, self._best, self.rank.covariance, self._threshold)
+            traced: list[Profile | None] = [None] * len(self._best.theta)
+            for i, found in zip(shown, workers.spread(_profiled, shared, shown), strict=True):
+                if isinstance(found, Optimum):
+                    break
+                traced[i] = found
+            else:
+                return traced
+            again = self._problem.refined(found.theta)
+            self._best = again if again.cost <= found.cost else found
+            self.settle_noise()
+            self.polish(seed + turn + 1)
         self._best = replace(self._best, converged=False)
         return [None] * len(self._best.theta)
 

@@ -186,7 +186,18 @@ def _draw_map(
     if (panel.unsettled & ~panel.refused).any() and min(shown.shape) > 1:
         border = (panel.unsettled | panel.refused).astype(float)
         axes.contour(x, y, border, levels=[0.5], colors="black", linewidths=0.7)
+    if panel.met is not None and min(shown.shape) > 1:
+        _shade_met(axes, x, y, panel.met >= 0.5)
     return drawn
+
+
+def _shade_met(axes: Axes, x: Any, y: Any, met: Any) -> None:
+    """Dots where the specification is met, within a line."""
+    if met.any():
+        inside = axes.contourf(x, y, met * 1.0, levels=[0.5, 1.5], colors="none", hatches=["..."])
+        inside.set(gid="met", linewidth=0.0)
+    if met.any() and not met.all():
+        axes.contour(x, y, met * 1.0, levels=[0.5], colors=PALETTE["stick"], linewidths=1.2)
 
 
 # ---- curves --------------------------------------------------------------------------------------
@@ -212,6 +223,10 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
         if panel.unsettled.any() and len(panels) > 1:
             loose: dict[str, Any] = {"color": colour, "lw": 0.7, "ls": (0, (1, 1.5)), "zorder": 1}
             axes.plot(x, scale * panel.values, **loose, gid="unsettled")
+        if panel.met is not None and (panel.met >= 0.5).any():
+            met = np.where(panel.met >= 0.5, scale * panel.values, np.nan)
+            wide: dict[str, Any] = {"color": colour, "lw": 5.0, "alpha": 0.3, "zorder": 1}
+            axes.plot(x, met, **wide, solid_capstyle="butt", gid="met")
         if len(panels) == 1:
             axes.plot(x, scale * panel.values, color=colour, zorder=1, gid="unsettled")
             _shade_gaps(axes, x, panel)
@@ -248,6 +263,11 @@ def _key(panels: Sequence[Panel]) -> list[Artist]:
         handles.append(
             Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled in the time followed")
         )
+    if any(panel.met is not None and (panel.met >= 0.5).any() for panel in panels):
+        words = f"the specification is met{' by most draws' if median else ''}"
+        look: dict[str, Any] = {"facecolor": "white", "edgecolor": PALETTE["stick"], "hatch": "..."}
+        band = Line2D([], [], color=GREY, lw=5.0, alpha=0.3, label=words)
+        handles.append(Patch(**look, label=words) if maps else band)
     if median and not maps:
         handles.append(Line2D([], [], color=GREY, label="median"))
         handles.append(

@@ -91,6 +91,16 @@ class CsvTable:
             given = quoted(", ".join(self.headings))
             raise ValueError(refusal("the header", f"like {quoted(example)}", given, self.file))
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The columns, in small letters and without their units."""
+        return tuple(self._columns)
+
+    def text(self, name: str) -> list[str]:
+        """The cells of a column, which must be there, as they are written."""
+        index, _ = self._columns[name][0]
+        return [row[index].strip() if index < len(row) else "" for row in self.cells]
+
     def check_rows(self, what: str, least: int) -> None:
         """Refuse fewer rows than `least`."""
         if len(self.cells) < least:

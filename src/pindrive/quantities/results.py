@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import PAPER, Quantity, between, in_table
+from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, in_table
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
@@ -294,3 +294,23 @@ SPEED: Final[tuple[Quantity, ...]] = (
 
 JUDGE: Final = LINE + JUDGED + SPEED
 """What is found of scans and speeds."""
+
+DESIGNED: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "design.price", "P", "1", "price of the catalogue parts of a design together", NON_NEGATIVE
+    ),
+    Quantity(
+        "design.yield",
+        "Y",
+        "1",
+        "part of the devices built within the tolerances that meets all demands",
+        between(0.0, 1.0),
+    ),
+    Quantity(
+        "design.distinct_speed",
+        "v_d",
+        "m/s",
+        "largest hand speed at which the lines of a grating stay distinct, least of its pitches",
+    ),
+)
+"""Numbers of a design beside those of its motions and scans."""

@@ -27,7 +27,7 @@ from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.electromagnet import COIL, MAGNET
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.results import CRITERIA, FINAL, JUDGE, OUTPUTS, RATE
+from pindrive.quantities.results import CRITERIA, DESIGNED, FINAL, JUDGE, OUTPUTS, RATE
 
 DEVICE_INPUTS: Final = tuple(
     replace(row, absent=row.default) if row.absent is None else row
@@ -40,7 +40,7 @@ DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
 QUANTITIES: Final[dict[str, Quantity]] = {
-    q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE)
+    q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED)
 }
 
 T = TypeVar("T")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import inf
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.files.device import keys_meant, not_known
-from pindrive.files.schema import number
+from pindrive.files.schema import number, written
 from pindrive.files.template import DRIVE, NUMBERS, TABLES, usual
 from pindrive.quantities import budgets
 from pindrive.quantities.table import refusal
@@ -16,7 +18,7 @@ from pindrive.study.design import has_part
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from pindrive.quantities.quantity import Quantity
 
@@ -224,3 +226,50 @@ class AxisReader:
         if not 0.0 < off < inf:
             raise ValueError(self._refusal("a deviation greater than 0", given, part))
         return off
+
+
+_NO_VALUES: Final = ("count", "times", "of")
+"""Parts of an axis that are no values of its key."""
+
+
+def as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Axes as a study file writes them: numbers, which are SI, with their unit.
+
+    Raises:
+        ValueError: they are no mapping.
+    """
+    if axes is None:
+        return None
+    if not isinstance(axes, Mapping):
+        raise ValueError(refusal("axes", 'a mapping, like {"mass": [0.01, 0.02]}', repr(axes)))
+    return {given: _axis(given, spec) for given, spec in written_axes(axes)}
+
+
+def _axis(given: str, spec: Any) -> Any:
+    keys = [key for key in keys_meant(given) if key in NUMBERS]
+    if len(keys) != 1:
+        return spec  # said where keys are read
+    key = keys[0]
+
+    def value(one: Any) -> Any:
+        if isinstance(one, Real) and not isinstance(one, bool):
+            return written(key, float(one))
+        return str(one) if isinstance(one, str) else one
+
+    def values(many: Any) -> Any:
+        if isinstance(many, str) or not isinstance(many, Iterable):
+            return many
+        return [value(one) for one in many]
+
+    if not isinstance(spec, Mapping):
+        return values(spec)
+    found: dict[str, Any] = {}
+    for part, inner in spec.items():
+        if part in _NO_VALUES:
+            found[part] = int(inner) if isinstance(inner, Integral) else inner
+        elif part == "lognormal":
+            median, *rest = inner
+            found[part] = [value(median), *rest]
+        else:
+            found[part] = values(inner)
+    return found

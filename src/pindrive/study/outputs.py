@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass, replace
 from math import inf, nan
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import ENDING, ENERGY, JUDGED, LINE, TRANSIENT
+from pindrive.quantities.results import DESIGNED, ENDING, ENERGY, JUDGED, LINE, TRANSIENT
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES, hint, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
@@ -84,12 +85,14 @@ def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
 
 _OF_MOTIONS: Final = variables(TRANSIENT + ENDING + ENERGY)
 _OF_SCANS: Final = variables(SCANNED)
-NUMBERS: Final[dict[str, Quantity]] = _OF_MOTIONS | _OF_SCANS
+NUMBERS: Final[dict[str, Quantity]] = _OF_MOTIONS | _OF_SCANS | variables(DESIGNED)
 """By the names of their variables."""
 OUTPUTS: Final = (*_OF_MOTIONS, "status", "ending", "events")
 """Of a motion."""
 SCAN_OUTPUTS: Final = (*_OF_SCANS, "status")
 """Of a scan."""
+DESIGN_OUTPUTS: Final = tuple(variables(DESIGNED))
+"""Of a design."""
 
 LEDGER: Final = tuple(variables(ENERGY))
 """The terms of the energy ledger: they take long, and are kept where a study names them."""
@@ -182,7 +185,7 @@ def missing(name: str) -> int | None:
 def label(name: str) -> str:
     """A number as a table names it: "settling_time", "shown"; an ending's, a median in full."""
     head, _, tail = name.partition("_")
-    return tail if head in ("transient", "judged") else name
+    return tail if head in ("transient", "judged", "design") else name
 
 
 def measured(name: str) -> Quantity:
@@ -221,6 +224,16 @@ class Demand:
         """The limit in its display unit."""
         quantity = NUMBERS[self.name]
         return f"{quantity.display_scale * self.limit:.6g} {quantity.display_unit}".rstrip()
+
+
+def as_attribute(demanded: Sequence[Demand]) -> str:
+    """Demands as an attribute of a study's file holds them; empty where there are none."""
+    return json.dumps([[d.name, d.at_most, d.limit] for d in demanded]) if demanded else ""
+
+
+def from_attribute(text: str) -> tuple[Demand, ...]:
+    """The demands that `as_attribute` wrote."""
+    return tuple(Demand(*parts) for parts in json.loads(text or "[]"))
 
 
 def demands(

@@ -27,8 +27,8 @@ from pindrive.files.output import (
 from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.table import refusal
 from pindrive.study import outputs
+from pindrive.study.cluster import check_installed, cluster_executor
 from pindrive.study.design import variable
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
@@ -44,7 +44,7 @@ from pindrive.study.store import (
 from pindrive.study.workers import DIED, workers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
@@ -311,10 +311,6 @@ def human_bytes(number: int) -> str:
     return f"{value:.3g} TB"
 
 
-_PATIENCE = "20s"
-"""How long a scheduler may take to answer."""
-
-
 def on_cluster(address: str) -> Work:
     """Chunks on the workers of a Dask scheduler, such as tcp://10.0.0.1:8786.
 
@@ -324,44 +320,11 @@ def on_cluster(address: str) -> Work:
     Raises:
         ValueError: Dask's distributed is not installed, or nothing answers at the address.
     """
-    try:
-        from distributed import Client, KilledWorker
-    except ImportError:
-        raise ValueError(
-            "--cluster needs Dask's distributed; pip install 'pindrive[cluster]'"
-        ) from None
+    check_installed()
 
     def work(plan: Plan, chunks: list[int]) -> Iterator[tuple[int, list[Piece]]]:
-        try:
-            client = Client(address, timeout=_PATIENCE, set_as_default=False)
-        except (OSError, ValueError) as error:
-            required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786"
-            given = f"{address}: {str(error) or type(error).__name__}"
-            raise ValueError(refusal("--cluster", required, given)) from None
-        with client, client.get_executor(pure=False) as executor:
-            _check_versions(client.run(_version))
-            most = 2 * max(1, sum(client.nthreads().values()))
-            try:
-                yield from in_flight(chunks, most, lambda k: executor.submit(work_out, plan, k))
-            except KilledWorker as error:
-                raise OutputError(
-                    f"--cluster {address}: workers died one after the other: {error}; finished "
-                    "chunks are kept, --resume continues with them"
-                ) from None
+        kept = "finished chunks are kept, --resume continues with them"
+        with cluster_executor(address, kept) as (executor, threads):
+            yield from in_flight(chunks, 2 * threads, lambda k: executor.submit(work_out, plan, k))
 
     return work
-
-
-def _version() -> str:
-    """The version that a worker has."""
-    from pindrive import __version__
-
-    return __version__
-
-
-def _check_versions(of_workers: Mapping[str, str]) -> None:
-    """Refuse workers that would compute with another version."""
-    for worker, version in of_workers.items():
-        if version != _version():
-            given = f"{version} on {worker}"
-            raise ValueError(refusal("the workers' pindrive", f"version {_version()}", given))

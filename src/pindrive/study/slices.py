@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
@@ -24,6 +24,7 @@ from pindrive.study.outputs import (
     OUTPUTS,
     SCAN_MEASURED,
     SCAN_OUTPUTS,
+    from_attribute,
     known_output,
     label,
 )
@@ -149,6 +150,8 @@ class Panel:
     """Of many draws the 5 % quantile, where `values` are their median."""
     high: NDArray[np.float64] | None = None
     """The 95 % quantile."""
+    met: NDArray[np.float64] | None = None
+    """The part of the draws that meets the specification, 0 or 1 of a point; None: without one."""
 
 
 class View:
@@ -193,6 +196,8 @@ class View:
             if c.size == 1 and str(name) in QUANTITY
         }
 
+        self.demands = from_attribute(str(self.data.attrs.get("specification", "")))
+        """The specification of the study."""
         links = json.loads(self.data.attrs["identity"])["links"]
         self.links = [
             Linked(**link).words(key, lambda key: words(variable(key)))
@@ -323,6 +328,7 @@ class View:
 
     def _panel(self, number: str, x: str, y: str, choice: Mapping[str, int]) -> Panel:
         names = {number, "transient_settling_time", "transient_settled", "status"}
+        names |= {demand.name for demand in self.demands}
         part = self.data[sorted(name for name in names if name in self.data)].isel(choice)
         keys = [key for key in (y, x) if key]
         dims = list(dict.fromkeys(self.dimension(key) for key in keys))
@@ -331,6 +337,8 @@ class View:
         part = part.squeeze([d for d in part.dims if d not in dims]).load().transpose(*dims)
         values, refused = part[number].values, part["status"].values != 0
         unsettled = _unsettled(part, number) & ~refused
+        met = [demand.met(part[demand.name].values) for demand in self.demands]
+        every = np.logical_and.reduce([*met, ~refused])
         at = {
             key: float(self.data[key][choice[self.dimension(key)]])
             for key in self.keys
@@ -339,14 +347,14 @@ class View:
         along = [part[key] for key in keys]
         if any(key in self.sampled for key in keys):
             spread = [np.broadcast_to(_beside(c, dims), values.shape).ravel() for c in along]
-            found: tuple[Any, ...] = _binned(
-                spread, values.ravel(), unsettled.ravel(), refused.ravel()
-            )
+            flags = [flag.ravel() for flag in (unsettled, refused, every)]
+            found: tuple[Any, ...] = _binned(spread, values.ravel(), *flags)
         elif "sample" in dims:
-            found = _summed_up([c.values for c in along], values, unsettled, refused)
+            found = _summed_up([c.values for c in along], values, unsettled, refused, every)
         else:
-            found = ([c.values for c in along], values, unsettled, refused)
-        return Panel(number, keys, at, *found)
+            found = ([c.values for c in along], values, unsettled, refused, None, None, every * 1.0)
+        panel = Panel(number, keys, at, *found)
+        return panel if self.demands else replace(panel, met=None)
 
 
 def _unsettled(part: xr.Dataset, number: str) -> NDArray[np.bool_]:
@@ -371,13 +379,14 @@ def _summed_up(
     values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
+    met: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
     """Of a panel, from its places on: quantiles over the draws, which are the last axis."""
     shape = values.shape[:-1]
     group = np.repeat(np.arange(values[..., 0].size), values.shape[-1])
     low, middle, high = quantiles(group, values.ravel(), values[..., 0].size).reshape(3, *shape)
     draws = (unsettled.mean(axis=-1) > 0.5, refused.mean(axis=-1) > 0.5)
-    return places, middle, *draws, low, high
+    return places, middle, *draws, low, high, met.mean(axis=-1)
 
 
 def _binned(
@@ -385,6 +394,7 @@ def _binned(
     values: NDArray[np.float64],
     unsettled: NDArray[np.bool_],
     refused: NDArray[np.bool_],
+    met: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
     """Of a panel, from its places on: quantiles over the draws that fall into each of many bins."""
     most = _BINS if len(along) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
@@ -403,11 +413,11 @@ def _binned(
     count = int(np.prod(shape))
     low, middle, high = quantiles(group, values, count).reshape(3, *shape)
     drawn = np.maximum(np.bincount(group, minlength=count), 1)
-    parts = [
-        (np.bincount(group, weights=flag, minlength=count) / drawn > 0.5).reshape(shape)
-        for flag in (unsettled, refused)
-    ]
-    return middles, middle, *parts, low, high
+    loose, refused_part, meet = (
+        (np.bincount(group, weights=flag, minlength=count) / drawn).reshape(shape)
+        for flag in (unsettled, refused, met)
+    )
+    return middles, middle, loose > 0.5, refused_part > 0.5, low, high, meet
 
 
 def quantiles(

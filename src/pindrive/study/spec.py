@@ -60,10 +60,23 @@ def read_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Plan
             ]
         )
     problems = _unknown(tables, file)
+    device, text = device_in(tables, file, overrides, problems)
+    return plan_of(tables, device, path=file, place=str(file), text=text, problems=problems)
+
+
+def device_in(
+    tables: dict[str, Any], file: Path, overrides: Iterable[str], problems: list[str]
+) -> tuple[DeviceFile, str]:
+    """The device of a study file, and the text of all that describes it.
+
+    What `page` holds in `tables` becomes a `Page`; what is wrong with it is appended to `problems`.
+
+    Raises:
+        ConfigError: there is no device, or it cannot be read.
+    """
     if "page" in tables:
         tables["page"] = _page(tables["page"], file, problems)
-    device, text = _device(tables, file, overrides)
-    return plan_of(tables, device, path=file, place=str(file), text=text, problems=problems)
+    return _device(tables, file, overrides)
 
 
 def plan_of(
@@ -78,7 +91,8 @@ def plan_of(
     """The study of a device that the tables of a study file describe.
 
     Args:
-        tables: what TOML makes of them; `page` is a `Page`, or None of a page that was refused.
+        tables: what TOML makes of them; `page` is a `Page`, or None of a page that was refused, and
+            `conditions` are further axes, those of a wish (see `pindrive.optimisation`).
         device: what varies.
         path: the file that a sweep must not write to.
         place: where the tables were written, for messages.
@@ -94,6 +108,7 @@ def plan_of(
         page = _gathered(tables["page"], place, problems)
         device = device if device.whole else device.with_whole()
     reader = _Reader(place, tables, device, problems)
+    demanded = demands(reader.table("specification"), place, problems, reader.among)
     plan = Plan(
         path=path,
         name=reader.text("name") or device.name,
@@ -101,11 +116,11 @@ def plan_of(
         device=device,
         dimensions=reader.dimensions,
         links=reader.links,
-        outputs=reader.outputs(),
+        outputs=tuple(dict.fromkeys((*reader.outputs(), *(d.name for d in demanded)))),
         chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
-        demands=demands(reader.table("specification"), place, problems, reader.among),
+        demands=demanded,
         page=page,
     )
     problems += _too_much(plan)
@@ -212,7 +227,7 @@ class _Reader:
         self._file, self._tables, self._device = file, tables, device
         self._problems, self._scans = problems, "page" in tables
         self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
-        axes = self._axes("axes")
+        axes = self._axes("axes") | self._axes("conditions")
         self.links = self._links(axes)
         tolerances = self._axes("tolerances")
         self.tolerance_links = self._links(tolerances)

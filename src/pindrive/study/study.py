@@ -5,20 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.device.reading import Page
-from pindrive.files.device import DeviceFile, keys_meant
-from pindrive.files.schema import written
-from pindrive.files.template import NUMBERS
+from pindrive.files.device import DeviceFile
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import refusal
-from pindrive.study.axes import written_axes
+from pindrive.study.axes import as_written
 from pindrive.study.design import Plan
 from pindrive.study.runner import Work, on_cluster, on_threads, sweep
 from pindrive.study.spec import plan_of, read_study
@@ -28,8 +25,6 @@ if TYPE_CHECKING:
 
 _PLACE: Final = "Study"
 """Where values were written, in messages."""
-_NO_VALUES: Final = ("count", "times", "of")
-"""Parts of an axis that are no values of its key."""
 
 
 class Study(Plan):
@@ -89,8 +84,8 @@ class Study(Plan):
             raise ValueError(refusal("device", "what load_device reads", repr(device)))
         tables: dict[str, Any] = {
             "name": name or None,
-            "axes": _as_written(axes),
-            "tolerances": _as_written(tolerances),
+            "axes": as_written(axes),
+            "tolerances": as_written(tolerances),
             "outputs": None if outputs is None else list(outputs),
             "sample": None if sample is None else dict(sample),
             "specification": None if specification is None else dict(specification),
@@ -184,42 +179,3 @@ def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Stud
     study = Study.__new__(Study)
     study._take(read_study(path, overrides))
     return study
-
-
-def _as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Axes as a study file writes them: numbers, which are SI, with their unit."""
-    if axes is None:
-        return None
-    if not isinstance(axes, Mapping):
-        raise ValueError(refusal("axes", 'a mapping, like {"mass": [0.01, 0.02]}', repr(axes)))
-    return {given: _axis(given, spec) for given, spec in written_axes(axes)}
-
-
-def _axis(given: str, spec: Any) -> Any:
-    keys = [key for key in keys_meant(given) if key in NUMBERS]
-    if len(keys) != 1:
-        return spec  # said where keys are read
-    key = keys[0]
-
-    def value(one: Any) -> Any:
-        if isinstance(one, Real) and not isinstance(one, bool):
-            return written(key, float(one))
-        return str(one) if isinstance(one, str) else one
-
-    def values(many: Any) -> Any:
-        if isinstance(many, str) or not isinstance(many, Iterable):
-            return many
-        return [value(one) for one in many]
-
-    if not isinstance(spec, Mapping):
-        return values(spec)
-    found: dict[str, Any] = {}
-    for part, inner in spec.items():
-        if part in _NO_VALUES:
-            found[part] = int(inner) if isinstance(inner, Integral) else inner
-        elif part == "lognormal":
-            median, *rest = inner
-            found[part] = [value(median), *rest]
-        else:
-            found[part] = values(inner)
-    return found

@@ -1,0 +1,176 @@
+"""Designs beside brute force: `run.py bench design`.
+
+    python3 run.py bench design [paper|parts|reader ...]
+
+- `paper`: examples/tactile-mouse-wish.toml, without its tolerances, beside a grid of 60 values of
+  each variable at nine hand speeds, and beside SciPy's vectorised differential evolution with the
+  demands as a penalty;
+- `parts`: examples/catalogue-wish.toml without the yield, beside a grid of all parts;
+- `reader`: examples/tactile-reader-wish.toml beside a grid of `LEVELS` values of each variable, all
+  of whose devices take the grid of hand speeds up to their own; the trials of both are counted.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize
+
+import pindrive as pd
+from pindrive.optimisation import Design, Wish, line_speed, read_wish
+from pindrive.optimisation.effort import Count
+from pindrive.optimisation.problem import Problem, worst_cases
+from pindrive.optimisation.search import Population, non_dominated
+from pindrive.optimisation.wish import wish_of
+
+Array = NDArray[np.float64]
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+LEVELS = 4
+"""Of each variable of the reader: 256 devices, some twenty minutes."""
+
+
+def tables_of(name: str) -> tuple[pd.files.DeviceFile, dict[str, Any]]:  # type: ignore[name-defined]
+    """The device of an example wish, and its tables; catalogues by their whole path."""
+    path = EXAMPLES / name
+    tables = tomllib.loads(path.read_text("utf-8"))
+    wish = read_wish(path)
+    for kind, file in tables.get("catalogues", {}).items():
+        tables["catalogues"][kind] = str(EXAMPLES / file)
+    tables.get("specification", {}).pop("yield", None)
+    for key in ("tolerances", "base", "set"):
+        tables.pop(key, None)
+    return wish.plan.device, tables
+
+
+def timed(device: Any, tables: dict[str, Any]) -> Design:
+    """A design, and what it took, printed."""
+    begun = time.perf_counter()
+    found = pd.optimise(device, tables)
+    seconds = time.perf_counter() - begun
+    print(f"  found      {found}")
+    count = found.count
+    print(f"             {seconds:.1f} s, {count.motions} motions, {count.scans} scans")
+    return found
+
+
+def problem_of(wish: Wish, cases: Array) -> Problem:
+    """What designs are worth at these conditions."""
+    return Problem(
+        plan=wish.plan,
+        variables=wish.variables,
+        conditions=wish.conditions,
+        cases=cases,
+        links=wish.plan.links,
+        demands=wish.demands,
+        goals=wish.goals,
+        count=Count(),
+    )
+
+
+def grid_of(wish: Wish, levels: int, cases: Array) -> tuple[Population, Problem]:
+    """All designs of a grid."""
+    problem = problem_of(wish, cases)
+    axes = [
+        (np.arange(v.choices) + 0.5) / v.choices if v.choices else np.linspace(0.0, 1.0, levels)
+        for v in wish.variables
+    ]
+    points = np.stack([x.ravel() for x in np.meshgrid(*axes)], axis=1)
+    return problem.population(points), problem
+
+
+def paper() -> None:
+    """One goal over three ranges."""
+    device, tables = tables_of("tactile-mouse-wish.toml")
+    found = timed(device, tables)
+    wish = wish_of(device, tables)
+    cases = np.linspace(0.0, 1.0, 9)[:, None]
+    begun = time.perf_counter()
+    grid, problem = grid_of(wish, 60, cases)
+    best = grid.goals[grid.violation <= 0.0].min()
+    seconds = time.perf_counter() - begun
+    print(f"  grid       {1e3 * best:.3f} ms, {seconds:.1f} s, {problem.count.motions} motions")
+    problem = problem_of(wish, np.array([[0.0], [0.5], [1.0]]))
+
+    def penalised(parts: Array) -> Array:
+        goals, violation = problem(np.atleast_2d(parts.T))
+        return np.where(violation > 0.0, 1.0 + violation, np.minimum(goals[:, 0], 1.0))
+
+    begun = time.perf_counter()
+    result = optimize.differential_evolution(
+        penalised,
+        [(0.0, 1.0)] * len(wish.variables),
+        popsize=43,
+        maxiter=400,
+        tol=1e-8,
+        polish=False,
+        vectorized=True,
+        updating="deferred",
+        rng=np.random.default_rng(1),
+    )
+    seconds = time.perf_counter() - begun
+    worst = worst_cases(problem, np.asarray(result.x), 1024, 1)
+    _, missed = problem.worth(problem.numbers(result.x[None], worst))
+    print(
+        f"  SciPy      {1e3 * result.fun:.3f} ms, {seconds:.1f} s, {problem.count.motions} "
+        f"motions; between its conditions it misses by {missed[0]:.2g}"
+    )
+    print(
+        f"  the design is {'no worse' if found.goals[0].value <= best else 'WORSE'} than the grid"
+    )
+
+
+def parts() -> None:
+    """Two goals over two catalogues and two ranges."""
+    device, tables = tables_of("catalogue-wish.toml")
+    device = pd.load_device(EXAMPLES / "tactile-mouse.toml", {"drive.damping": 0.3})
+    found = timed(device, tables)
+    wish = wish_of(device, tables)
+    grid, problem = grid_of(wish, 40, np.linspace(0.0, 1.0, 5)[:, None])
+    goals = grid.goals[grid.violation <= 0.0]
+    goals = goals[np.unique(goals, axis=0, return_index=True)[1]]
+    cheapest = [goals[goals[:, 1] == price].min(axis=0) for price in np.unique(goals[:, 1])]
+    front = np.array(cheapest)
+    front = front[non_dominated(front)]
+    print(f"  grid       a front of {len(front)} designs, {problem.count.motions} motions")
+    assert found.front is not None
+    worse = 0.0
+    for time_, price in front:
+        own = found.front.goals[found.front.goals[:, 1] <= price + 1e-9, 0]
+        worse = max(worse, own.min() / time_ - 1.0 if len(own) else np.inf)
+    print(f"  no design of the grid's front is better than the design's by more than {worse:.2%}")
+
+
+def reader() -> None:
+    """A whole device, by scans."""
+    device, tables = tables_of("tactile-reader-wish.toml")
+    found = timed(device, tables)
+    wish = wish_of(device, tables)
+    begun = time.perf_counter()
+    grid, problem = grid_of(wish, LEVELS, np.zeros((1, 0)))
+    seconds = time.perf_counter() - begun
+    best, scans = -grid.goals[:, 0].min(), problem.count.scans
+    print(f"  grid       {1e3 * best:.1f} mm/s, {seconds:.0f} s, {scans} scans")
+    print(
+        f"  the design has {found.goals[0].value / best:.3f} times the speed of the grid, whose "
+        f"{LEVELS} values of each variable took {scans / found.count.scans:.1f} times as many "
+        f"scans; 10 values take {scans / found.count.scans * (10 / LEVELS) ** 4:.0f} times as many"
+    )
+    print(f"  (speeds during the search to {line_speed.PRECISION:.0%})")
+
+
+def main() -> None:
+    """All, or those that are named."""
+    kinds = {"paper": paper, "parts": parts, "reader": reader}
+    for name in sys.argv[1:] or kinds:
+        print(name)
+        kinds[name]()
+
+
+if __name__ == "__main__":
+    main()

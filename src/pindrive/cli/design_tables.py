@@ -1,0 +1,159 @@
+"""Designs as tables and words in a terminal."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Group, RenderableType
+
+from pindrive.cli.tables import new_table, whole_lines
+from pindrive.files.template import NUMBERS as KEYS
+from pindrive.optimisation.catalogue import short_keys
+from pindrive.optimisation.results import shown
+from pindrive.quantities.quantity import counted, significant
+from pindrive.study.outputs import label
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rich.table import Table
+
+    from pindrive.optimisation.results import Demanded, Design, Front
+
+MOST_OF_FRONT = 12
+"""Designs of a front that are shown."""
+
+
+def design_report(found: Design) -> RenderableType:
+    """The design, its goals and demands, the front, the nearest parts, and what is doubtful."""
+    tables: list[RenderableType] = [_values(found), _limits(found)]
+    if found.front:
+        tables.append(_front(found, found.front))
+    if found.alternatives:
+        tables.append(_alternatives(found))
+    return Group(*tables, *whole_lines(_words(found)))
+
+
+def _values(found: Design) -> Table:
+    name = found.wish.plan.name or found.device.name
+    title = f"Design: {name}" if found.feasible else f"No design meets the demands of {name}"
+    table = new_table(title, "key", ">value", "unit", ">before", "chosen")
+    before = found.wish.plan.device.values()
+    of = {key: v for v in found.wish.variables for key in v.axes}
+    ends = dict(found.at_ends)
+    for key, value in found.values.items():
+        quantity, old = KEYS[key], before.get(key)
+        variable = of.get(key)
+        if variable is None:
+            how = "follows"
+        elif variable.catalogue:
+            how = f"{variable.name} {found.parts[variable.name]}"
+        elif variable.choices:
+            how = f"of {variable.choices}"
+        else:
+            how = f"at its {ends[key]} end" if key in ends else "free"
+        was = quantity.digits(old) if isinstance(old, float) else "-"
+        table.add_row(key, quantity.digits(value), quantity.display_unit, was, how)
+    return table
+
+
+def _limits(found: Design) -> Table:
+    """Goals, then demands, each at its worst condition."""
+    gain = f">for {100.0 * found.gain:g} % gain"
+    heads = ["goal or demand", ">worst", ">room", gain]
+    conditions = [key for condition in found.wish.conditions for key in condition.axes]
+    worst = f">worst at {short_keys(tuple(conditions))}"
+    table = new_table("Goals and demands", *heads, *([worst] if conditions else []))
+    for reached in found.goals:
+        row = [reached.goal.text(), shown(reached.goal.name, reached.value), "", ""]
+        table.add_row(*row, *([_case(reached.case)] if conditions else []))
+    for demanded in found.demands:
+        name = demanded.demand.name
+        over = demanded.excess
+        room = shown(name, -over) if isfinite(over) else "no number"
+        if over > 0.0:
+            room = f"misses {shown(name, over)}" if isfinite(over) else "no number"
+        row = [demanded.demand.text(), shown(name, demanded.value), room, _relaxed(demanded)]
+        table.add_row(*row, *([_case(demanded.case)] if conditions else []))
+    return table
+
+
+def _relaxed(demanded: Demanded) -> str:
+    """By how much a limit would have to give for the gain."""
+    if not demanded.binds:
+        return "-"
+    demand = demanded.demand
+    side = "≤" if demand.at_most else "≥"
+    return f"{side} {shown(demand.name, demanded.relaxed)}"
+
+
+def _case(case: Mapping[str, float]) -> str:
+    return ", ".join(KEYS[key].text(value) for key, value in case.items())
+
+
+def _front(found: Design, front: Front) -> Table:
+    names = [reached.goal.name for reached in found.goals]
+    keys = [next(iter(v.axes)) for v in found.wish.variables]
+    heads = [f">{label(name)}" for name in names] + [f">{short_keys((key,))}" for key in keys]
+    title = f"Front: {counted(len(front.goals), 'design')}, of which none is better in all goals"
+    table = new_table(title, *heads, "")
+    rows = np.unique(np.linspace(0, len(front.goals) - 1, MOST_OF_FRONT).round().astype(int))
+    for i in np.union1d(rows, [front.chosen]):
+        table.add_row(
+            *(shown(name, value) for name, value in zip(names, front.goals[i], strict=True)),
+            *(KEYS[key].text(front.columns[key][i]) for key in keys),
+            "the design" if i == front.chosen else "",
+        )
+    return table
+
+
+def _alternatives(found: Design) -> Table:
+    names = [reached.goal.name for reached in found.goals]
+    heads = ["catalogue", "part", ">part price", *(f">{label(name)}" for name in names), "misses"]
+    table = new_table("Nearest parts, all else unchanged", *heads)
+    for other in found.alternatives:
+        table.add_row(
+            other.catalogue,
+            other.part,
+            "-" if isnan(other.price) else significant(other.price),
+            *(
+                "-" if not isfinite(value) else shown(name, value)
+                for name, value in zip(names, other.goals, strict=True)
+            ),
+            ", ".join(
+                f"{label(demand.name)} by {shown(demand.name, over)}"
+                if isfinite(over)
+                else f"{label(demand.name)}: no number"
+                for demand, over in other.misses
+            )
+            or "nothing",
+        )
+    return table
+
+
+def _words(found: Design) -> list[str]:
+    lines = []
+    if not found.feasible:
+        lines.append(f"No design meets this: {found.closest}.")
+    if found.built:
+        share = found.built
+        lines.append(
+            f"Yield within the tolerances: {share.text} of {counted(share.of, 'device')} "
+            f"(95 % interval {100.0 * share.low:.3f} to {100.0 * share.high:.3f} %)"
+            + (f", ≥ {100.0 * least:g} % demanded" if (least := found.wish.least_yield) else "")
+        )
+        if not found.wish.least_yield and share.met < 0.9 * share.of:
+            lines.append('A demand for it leaves room: yield = ">= 95 %" in [specification]')
+    binding = [d.demand.text() for d in found.demands if d.binds]
+    if binding:
+        lines.append(f"Binding: {', '.join(binding)}")
+    done = [
+        counted(number, noun)
+        for number, noun in ((found.count.motions, "motion"), (found.count.scans, "scan"))
+        if number
+    ]
+    lines.append(f"Simulated: {' and '.join(done)}")
+    lines += [f"warning: {line}" for line in found.warnings]
+    return lines

@@ -1,0 +1,60 @@
+"""A device file written anew: what the old one says with other values, and why, as comments."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pindrive.files.recording import files_named
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from pindrive.files.device import DeviceFile
+
+
+def device_text(
+    device: DeviceFile,
+    values: Mapping[str, Any],
+    target: Path,
+    head: Iterable[str],
+    comments: Mapping[str, Sequence[str]],
+) -> str:
+    """The text of a device file.
+
+    Args:
+        device: what it says.
+        values: of keys that have other values, as TOML has them.
+        target: where the text will stand; paths in it are relative to that.
+        head: lines at its top.
+        comments: lines above keys.
+    """
+    tables = {name: dict(table) for name, table in device.tables.items() if table}
+    for key, path in files_named(device.tables, device.path.parent).items():
+        _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
+    for key, value in values.items():
+        _put(tables, key, value)
+    if "drive.damping" in values:
+        tables["drive"].pop("damping_ratio", None)
+    lines = [f"# {_plain(line)}" for line in head]
+    for name in ("device", *(name for name in tables if name != "device")):
+        if not tables.get(name):
+            continue
+        lines += ["", f"[{name}]"]
+        for key, value in tables[name].items():
+            lines += [f"# {_plain(text)}" for text in comments.get(f"{name}.{key}", ())]
+            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return "\n".join(lines) + "\n"
+
+
+def _plain(text: str) -> str:
+    """Text that stays in its line."""
+    return re.sub(r"[\x00-\x1f\x7f]", " ", text)
+
+
+def _put(tables: dict[str, dict[str, Any]], key: str, value: Any) -> None:
+    table, _, name = key.partition(".")
+    tables.setdefault(table, {})[name] = value

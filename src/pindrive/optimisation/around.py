@@ -1,0 +1,117 @@
+"""What lies around a design: maps of the feasible region, other parts, ends of ranges."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pindrive.optimisation.problem import Problem
+from pindrive.optimisation.results import Alternative, Map
+from pindrive.optimisation.wish import Variable
+
+Array = NDArray[np.float64]
+MAPPED: Final = 3
+"""Variables of which each pair is drawn; of scans two."""
+NEAREST: Final = 5
+"""Parts that are compared with the chosen one."""
+_END: Final = 2e-3
+"""Part of a range that is its end."""
+
+
+def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
+    """The first goal, and where all demands are met, over pairs of variables.
+
+    Args:
+        problem: what designs are worth.
+        point: the design, in the middle of nothing in particular.
+        resolution: places along an axis that is a range; 0: no map.
+    """
+    if not resolution:
+        return ()
+    found = []
+    count = 2 if problem.scans else MAPPED
+    for i, j in combinations(range(min(count, len(point))), 2):
+        one, other = problem.variables[i], problem.variables[j]
+        x, y = (_parts(variable, resolution) for variable in (one, other))
+        across, up = np.meshgrid(x, y)
+        points = np.tile(point, (across.size, 1))
+        points[:, i], points[:, j] = across.ravel(), up.ravel()
+        goals, violation = problem(points)
+        first = goals[:, 0].reshape(across.shape)
+        first = np.where(np.isinf(first), np.nan, first)
+        along = tuple(_first(v, parts) for v, parts in ((one, x), (other, y)))
+        here = tuple(float(_first(v, point[[k]])[0]) for v, k in ((one, i), (other, j)))
+        found.append(
+            Map(
+                (one, other),
+                (along[0], along[1]),
+                -first if problem.goals[0].maximise else first,
+                (violation <= 0.0).reshape(across.shape),
+                (here[0], here[1]),
+            )
+        )
+    return tuple(found)
+
+
+def _parts(variable: Variable, resolution: int) -> Array:
+    if not variable.choices:
+        return np.linspace(0.0, 1.0, resolution)
+    rows = np.unique(
+        np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round()
+    )
+    return (rows + 0.5) / variable.choices
+
+
+def _first(variable: Variable, parts: Array) -> Array:
+    """The values of its first key."""
+    return next(iter(variable.columns(parts).values()))
+
+
+def alternatives(problem: Problem, point: Array) -> tuple[Alternative, ...]:
+    """The design with other parts of its catalogues, the nearest by their values first."""
+    found = []
+    for i, variable in enumerate(problem.variables):
+        catalogue = variable.catalogue
+        if catalogue is None:
+            continue
+        chosen = int(variable.index(point[[i]])[0])
+        rows = catalogue.nearest(chosen, NEAREST)
+        if not rows:
+            continue
+        points = np.tile(point, (len(rows), 1))
+        points[:, i] = [variable.part(row) for row in rows]
+        numbers = problem.numbers(points)
+        excess = problem.excess(numbers).max(axis=2)
+        goals = problem.minimised(numbers).max(axis=2)
+        for place, row in enumerate(rows):
+            misses = [
+                (demand, float(over))
+                for demand, over in zip(problem.demands, excess[:, place], strict=True)
+                if over > 0.0
+            ]
+            found.append(
+                Alternative(
+                    catalogue.name,
+                    catalogue.parts[row],
+                    {key: values[row] for key, values in catalogue.values.items()},
+                    catalogue.prices[row],
+                    tuple(
+                        float(-value if goal.maximise else value)
+                        for goal, value in zip(problem.goals, goals[:, place], strict=True)
+                    ),
+                    tuple(misses),
+                )
+            )
+    return tuple(found)
+
+
+def at_ends(problem: Problem, point: Array) -> tuple[tuple[str, str], ...]:
+    """The variables that a design has at an end of their range, and which end."""
+    return tuple(
+        (variable.name, "lower" if part < 0.5 else "upper")
+        for variable, part in zip(problem.variables, point, strict=True)
+        if not variable.choices and not _END < part < 1.0 - _END
+    )

@@ -1,0 +1,121 @@
+"""Catalogues: parts that can be bought, with their values and prices, as a CSV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from pindrive.files.device import keys_meant
+from pindrive.files.template import NUMBERS
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.table import refusal
+from pindrive.quantities.units import quoted
+from pindrive.study.axes import sweepable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+_EXAMPLE: Final = "part, drive.stiffness [N/m], price"
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """Parts of one kind, of which a design takes one, in the order of their first key's values.
+
+    Attributes:
+        name: of the kind, such as "spring".
+        path: the file that it was read from.
+        parts: their numbers or names, shape (n,).
+        values: of each key of the device that a part sets, SI, shape (n,).
+        prices: of each, shape (n,); NaN where the file has none.
+    """
+
+    name: str
+    path: Path
+    parts: tuple[str, ...]
+    values: dict[str, tuple[float, ...]]
+    prices: tuple[float, ...]
+
+    @property
+    def priced(self) -> bool:
+        """Whether it has prices."""
+        return not np.isnan(self.prices[0])
+
+    def nearest(self, chosen: int, count: int) -> list[int]:
+        """The parts whose values are nearest to those of one, in their ratio, the nearest first."""
+        table = np.array([*self.values.values()])
+        scale = np.maximum(np.abs(table[:, [chosen]]), 1e-300)
+        with np.errstate(divide="ignore"):
+            ratios = np.log(np.maximum(np.abs(table) / scale, 1e-9))
+        far: NDArray[np.float64] = np.sqrt((ratios**2).sum(axis=0))
+        order = [int(i) for i in np.argsort(far, kind="stable") if i != chosen]
+        return order[:count]
+
+
+def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
+    """The catalogue in a CSV file.
+
+    Its columns are `part`, keys of a device file with their units, in full or by their last part
+    where that is unique, and `price`, a plain number, where the parts have one.
+
+    Args:
+        name: of the kind of parts.
+        path: the file.
+        place: where it was named, for messages.
+        scans: whether designs are scanned; a key must have a part in that.
+
+    Raises:
+        ValueError: it cannot be read, a column is missing or unknown, or a cell malformed.
+    """
+    try:
+        table = CsvTable.read(path, "a catalogue", _EXAMPLE)
+    except ValueError as error:
+        raise ValueError(f"{place}: {error}") from None
+    keys: dict[str, str] = {}
+    for column in table.names:
+        if column not in ("part", "price"):
+            key = sweepable(column, f"{path}: column {quoted(column)}", scans)
+            if key in keys:
+                raise ValueError(f"{path}: {key} is given twice, as {keys[key]} and {column}")
+            keys[key] = column
+    if "part" not in table or not keys:
+        required = f"have a column part and one for each key that a part sets, like {_EXAMPLE!r}"
+        given = quoted(", ".join(table.headings))
+        raise ValueError(f"{path}: the header must {required}, got {given}".replace("'", '"'))
+    table.check_rows("the parts", 1)
+    columns = {}
+    for key, column in keys.items():
+        quantity = NUMBERS[key]
+        heading = f"{column} [{quantity.display_unit or '1'}]"
+        columns[key] = table.column(column, quantity.name, quantity.unit or "1", heading)
+    prices = (
+        table.column("price", "design.price", "1", "price", 1.0)
+        if "price" in table
+        else [nan] * len(table.cells)
+    )
+    parts = table.text("part")
+    for number, part in zip(table.numbers, parts, strict=True):
+        if not part or parts.count(part) > 1:
+            required = "a number or a name that no other part has"
+            raise ValueError(refusal(f"row {number}: part", required, quoted(part), str(path)))
+    order: Any = np.argsort(next(iter(columns.values())), kind="stable")
+    return Catalogue(
+        name,
+        path,
+        tuple(parts[i] for i in order),
+        {key: tuple(column[i] for i in order) for key, column in columns.items()},
+        tuple(prices[i] for i in order),
+    )
+
+
+def short_keys(keys: tuple[str, ...]) -> str:
+    """Keys as a person writes them, apart by commas."""
+    tails = [key.partition(".")[2] for key in keys]
+    return ", ".join(
+        tail if len(keys_meant(tail)) == 1 else key for key, tail in zip(keys, tails, strict=True)
+    )

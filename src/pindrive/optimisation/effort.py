@@ -1,0 +1,60 @@
+"""How much is tried for a design, by the kind of its wish, and how much was."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is tried.
+
+    Attributes:
+        motions: or scans, of the screening.
+        population: members of the search.
+        generations: of it, at most.
+        conditions: spread over their ranges to find the worst, a power of two.
+        resolution: of a map, along each axis; 0: no map.
+        draws: within the tolerances.
+        patience: generations without progress after which a search ends.
+    """
+
+    motions: int
+    population: int
+    generations: int
+    conditions: int
+    resolution: int
+    draws: int
+    patience: int = 25
+
+
+BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
+"""Of what `simulate_batch` follows."""
+SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500, 12)
+"""Of motions that are followed one by one."""
+SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 6)
+"""Of scans."""
+
+
+def usual_effort(*, scans: bool, slow: bool) -> Effort:
+    """What a wish needs.
+
+    Args:
+        scans: whether its designs are scanned.
+        slow: whether its motions are followed one by one.
+    """
+    return SCANNED if scans else SINGLE if slow else BATCHED
+
+
+@dataclass
+class Count:
+    """How much was simulated.
+
+    Attributes:
+        motions: releases.
+        scans: of pages, and trials of lines.
+    """
+
+    motions: int = 0
+    scans: int = 0

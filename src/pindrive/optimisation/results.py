@@ -1,0 +1,290 @@
+"""What `optimise` returns: the design, what limits it, the front, and maps around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pindrive import lazy
+from pindrive.files.template import NUMBERS as KEYS
+from pindrive.lazy import xr
+from pindrive.optimisation.wish import Goal, Variable, Wish, unit_of
+from pindrive.quantities.quantity import significant
+from pindrive.quantities.status import Status
+from pindrive.study.design import variable
+from pindrive.study.distributions import with_links
+from pindrive.study.evaluate import follow
+from pindrive.study.outputs import NUMBERS, Demand, attributes, label
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
+    from pindrive.files.device import DeviceFile
+    from pindrive.motion.motion import Motion
+    from pindrive.optimisation.effort import Count
+    from pindrive.study.robustness import Share
+
+__all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """A goal, and how far the design reaches it.
+
+    Attributes:
+        goal: which number, and which way.
+        value: at its worst condition, SI; NaN where a design has none.
+        case: that condition, SI by key; empty where there are none.
+    """
+
+    goal: Goal
+    value: float
+    case: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Demanded:
+    """A demand, and how the design meets it.
+
+    Attributes:
+        demand: which limit.
+        value: at its worst condition, SI.
+        case: that condition, SI by key.
+        relaxed: the limit, SI, that would have to be written for the first goal to get better by
+            `Design.gain`, with all other demands as they are; NaN: no such limit was found, or none
+            was looked for.
+    """
+
+    demand: Demand
+    value: float
+    case: Mapping[str, float]
+    relaxed: float = nan
+
+    @property
+    def excess(self) -> float:
+        """How far the limit is missed, SI; negative: how much room is left."""
+        return float(self.demand.excess(np.array([self.value]))[0])
+
+    @property
+    def binds(self) -> bool:
+        """Whether the goal could be better were this limit another."""
+        return isfinite(self.relaxed) and self.relaxed != self.demand.limit
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Another part of a catalogue in place of the chosen one, everything else unchanged.
+
+    Attributes:
+        catalogue: its name.
+        part: its number.
+        values: what it sets, SI by key.
+        price: NaN where there is none.
+        goals: of the design with it, SI.
+        misses: the demands that it misses, each with by how much, SI.
+    """
+
+    catalogue: str
+    part: str
+    values: Mapping[str, float]
+    price: float
+    goals: tuple[float, ...]
+    misses: tuple[tuple[Demand, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Front:
+    """Designs of which none is better than another in all goals.
+
+    Attributes:
+        columns: the value of each key, SI, shape (n,).
+        goals: SI, shape (n, goals).
+        chosen: which of them is the design.
+    """
+
+    columns: Mapping[str, Array]
+    goals: Array
+    chosen: int
+
+
+@dataclass(frozen=True, slots=True)
+class Map:
+    """The first goal over two variables, all others as the design has them.
+
+    Attributes:
+        variables: along the abscissa, along the ordinate.
+        along: the values of the first key of each, SI.
+        goal: shape (y, x); NaN where there is none.
+        met: whether all demands are met, shape (y, x).
+        design: the values of the design.
+    """
+
+    variables: tuple[Variable, Variable]
+    along: tuple[Array, Array]
+    goal: Array
+    met: NDArray[np.bool_]
+    design: tuple[float, float]
+
+    @property
+    def keys(self) -> tuple[str, str]:
+        """The first key of each variable."""
+        one, other = (next(iter(v.axes)) for v in self.variables)
+        return one, other
+
+    @property
+    def share(self) -> float:
+        """Part of the map in which all demands are met."""
+        return float(self.met.mean())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Design(lazy.NotebookHtml):
+    """What `optimise` found.
+
+    Attributes:
+        wish: what was wanted.
+        device: the device file of the best design; of the closest where none meets the demands.
+        values: every key that may vary, SI.
+        parts: the part chosen from each catalogue.
+        feasible: whether it meets all demands, at all conditions.
+        goals: in the order of the wish.
+        demands: likewise.
+        front: with two or three goals.
+        maps: of the feasible region around the design.
+        alternatives: the nearest parts of each catalogue.
+        built: the part of the designs built within the tolerances that meets all demands; None
+            where there are no tolerances.
+        gain: the part by which the first goal gets better where a demand is relaxed.
+        at_ends: variables at an end of their range.
+        count: how much was simulated.
+        seed: of all draws.
+        warnings: what is doubtful.
+    """
+
+    wish: Wish
+    device: DeviceFile
+    values: Mapping[str, float]
+    parts: Mapping[str, str]
+    feasible: bool
+    goals: tuple[Reached, ...]
+    demands: tuple[Demanded, ...]
+    front: Front | None
+    maps: tuple[Map, ...]
+    alternatives: tuple[Alternative, ...]
+    built: Share | None
+    gain: float
+    at_ends: tuple[tuple[str, str], ...]
+    count: Count
+    seed: int
+    warnings: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        """The goals of the design, or what it misses, in a line."""
+        if not self.feasible:
+            return f"<No design: {self.closest}, {self.status.name}>"
+        reached = ", ".join(
+            f"{label(r.goal.name)} {shown(r.goal.name, r.value)}" for r in self.goals
+        )
+        name = self.device.name or self.device.path.name
+        return f"<Design of {name}: {reached}, {self.status.name}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where no design meets the demands, or where `warnings` says so."""
+        return Status.ok if self.feasible and not self.warnings else Status.incomplete
+
+    @property
+    def closest(self) -> str:
+        """Which demands the closest design misses, and by how much; empty where it misses none."""
+        missed = [d for d in self.demands if d.excess > 0.0]
+        if not missed:
+            least = self.wish.least_yield
+            if self.feasible or not (self.built and least):
+                return "" if self.feasible else "no design has the numbers of the goals"
+            return f"the closest has a yield of {self.built.text}, not {100.0 * least:g} %"
+        return "the closest misses " + " and ".join(
+            f"{d.demand.text()} by {shown(d.demand.name, d.excess)}"
+            if isfinite(d.excess)
+            else f"{d.demand.text()}: it has no such number"
+            for d in missed
+        )
+
+    @cached_property
+    def motion(self) -> Motion | None:
+        """The transient at the worst condition of the first goal; None of a scan."""
+        if self.wish.plan.page:
+            return None
+        plan = self.wish.plan
+        at = {key: np.asarray(x) for key, x in (*self.values.items(), *self.goals[0].case.items())}
+        found = with_links(plan.device, at, plan.links)
+        return follow(plan, {key: float(x) for key, x in found.items()})
+
+    def plot(self) -> Figure:
+        """The front, and the maps of the feasible region around the design, as a figure."""
+        figure: Figure = lazy.call("pindrive.plot.design:plot_design", self)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """All of it as data.
+
+        Returns:
+            The varied keys and the goals of the design, SI; over `limit` the value, the excess and
+            the relaxed limit of each demand; over `front` the keys and goals of the front; over the
+            axes of each map its goal and whether the demands are met.
+        """
+        data: dict[str, Any] = {
+            variable(key): ((), value, KEYS[key].attributes) for key, value in self.values.items()
+        }
+        for reached in self.goals:
+            data[reached.goal.name] = ((), reached.value, attributes(reached.goal.name))
+        data["feasible"] = ((), self.feasible, {"long_name": "whether all demands are met"})
+        if self.built:
+            words = {"units": "1", "long_name": "part of the designs built that meets all demands"}
+            data["yield"] = ((), self.built.met / self.built.of, words)
+            data["yield_low"] = ((), self.built.low, {"units": "1"})
+            data["yield_high"] = ((), self.built.high, {"units": "1"})
+        for name, values in (
+            ("value", [d.value for d in self.demands]),
+            ("excess", [d.excess for d in self.demands]),
+            ("relaxed", [d.relaxed for d in self.demands]),
+        ):
+            data[f"limit_{name}"] = ("limit", np.array(values, np.float64))
+        if self.front:
+            for key, column in self.front.columns.items():
+                data[f"front_{variable(key)}"] = ("front", column, KEYS[key].attributes)
+            for reached, column in zip(self.goals, self.front.goals.T, strict=True):
+                name = reached.goal.name
+                data[f"front_{name}"] = ("front", column, attributes(name))
+        for i, drawn in enumerate(self.maps):
+            dims = (f"map_{i}_y", f"map_{i}_x")
+            goal = self.goals[0].goal.name
+            data[f"map_{i}_goal"] = (dims, drawn.goal, attributes(goal))
+            data[f"map_{i}_met"] = (dims, drawn.met)
+            for dim, key, along in zip(reversed(dims), drawn.keys, drawn.along, strict=True):
+                data[dim] = (dim, along, {**KEYS[key].attributes, "key": key})
+        coords = {
+            "limit": [d.demand.text() for d in self.demands],
+            "limit_unit": ("limit", [NUMBERS[d.demand.name].unit for d in self.demands]),
+        }
+        attrs = {
+            "title": f"Design of {self.wish.plan.name or 'a device'}",
+            "status": self.status.name,
+            "seed": self.seed,
+            "parts": ", ".join(f"{name} {part}" for name, part in self.parts.items()),
+        }
+        return xr.Dataset(data, coords=coords, attrs=attrs)
+
+
+def shown(name: str, value: float) -> str:
+    """A number of a motion, a scan or a design for display: "12.34 ms"."""
+    unit, scale = unit_of(name)
+    return f"{significant(value * scale)} {unit}".rstrip()

@@ -1,0 +1,447 @@
+"""Wishes: a device, what may vary, under which conditions, what is demanded, and the goals.
+
+A wish file is a study file (see `pindrive.study.spec`) with three tables more: `[conditions]`,
+written as axes are, `[catalogues]` and `[goals]`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import combinations
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pindrive.device.reading import Page
+from pindrive.files.device import ConfigError, DeviceFile, keys_meant, read_tables
+from pindrive.files.schema import written
+from pindrive.files.template import STUDY_KEYS, TABLES
+from pindrive.optimisation.catalogue import Catalogue, read_catalogue
+from pindrive.quantities import budgets
+from pindrive.quantities.table import refusal
+from pindrive.quantities.units import quoted
+from pindrive.study.axes import as_written, written_axes
+from pindrive.study.design import COUNTS, Dimension, Plan, read_page
+from pindrive.study.distributions import Distribution, Grid
+from pindrive.study.outputs import (
+    DESIGN_OUTPUTS,
+    NUMBERS,
+    OUTPUTS,
+    SCAN_OUTPUTS,
+    Demand,
+    demands,
+    is_measured,
+    known_output,
+    label,
+)
+from pindrive.study.spec import device_in, plan_of
+
+__all__ = ["Goal", "Variable", "Wish", "read_wish", "wish_of"]
+
+Array = NDArray[np.float64]
+PRICE: Final = "design_price"
+YIELD: Final = "design_yield"
+SPEED: Final = "design_distinct_speed"
+MOST_GOALS: Final = 3
+_DIRECTIONS: Final = ("minimise", "maximise")
+_BESIDE: Final = ("conditions", "catalogues", "goals")
+_KEYS: Final = (
+    *("name", "base", "set", "page", "axes", "zip", "tolerances", "specification"),
+    *_BESIDE,
+)
+_TEMPLATE: Final = (
+    'a wish names its device, base = "device.toml", what may vary in [axes], what is demanded in '
+    "[specification] and what is best in [goals]"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A number that is to be small, or large.
+
+    Attributes:
+        name: of the number.
+        maximise: whether it is to be large.
+    """
+
+    name: str
+    maximise: bool
+
+    def minimised(self, values: Array) -> Array:
+        """Values (SI) so that the best is the least; infinite where there is none."""
+        return np.where(np.isnan(values), np.inf, -values if self.maximise else values)
+
+    def text(self) -> str:
+        """For display: "least settling_time"."""
+        return f"{'largest' if self.maximise else 'least'} {label(self.name)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """What may be chosen, or what may occur: one key over a range, or keys with rows of values.
+
+    Attributes:
+        name: the first of its keys, or that of its catalogue.
+        axes: how each of its keys is written.
+        choices: how many rows there are; 0 for a range.
+        catalogue: of which the rows are the parts.
+    """
+
+    name: str
+    axes: Mapping[str, Grid | Distribution]
+    choices: int = 0
+    catalogue: Catalogue | None = None
+
+    def index(self, parts: Array) -> NDArray[np.int64]:
+        """The rows that parts from 0 to 1 stand for."""
+        return np.clip((parts * self.choices).astype(np.int64), 0, self.choices - 1)
+
+    def columns(self, parts: Array) -> dict[str, Array]:
+        """The values of its keys, SI, at parts from 0 to 1."""
+        return {
+            key: axis.ppf(parts) if isinstance(axis, Distribution) else axis.at(self.index(parts))
+            for key, axis in self.axes.items()
+        }
+
+    def part(self, row: int) -> float:
+        """The part that stands for a row."""
+        return (row + 0.5) / self.choices
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wish:
+    """What is wanted of a design.
+
+    Attributes:
+        plan: the device, what follows what, and the page; its axes are variables and conditions.
+        tables: as they were written.
+        variables: what may be chosen.
+        conditions: under which each demand must be met, and each goal counts by its worst.
+        demands: limits on numbers.
+        least_yield: the part of the devices built within the tolerances that must meet them all;
+            None: none is demanded.
+        goals: one to three, the first the most important.
+        catalogues: whose parts are chosen.
+    """
+
+    plan: Plan
+    tables: Mapping[str, Any]
+    variables: tuple[Variable, ...]
+    conditions: tuple[Variable, ...]
+    demands: tuple[Demand, ...]
+    least_yield: float | None
+    goals: tuple[Goal, ...]
+    catalogues: tuple[Catalogue, ...]
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return (*self.plan.inputs, *(catalogue.path for catalogue in self.catalogues))
+
+    def __repr__(self) -> str:
+        """What varies and what is best, in a line."""
+        what = ", ".join(variable.name for variable in self.variables)
+        return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
+
+
+def read_wish(
+    path: str | PathLike[str], overrides: Iterable[str] = (), device: DeviceFile | None = None
+) -> Wish:
+    """The wish that a file describes.
+
+    Args:
+        path: a TOML file.
+        overrides: "key=value" each, as for `load_device`.
+        device: what varies in place of the device that the file names.
+
+    Raises:
+        ConfigError: it cannot be read, or holds anything unknown, malformed, out of bounds or
+            contradictory; a line for each problem.
+    """
+    file = Path(path)
+    tables: dict[str, Any] = read_tables(file, _TEMPLATE)
+    if not tables.keys() & {*STUDY_KEYS, *_BESIDE}:
+        what = "is a device file" if tables.keys() & {*TABLES} else "is no wish"
+        raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
+    problems = [*_unknown(tables, file)]
+    own, text = device_in(tables, file, overrides, problems)
+    return _wish(tables, device or own, file, str(file), text, problems)
+
+
+def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
+    """The wish that tables describe, as a wish file has them; numbers are SI, text has a unit.
+
+    Paths are relative to the folder of the device file.
+
+    Args:
+        device: what varies.
+        tables: `axes`, `goals` and the other tables of a wish file; `page` may be a `Page`.
+
+    Raises:
+        ConfigError: as for `read_wish`.
+    """
+    if not isinstance(device, DeviceFile):
+        raise ValueError(refusal("device", "what load_device reads", repr(device)))
+    given = dict(tables)
+    problems = [*_unknown(given, Path("wish"))]
+    for name in ("axes", "conditions", "tolerances"):
+        if name in given:
+            given[name] = as_written(given[name])
+    if isinstance(given.get("page"), str):
+        given["page"] = Page(text=given["page"])
+    if isinstance(given.get("page"), Mapping):
+        given["page"] = read_page(dict(given["page"]), device.path)
+    if isinstance(given.get("page"), Page):
+        given["page"].check("page.{}")
+    text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
+    return _wish(given, device, device.path, "wish", text, problems)
+
+
+def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
+    known = _KEYS if "base" in tables else (*_KEYS, *TABLES)
+    for key in tables:
+        if key in known:
+            continue
+        if key in TABLES:
+            yield f"{file}: give base or the table {key}, not both"
+            continue
+        near = get_close_matches(key, known, 1)
+        said = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+        yield f"{file}: unknown key {quoted(key)}; {said}"
+
+
+def _wish(
+    tables: Mapping[str, Any],
+    device: DeviceFile,
+    path: Path,
+    place: str,
+    text: str,
+    problems: list[str],
+) -> Wish:
+    scans = "page" in tables
+    for name in (*_BESIDE, "axes", "tolerances", "specification"):
+        if not isinstance(tables.get(name, {}), Mapping):
+            problems.append(refusal(name, f"a table, [{name}]", quoted(tables[name]), place))
+    if problems:
+        raise ConfigError(problems)
+    catalogues = _catalogues(tables.get("catalogues", {}), path, place, scans, problems)
+    chosen = {key: c.name for c in catalogues for key in c.values}
+    conditions = _keys(tables.get("conditions", {}))
+    for name in ("axes", "conditions", "tolerances"):
+        for key in _keys(tables.get(name, {})):
+            if name != "tolerances" and key in chosen:
+                problems.append(
+                    f"{place}: {key} is in [{name}] and in the catalogue {chosen[key]}; "
+                    "leave one out"
+                )
+            if name != "conditions" and key in conditions:
+                problems.append(f"{place}: {key} is in [{name}] and in [conditions]; leave one out")
+    if not tables.get("axes") and not catalogues:
+        problems.append(f"{place}: nothing may vary; write what may in [axes] or [catalogues]")
+    goals = _goals(tables.get("goals", {}), place, _among(scans), problems)
+    demanded = demands(tables.get("specification", {}), place, problems, _among(scans))
+    try:
+        budgets.DEMANDS.check(len(demanded), where=place)
+    except ValueError as error:
+        problems.append(str(error))
+    least = _least_yield(demanded, goals, tables, place, problems)
+    demanded = tuple(demand for demand in demanded if demand.name != YIELD)
+    if problems:
+        raise ConfigError(problems)
+    listed, groups = _as_axes(catalogues)
+    axes = {**tables.get("axes", {}), **listed}
+    rest = {k: v for k, v in tables.items() if k not in ("catalogues", "goals", "specification")}
+    study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
+    chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
+    study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
+    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems)
+    problems += _contradictions(plan, demanded, goals, catalogues, place)
+    problems += _no_ranges(plan, conditions, place)
+    if problems:
+        raise ConfigError([*dict.fromkeys(problems)])
+    found = [*_variables(plan, catalogues)]
+    return Wish(
+        plan=plan,
+        tables=tables,
+        variables=tuple(v for v in found if not conditions & v.axes.keys()),
+        conditions=tuple(v for v in found if conditions & v.axes.keys()),
+        demands=demanded,
+        least_yield=least,
+        goals=goals,
+        catalogues=catalogues,
+    )
+
+
+def _among(scans: bool) -> tuple[str, ...]:
+    return (*(SCAN_OUTPUTS if scans else OUTPUTS), *DESIGN_OUTPUTS)
+
+
+def _keys(table: Mapping[str, Any]) -> set[str]:
+    """The keys that a table names; what is unknown or ambiguous is said where it is read."""
+    found = (keys_meant(given) for given, _ in written_axes(table))
+    return {keys[0] for keys in found if len(keys) == 1}
+
+
+def _catalogues(
+    table: Mapping[str, Any], path: Path, place: str, scans: bool, problems: list[str]
+) -> tuple[Catalogue, ...]:
+    found = []
+    for name, given in table.items():
+        label_ = f"{place}: catalogues.{name}"
+        try:
+            if not isinstance(given, str | PathLike):
+                required = 'the path of a CSV file, like "springs.csv"'
+                raise ValueError(refusal(f"catalogues.{name}", required, quoted(given), place))
+            found.append(read_catalogue(name, path.parent / given, label_, scans))
+        except ValueError as error:
+            problems.append(str(error))
+    for one, other in combinations(found, 2):
+        problems.extend(
+            f"{place}: {key} is in the catalogues {one.name} and {other.name}; leave one out"
+            for key in one.values.keys() & other.values.keys()
+        )
+    return tuple(found)
+
+
+def _as_axes(catalogues: Iterable[Catalogue]) -> tuple[dict[str, Any], list[list[str]]]:
+    """The keys of catalogues as axes of lists, and those that go together."""
+    axes: dict[str, Any] = {}
+    groups = []
+    for catalogue in catalogues:
+        for key, values in catalogue.values.items():
+            axes[key] = [written(key, value) for value in values]
+        if len(catalogue.values) > 1:
+            groups.append([*catalogue.values])
+    return axes, groups
+
+
+def _variables(plan: Plan, catalogues: Iterable[Catalogue]) -> Iterable[Variable]:
+    of = {key: catalogue for catalogue in catalogues for key in catalogue.values}
+    for dimension in plan.dimensions:
+        if dimension.sample:
+            for key, axis in dimension.axes.items():
+                yield Variable(key, {key: axis})
+        else:
+            first = next(iter(dimension.axes))
+            name = of[first].name if first in of else first
+            yield Variable(name, dimension.axes, dimension.size, of.get(first))
+
+
+def _goals(
+    table: Mapping[str, Any], place: str, among: tuple[str, ...], problems: list[str]
+) -> tuple[Goal, ...]:
+    found: list[Goal] = []
+    for direction, given in table.items():
+        if direction not in _DIRECTIONS:
+            problems.append(
+                f"{place}: unknown key goals.{direction}; there are {' and '.join(_DIRECTIONS)}"
+            )
+            continue
+        for one in given if isinstance(given, list) else [given]:
+            try:
+                name = known_output(one, f"{place}: goals.{direction}", among)
+            except ValueError as error:
+                problems.append(str(error))
+                continue
+            if not is_measured(name):
+                problems.append(f"{place}: goals.{direction}: {one} is no number")
+            elif any(goal.name == name for goal in found):
+                problems.append(f"{place}: goals: {label(name)} is named twice; leave one out")
+            else:
+                found.append(Goal(name, direction == "maximise"))
+    if not problems and not 1 <= len(found) <= MOST_GOALS:
+        example = 'minimise = ["settling_time"]'
+        required = f"one to {MOST_GOALS} numbers, like {example}"
+        problems.append(refusal("goals", required, str(len(found)) if found else "none", place))
+    return tuple(found)
+
+
+def _least_yield(
+    demanded: tuple[Demand, ...],
+    goals: tuple[Goal, ...],
+    tables: Mapping[str, Any],
+    place: str,
+    problems: list[str],
+) -> float | None:
+    """The yield that is demanded; what is wrong with it is appended to `problems`."""
+    own = [demand for demand in demanded if demand.name == YIELD]
+    where = f"{place}: specification.yield"
+    if any(goal.name == YIELD for goal in goals):
+        problems.append(f'{place}: goals: yield is no goal; demand it, yield = ">= 95 %"')
+    if not own:
+        return None
+    if len(own) > 1 or own[0].at_most or not 0.0 < own[0].limit < 1.0:
+        given = quoted(tables["specification"].get("yield"))
+        problems.append(f'{where}: must be one limit like ">= 95 %", got {given}')
+    elif not tables.get("tolerances"):
+        problems.append(f"{where}: is within tolerances; write them in [tolerances]")
+    elif len(demanded) == 1:
+        problems.append(f"{where}: is of the other demands; there are none")
+    return own[0].limit
+
+
+def _contradictions(
+    plan: Plan,
+    demanded: tuple[Demand, ...],
+    goals: tuple[Goal, ...],
+    catalogues: tuple[Catalogue, ...],
+    place: str,
+) -> Iterable[str]:
+    """Demands that no number meets, and numbers that this wish does not have."""
+    for one, other in combinations(demanded, 2):
+        low, high = (other, one) if one.at_most else (one, other)
+        if one.name == other.name and one.at_most != other.at_most and low.limit > high.limit:
+            yield (
+                f"{place}: specification.{label(one.name)}: nothing is both {_side(high)} and "
+                f"{_side(low)}; correct one of them"
+            )
+    names = {*(demand.name for demand in demanded), *(goal.name for goal in goals)}
+    if PRICE in names and not any(catalogue.priced for catalogue in catalogues):
+        yield f"{place}: no part has a price; give a catalogue with a column price in [catalogues]"
+    if SPEED in names and not (plan.page and plan.page.page.grating):
+        yield (
+            f"{place}: {label(SPEED)} is of lines a pitch apart; write which, "
+            'grating = ["3 mm"] in [page]'
+        )
+
+
+def _side(demand: Demand) -> str:
+    return f"{'≤' if demand.at_most else '≥'} {demand.shown()}"
+
+
+def _no_ranges(plan: Plan, conditions: set[str], place: str) -> Iterable[str]:
+    """Of axes without ends, and of counts without steps."""
+    for dimension in plan.dimensions:
+        for key, axis in dimension.axes.items():
+            table = "conditions" if key in conditions else "axes"
+            if isinstance(axis, Distribution) and axis.kind not in ("uniform", "loguniform"):
+                yield (
+                    f"{place}: {table}.{key}: a range has two ends; write uniform or loguniform, "
+                    f"not {axis.kind}"
+                )
+            if isinstance(axis, Distribution) and key in COUNTS:
+                yield f"{place}: {table}.{key} counts pins; give a list of whole numbers"
+        yield from _mixed(dimension, conditions, place)
+
+
+def _mixed(dimension: Dimension, conditions: set[str], place: str) -> Iterable[str]:
+    inside = conditions & dimension.axes.keys()
+    if not dimension.sample and inside and inside != dimension.axes.keys():
+        yield f"{place}: zip: {', '.join(dimension.axes)} are not all of one table"
+
+
+def outputs_of(wish: Wish) -> tuple[str, ...]:
+    """The numbers of motions or scans that it needs."""
+    names = (*(goal.name for goal in wish.goals), *(demand.name for demand in wish.demands))
+    return tuple(name for name in dict.fromkeys(names) if name not in DESIGN_OUTPUTS)
+
+
+def unit_of(name: str) -> tuple[str, float]:
+    """The unit in which a person reads a number, and how many of it make one in SI."""
+    return NUMBERS[name].display_unit, NUMBERS[name].display_scale

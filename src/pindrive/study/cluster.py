@@ -1,0 +1,119 @@
+"""The workers of a Dask scheduler, for what is computed in independent parts."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+from pindrive.files.output import OutputError
+from pindrive.quantities.table import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from concurrent.futures import Executor
+
+Shared = TypeVar("Shared")
+Given = TypeVar("Given")
+Done = TypeVar("Done")
+
+_PATIENCE: Final = "20s"
+"""How long a scheduler may take to answer."""
+
+
+class Here:
+    """Parts one after the other, in this thread."""
+
+    def spread(
+        self,
+        work: Callable[[Shared, Given], Done],
+        shared: Shared,
+        portions: Sequence[Given],
+    ) -> Iterator[Done]:
+        """The work of each portion, in their order."""
+        return (work(shared, portion) for portion in portions)
+
+
+class Cluster:
+    """Parts on the workers of a Dask scheduler."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def spread(
+        self,
+        work: Callable[[Shared, Given], Done],
+        shared: Shared,
+        portions: Sequence[Given],
+    ) -> Iterator[Done]:
+        """The work of each portion, in their order."""
+        begun = [self._executor.submit(work, shared, portion) for portion in portions]
+        return (future.result() for future in begun)
+
+
+@contextmanager
+def crew(address: str | None) -> Iterator[Here | Cluster]:
+    """Who computes independent parts: the workers of a scheduler, or without one this thread.
+
+    Raises:
+        ValueError: as for `cluster_executor`.
+    """
+    if address is None:
+        yield Here()
+        return
+    check_installed()
+    with cluster_executor(address, "nothing was written") as (executor, _):
+        yield Cluster(executor)
+
+
+def check_installed() -> None:
+    """Refuse where Dask's distributed is not installed."""
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise ValueError(
+            "--cluster needs Dask's distributed; pip install 'pindrive[cluster]'"
+        ) from None
+
+
+@contextmanager
+def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
+    """An executor on the workers of a scheduler, and how many threads they have, at least 1.
+
+    Args:
+        address: such as tcp://10.0.0.1:8786.
+        kept: what is left where workers die one after the other, for the message.
+
+    Raises:
+        ValueError: nothing answers at the address, or a worker has another version.
+    """
+    from distributed import Client, KilledWorker
+
+    try:
+        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786"
+        given = f"{address}: {str(error) or type(error).__name__}"
+        raise ValueError(refusal("--cluster", required, given)) from None
+    with client, client.get_executor(pure=False) as executor:
+        _check_versions(client.run(_version))
+        try:
+            yield executor, max(1, sum(client.nthreads().values()))
+        except KilledWorker as error:
+            raise OutputError(
+                f"--cluster {address}: workers died one after the other: {error}; {kept}"
+            ) from None
+
+
+def _version() -> str:
+    """The version that a worker has."""
+    from pindrive import __version__
+
+    return __version__
+
+
+def _check_versions(of_workers: Mapping[str, Any]) -> None:
+    """Refuse workers that would compute with another version."""
+    for worker, version in of_workers.items():
+        if version != _version():
+            given = f"{version} on {worker}"
+            raise ValueError(refusal("the workers' pindrive", f"version {_version()}", given))

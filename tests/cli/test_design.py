@@ -1,0 +1,111 @@
+"""The command `pindrive design`: its tables, the files that it writes, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from rich.console import Console
+
+from command import GOOD, refused, run
+from pindrive import load_device
+from pindrive.cli.design import NONE_MEETS
+from pindrive.cli.design_tables import design_report
+from pindrive.optimisation import effort, optimise
+from wishes import SMALL
+
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
+WISH = """
+name = "short"
+base = "device.toml"
+[axes]
+drive.damping = { uniform = ["0 N*s/m", "1 N*s/m"] }
+finger.kinetic = { uniform = ["2 mN", "30 mN"] }
+[specification]
+peak_displacement = ">= 2.2 mm"
+[set]
+motion.displacement = "2 mm"
+[tolerances]
+drive.damping = "10 %"
+[goals]
+minimise = "settling_time"
+"""
+
+
+@pytest.fixture(autouse=True)
+def inputs(in_empty_folder: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("device.toml").write_text(GOOD)
+    Path("wish.toml").write_text(WISH)
+    monkeypatch.setattr(effort, "BATCHED", SMALL)
+
+
+def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
+    done = run("design", "wish.toml", "-o", "out")
+    assert done.exit_code == 0, done.output
+    for words in ("Design: short", "least settling_time", "peak_displacement ≥ 2.2 mm", "Binding"):
+        assert words in done.stdout
+    assert "Yield within the tolerances: " in done.stdout
+    assert done.stdout.endswith("Wrote out\n")
+    names = {path.name for path in Path("out").iterdir()}
+    assert names == {"design.toml", "design.nc", "design.png", "transient.png"}
+    text = Path("out/design.toml").read_text("utf-8")
+    assert text.startswith("# Designed by pindrive.\n# Wish: wish.toml, short; seed 1.\n")
+    device = load_device("out/design.toml")
+    with xr.open_dataset("out/design.nc", engine="h5netcdf") as data:
+        assert float(data.damping) == device.drive.damping
+        assert float(data.transient_settling_time) > 0.0
+        settling = float(data.transient_settling_time)
+    simulated = run("simulate", "out/design.toml")
+    assert f"{1e3 * settling:.4g}"[:5] in simulated.stdout
+
+    # No design is an answer too, with the closest and its own status; it replaces the earlier one.
+    Path("wish.toml").write_text(WISH.replace(">= 2.2 mm", ">= 5 mm"))
+    done = run("design", "wish.toml", "-o", "out")
+    assert done.exit_code == NONE_MEETS == 1
+    assert "No design meets this: the closest misses peak_displacement ≥ 5 mm by " in done.stdout
+    text = Path("out/design.toml").read_text("utf-8")
+    assert "# No design meets the demands; the closest misses peak_displacement" in text
+    load_device("out/design.toml")
+
+
+def test_tables_show_values_in_their_units() -> None:
+    """Every number of the report is one of the result, in its display unit."""
+    found = optimise(None, "wish.toml", effort=SMALL)
+    text = Path("report.txt")
+    with text.open("w", encoding="utf-8") as file:
+        Console(file=file, width=120).print(design_report(found))
+    lines = [line.split() for line in text.read_text("utf-8").splitlines()]
+    rows = {words[0]: words for words in lines if words}
+    damping = found.values["drive.damping"]
+    assert float(rows["drive.damping"][1]) == pytest.approx(damping, rel=1e-3)
+    assert float(rows["finger.kinetic"][1]) == pytest.approx(
+        1e3 * found.values["finger.kinetic"], rel=1e-3
+    )
+    (demanded,) = found.demands
+    _, sign, limit, unit, worst, _, room, *_ = rows["peak_displacement"]
+    assert (sign, limit, unit) == ("≥", "2.2", "mm")
+    assert float(worst) == pytest.approx(1e3 * demanded.value, rel=1e-3)
+    assert float(room) == pytest.approx(-1e3 * demanded.excess, rel=1e-2) and float(room) >= 0.0
+    assert float(rows["least"][2]) == pytest.approx(1e3 * found.goals[0].value, rel=1e-3)
+
+
+def test_a_folder_that_holds_something_else_is_refused() -> None:
+    Path("out").mkdir()
+    Path("out/notes.txt").write_text("mine")
+    line = refused("design", "wish.toml", "-o", "out")
+    assert line == "-o out: holds notes.txt, which is of no design; give another folder"
+    Path("file").write_text("mine")
+    assert "file: cannot be written" in refused("design", "wish.toml", "-o", "file")
+
+
+def test_what_is_wrong_with_a_wish_is_said_in_a_line() -> None:
+    Path("wish.toml").write_text(WISH.replace("minimise", "minimize"))
+    line = refused("design", "wish.toml", "-o", "out")
+    assert line == "wish.toml: unknown key goals.minimize; there are minimise and maximise"
+    assert "is a device file; a wish names" in refused("design", "device.toml", "-o", "out")
+    Path("wish.toml").write_text(WISH)
+    assert "unknown key dampling" in refused(
+        "design", "wish.toml", "-o", "out", "--set", "dampling=1"
+    )
