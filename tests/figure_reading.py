@@ -62,9 +62,15 @@ def legend_of(owner: Any) -> dict[str, Any]:
     return dict(zip(texts, legend.legend_handles, strict=True))
 
 
+def lay_out(figure: Figure) -> None:
+    """Puts everything in its place, unless nothing has changed since that was done."""
+    if figure.stale:
+        figure.draw_without_rendering()
+
+
 def collisions(figure: Figure) -> list[tuple[str, str]]:
     """Pairs of texts that overlap on the page, but for labels along contours."""
-    figure.draw_without_rendering()
+    lay_out(figure)
     found = []
     texts = [*figure.texts]
     for legend in figure.legends:
