@@ -172,8 +172,12 @@ def fingerprint() -> str:
 
 
 def environment() -> dict[str, str]:
-    """The caller's environment with `.venv` first, and nothing that reaches past it."""
-    env = {k: v for k, v in os.environ.items() if k not in ("PYTHONHOME", "PYTHONPATH")}
+    """The caller's environment with `.venv` first, and nothing that reaches past it.
+
+    What Python compiles is kept: compiling the tests each time takes longer than many of them.
+    """
+    left_out = ("PYTHONHOME", "PYTHONPATH", "PYTHONDONTWRITEBYTECODE")
+    env = {k: v for k, v in os.environ.items() if k not in left_out}
     path = os.pathsep.join([str(BIN), env.get("PATH", "")])
     return {**env, "PATH": path, "VIRTUAL_ENV": str(VENV), "PIP_USER": "0"}
 
