@@ -8,6 +8,7 @@
     python3 run.py lint [STEP...]     check style, types and stubs, or only the steps named
     python3 run.py format             lay out Python and C++ as lint wants them
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
+    python3 run.py docs               make the documentation site in build/docs
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
@@ -375,6 +376,17 @@ def validation() -> int:
     return run("python", "-m", "tests.published")
 
 
+def docs() -> int:
+    """The documentation site; whatever Sphinx warns of is an error."""
+    install({"docs"})
+    site = ROOT / "build" / "docs"
+    strict = ("-W", "--keep-going", "-q", "-b", "html", "-d", site.with_name("docs-cache"))
+    status = run("python", "-m", "sphinx", *strict, "docs", site)
+    if status == 0:
+        print(f"The site is {site / 'index.html'}")
+    return status
+
+
 def layout() -> int:
     """Lays the sources out; what lint can only complain about is left to the author."""
     install({"dev"}, project=False)
@@ -397,7 +409,8 @@ def main(arguments: list[str]) -> int:
         print(__doc__)
         return 0
     taking = {"test": test, "explore": explore, "lint": lint, "bench": bench}
-    alone = {"simulate": simulate, "format": layout, "stubs": stubs, "validation": validation}
+    alone = {"simulate": simulate, "format": layout, "stubs": stubs}
+    alone |= {"docs": docs, "validation": validation}
     if command in taking:
         return taking[command](rest)
     if command not in alone or rest:
