@@ -89,6 +89,7 @@ def collisions(figure: Figure) -> list[tuple[str, str]]:
         for text in texts
         if text.get_text().strip() and text.get_visible()
     ]
+    figure.stale = False  # Matplotlib takes a figure for changed that is asked where its texts are
     for i, (one, box) in enumerate(boxes):
         for other, other_box in boxes[i + 1 :]:
             across = min(box.x1, other_box.x1) - max(box.x0, other_box.x0)
