@@ -10,6 +10,7 @@
     python3 run.py studio [test|bench]
                                       build the studio, a page; test or time it in a browser
     python3 run.py stubs              refresh src/pindrive/_core.pyi from the built extension
+    python3 run.py docs               make the documentation site in build/docs
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py fmu-binaries [PLATFORM...]
                                       compile what FMUs carry for other platforms
@@ -187,8 +188,12 @@ def fingerprint() -> str:
 
 
 def environment() -> dict[str, str]:
-    """The caller's environment with `.venv` first, and nothing that reaches past it."""
-    env = {k: v for k, v in os.environ.items() if k not in ("PYTHONHOME", "PYTHONPATH")}
+    """The caller's environment with `.venv` first, and nothing that reaches past it.
+
+    What Python compiles is kept: compiling the tests each time takes longer than many of them.
+    """
+    left_out = ("PYTHONHOME", "PYTHONPATH", "PYTHONDONTWRITEBYTECODE")
+    env = {k: v for k, v in os.environ.items() if k not in left_out}
     path = os.pathsep.join([str(BIN), env.get("PATH", "")])
     return {**env, "PATH": path, "VIRTUAL_ENV": str(VENV), "PIP_USER": "0"}
 
@@ -413,6 +418,17 @@ def validation() -> int:
     return run("python", "-m", "tests.published")
 
 
+def docs() -> int:
+    """The documentation site; whatever Sphinx warns of is an error."""
+    install({"docs"})
+    site = ROOT / "build" / "docs"
+    strict = ("-W", "--keep-going", "-q", "-b", "html", "-d", site.with_name("docs-cache"))
+    status = run("python", "-m", "sphinx", *strict, "docs", site)
+    if status == 0:
+        print(f"The site is {site / 'index.html'}")
+    return status
+
+
 def layout() -> int:
     """Lays the sources out; what lint can only complain about is left to the author."""
     install({"dev"}, project=False)
@@ -452,7 +468,8 @@ def main(arguments: list[str]) -> int:
         return 0
     taking = {"test": test, "explore": explore, "lint": lint, "bench": bench, "studio": studio}
     taking["fmu-binaries"] = fmu_binaries
-    alone = {"simulate": simulate, "format": layout, "stubs": stubs, "validation": validation}
+    alone = {"simulate": simulate, "format": layout, "stubs": stubs}
+    alone |= {"docs": docs, "validation": validation}
     if command in taking:
         return taking[command](rest)
     if command not in alone or rest:

@@ -62,9 +62,15 @@ def legend_of(owner: Any) -> dict[str, Any]:
     return dict(zip(texts, legend.legend_handles, strict=True))
 
 
+def lay_out(figure: Figure) -> None:
+    """Puts everything in its place, unless nothing has changed since that was done."""
+    if figure.stale:
+        figure.draw_without_rendering()
+
+
 def collisions(figure: Figure) -> list[tuple[str, str]]:
     """Pairs of texts that overlap on the page, but for labels along contours."""
-    figure.draw_without_rendering()
+    lay_out(figure)
     found = []
     texts = [*figure.texts]
     for legend in figure.legends:
@@ -83,6 +89,7 @@ def collisions(figure: Figure) -> list[tuple[str, str]]:
         for text in texts
         if text.get_text().strip() and text.get_visible()
     ]
+    figure.stale = False  # Matplotlib takes a figure for changed that is asked where its texts are
     for i, (one, box) in enumerate(boxes):
         for other, other_box in boxes[i + 1 :]:
             across = min(box.x1, other_box.x1) - max(box.x0, other_box.x0)

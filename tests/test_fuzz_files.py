@@ -25,29 +25,56 @@ def test_a_file_holds_what_was_drawn() -> None:
     assert 'mass = "1e-300 kg"' in text and "columns = 7.0" in text
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="it forks")
-def test_cases_end_well(tmp_path: Path) -> None:
-    command = [sys.executable, str(FUZZ), "20", "11"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "20 cases of seed 11 from 0 on" in done.stdout
-    assert ", 0 wrong" in done.stdout
+# ---- in one process, which imports everything once ---------------------------------------------
+
+RUNS = f"""
+import sys
+sys.path.insert(0, {str(FUZZ.parent)!r})
+import files
+import fuzz_cases
+from pindrive.device.page import Scene
+
+def run(count):
+    sys.argv = ["files.py", count, "11"]
+    print("status", files.main(), flush=True)
+
+run("20")
+fuzz_cases.warm_up = lambda: None  # it is warm
+old = Scene.from_text.__func__
+
+def new(*args, **named):
+    sys.stderr.write("RuntimeWarning: so it is\\n")
+    return old(*args, **named)
+
+Scene.from_text = classmethod(new)
+run("12")
+"""
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="it forks")
-def test_what_is_wrong_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A library that warns: the same cases fail, and say so."""
-    (tmp_path / "sitecustomize.py").write_text(
-        "import sys, os\n"
-        "import pindrive.device.page as scene\n"
-        "old = scene.Scene.from_text.__func__\n"
-        "def new(*args, **named):\n"
-        "    sys.stderr.write('RuntimeWarning: so it is\\n')\n"
-        "    return old(*args, **named)\n"
-        "scene.Scene.from_text = classmethod(new)\n"
+@pytest.fixture(scope="module")
+def said(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
+    """Of the cases as they are; of some of them with a library that warns."""
+    done = subprocess.run(
+        [sys.executable, "-c", RUNS],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=tmp_path_factory.mktemp("fuzz"),
     )
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    command = [sys.executable, str(FUZZ), "12", "11"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert ": a library warns: pindrive scan" in done.stdout
+    assert done.returncode == 0, done.stdout + done.stderr
+    good, end, bad = done.stdout.partition("status 0\n")
+    assert end, done.stdout
+    return good, bad
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it forks")
+def test_cases_end_well(said: tuple[str, str]) -> None:
+    assert "20 cases of seed 11 from 0 on" in said[0]
+    assert ", 0 wrong" in said[0]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it forks")
+def test_what_is_wrong_is_told(said: tuple[str, str]) -> None:
+    """A library that warns: the same cases fail, and say so."""
+    assert said[1].endswith("status 1\n")
+    assert ": a library warns: pindrive scan" in said[1]

@@ -15,7 +15,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
+from figure_reading import collisions, data, events, lay_out, legend_of, lines, panel, points, spans
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.plot.motion import plot_motion
 from pindrive.plot.style import PALETTE, save
@@ -386,7 +386,7 @@ def test_colours_are_from_the_palette() -> None:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_words_stay_on_the_page(drawn: dict[str, tuple[Motion, Figure]], name: str) -> None:
     figure = drawn[name][1]
-    figure.draw_without_rendering()
+    lay_out(figure)
     page = figure.bbox
     legend = panel(figure, "key").get_legend()
     words = [*figure.texts, *(legend.get_texts() if legend else [])]

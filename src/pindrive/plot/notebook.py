@@ -109,7 +109,7 @@ def _number(number: float, scale: float, count: bool) -> str:
 def _picture(figure: Figure, title: str) -> str:
     file = BytesIO()
     with matplotlib.style.context(STYLE, after_reset=True):
-        figure.savefig(file, format="png", dpi=_DPI, pil_kwargs={"optimize": True})
+        figure.savefig(file, format="png", dpi=_DPI)
     data = b64encode(file.getvalue()).decode("ascii")
     width = round(_DPI * figure.get_size_inches()[0])
     return f'<img alt="{title}" width="{width}" src="data:image/png;base64,{data}">'

@@ -90,7 +90,7 @@ STYLE: Final[dict[str, Any]] = {
     "pdf.fonttype": 42,  # TrueType: journals refuse Type 3
 }
 _SAVING: Final[dict[str, dict[str, Any]]] = {
-    "png": {"pil_kwargs": {"optimize": True}},
+    "png": {},
     "svg": {"metadata": {"Date": None}},
     "pdf": {"metadata": {"CreationDate": None}},
 }

@@ -1,0 +1,64 @@
+"""How Sphinx makes the site: `python3 run.py docs`."""
+
+from __future__ import annotations
+
+import re
+import sys
+from importlib.metadata import version as installed
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
+
+project = "pindrive"
+author = copyright = "the pindrive founders"
+release = installed("pindrive")
+extensions = [
+    "mathml",
+    "myst_parser",
+    "pindrive_reference",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+]
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+exclude_patterns = ["_build"]
+nitpicky = False  # Python's own documentation is not asked over the network
+html_theme = "furo"
+html_math_renderer = "mathml"
+html_title = f"pindrive {release}"
+html_copy_source = False
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+
+default_role = "code"  # docstrings set code between single backticks
+
+
+def read(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Turn links to CONTRIBUTING.md into links to its page, and those to folders into their text.
+
+    The guides of the first page have, after those that it names, all other pages of this folder.
+    """
+    text = source[0].replace("](../CONTRIBUTING.md", "](contributing.md")
+    text = re.sub(r"\[([^]]+)\]\(\.\./[\w/]+\)", r"\1", text)
+    if docname == "index":
+        listed = text.splitlines()
+        pages = sorted(path.stem for path in HERE.glob("*.md") if path.stem != "index")
+        text = text.replace("% other pages", "\n".join(p for p in pages if p not in listed))
+    source[0] = text
+
+
+def escape(
+    app: Sphinx, kind: str, name: str, obj: object, options: object, lines: list[str]
+) -> None:
+    """Keep the bars of absolute values in docstrings from being substitutions."""
+    lines[:] = [line.replace("|", "\\|") for line in lines]
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", read)
+    app.connect("autodoc-process-docstring", escape)
