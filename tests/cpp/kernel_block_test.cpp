@@ -52,7 +52,8 @@ std::vector<Answer> followed(const std::vector<Release>& all, pk::Asked asked, i
   const int count = static_cast<int>(all.size());
   std::vector<std::vector<double>> columns(Block::columns,
                                            std::vector<double>(all.size() + 1, unwritten));
-  for (int k = 0; k < Block::columns; ++k) block->output[k] = k < first ? nullptr : &columns[k][0];
+  for (int k = 0; k < Block::columns; ++k)
+    block->output[k] = k < first ? nullptr : columns[k].data();
   for (int i = 0; i < count; ++i)
     for (int k = 0; k < Block::inputs; ++k) block->input[k][i] = all[i][k];
   pk::follow_block<pk::Pack<2>>(*block, count, asked);
@@ -101,6 +102,7 @@ int main() {
 
   // More than a pack, and not a whole number of packs: rounds are gathered across them.
   std::vector<Release> many;
+  many.reserve(37);
   for (int i = 0; i < 37; ++i) many.push_back(all[i % 8 == 2 ? 3 : i % 8]);
   const auto gathered = followed(many, pk::Asked::settling);
   bool in_place = true;
