@@ -212,6 +212,11 @@ def test_a_coil_may_be_varied() -> None:
     assert "hold_force" not in data.coords, "it changes with the turns"
 
 
+BY_COEFFICIENT = DEVICE.replace('kinetic = "22 mN"', "coefficient = 0.2").replace(
+    'kinetic = "20 mN"', 'coefficient = 0.4\ntouch_force = "50 mN"'
+)
+
+
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
 def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
     """At a usual value and at another there is a scan."""
@@ -225,7 +230,11 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         coiled = quantity.name in MADE_OF
         plan = study(
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
-            device=DEVICE + (COILED if coiled else ""),
+            device=(
+                BY_COEFFICIENT
+                if "coefficient" in key or key == "finger.touch_force"
+                else DEVICE + (COILED if coiled else "")
+            ),
         )
         found = evaluate(plan, plan.columns(0, 2), 2, SCAN_OUTPUTS)
         assert (found["status"] == 0).all(), key

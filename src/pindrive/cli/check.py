@@ -41,11 +41,10 @@ def check(
 
     with refusing():
         device = load_device(file)
-        pressing = device.whole.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
-    from pindrive.motion.friction import Coefficients
+    from pindrive.motion.coefficients import Coefficients
 
-    doubt = Coefficients.of(device.drive.plate, device.drive.mass, pressing).doubt
+    doubt = Coefficients.of(device.drive).doubt
     if doubt:
         typer.echo(f"warning: {doubt}", err=True)
     show(device_report(device))

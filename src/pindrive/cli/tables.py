@@ -10,7 +10,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pindrive.motion.friction import Coefficients
+from pindrive.motion.coefficients import Coefficients
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
 from pindrive.quantities.results import TRANSIENT
@@ -72,7 +72,7 @@ def device_report(device: DeviceFile) -> RenderableType:
         lines += device_words(whole)
         lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
     elif not drive.plate.frictionless:
-        lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
+        lines.append(f"The plate: {Coefficients.of(drive).words}.")
     lines += [device.recording_words] if device.recording_words else []
     return Group(table, *whole_lines(lines))
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
-from pindrive.motion.friction import GRAVITY
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.controller import Commands
-    from pindrive.quantities.table import Number, OptionalNumber
+    from pindrive.quantities.table import Number
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""
@@ -155,7 +154,6 @@ class Electromagnet:
         fall_constant: of the falling current, s, greater than 0.
         saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
         residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
-        pressing: W, what presses it on the plate besides, N, greater than 0; None: its weight.
         deviation: of the piecewise-linear pull, a part of `hold_force`, in (0, 0.1].
         coil: what it is made from, where known.
 
@@ -168,7 +166,6 @@ class Electromagnet:
     fall_constant: Number = default("fall_constant")
     saturation: Number = default("saturation")
     residual: Number = default("residual")
-    pressing: OptionalNumber = default("pressing")
     deviation: Number = default("deviation")
     coil: Coil | None = None
 
@@ -185,7 +182,6 @@ class Electromagnet:
         fall_time: float | str = default("fall_time"),
         saturation: float | str = default("saturation"),
         residual: float | str = default("residual"),
-        pressing: float | str | None = None,
         deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
@@ -196,7 +192,6 @@ class Electromagnet:
             fall_time: from switching off until 10 % of it, s.
             saturation: a part of the full current.
             residual: N.
-            pressing: N.
             deviation: a part of `hold_force`.
 
         Raises:
@@ -210,7 +205,6 @@ class Electromagnet:
             fall_constant=-fall / log(sigma * sqrt(0.1)),
             saturation=sigma,
             residual=residual,
-            pressing=pressing,
             deviation=deviation,
         )
 
@@ -220,7 +214,6 @@ class Electromagnet:
         coil: Coil,
         *,
         residual: float | str = default("residual"),
-        pressing: float | str | None = None,
         deviation: float | str = default("deviation"),
     ) -> Electromagnet:
         """An electromagnet by how it is made.
@@ -234,7 +227,6 @@ class Electromagnet:
             fall_constant=coil.inductance / (coil.resistance + coil.release_resistance),
             saturation=coil.saturation,
             residual=residual,
-            pressing=pressing,
             deviation=deviation,
             coil=coil,
         )
@@ -248,10 +240,6 @@ class Electromagnet:
     def fall_time(self) -> float:
         """From switching off until 10 % of it, s."""
         return -self.fall_constant * log(self.saturation * sqrt(0.1))
-
-    def pressed(self, mass: float) -> float:
-        """W, the force on the plate without any pull, N, of a pin of this mass (kg)."""
-        return mass * GRAVITY if self.pressing is None else self.pressing
 
     @overload
     def pull(self, current: float) -> float: ...

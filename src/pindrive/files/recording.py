@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.files.schema import Tables, number
 from pindrive.files.template import NUMBERS, usual
-from pindrive.motion.drive import check_slopes, check_times
+from pindrive.motion.contact import check_slopes
+from pindrive.motion.drive import check_times
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.table import QUANTITIES, default, refusal

@@ -24,17 +24,29 @@ from pindrive.device.electromagnet import (
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
 from pindrive.device.reading import Reading
 from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
-from pindrive.motion.drive import (
+from pindrive.motion.contact import (
+    SLOPES,
     Contact,
-    Drive,
-    Profile,
     check_curve,
     check_increasing,
-    check_skin,
+    check_one_kind,
     check_slopes,
     check_static,
+)
+from pindrive.motion.drive import (
+    Drive,
+    Profile,
+    check_skin,
     check_stretch,
     check_times,
+    check_touch,
+)
+from pindrive.motion.friction import (
+    COEFFICIENT_OF,
+    COEFFICIENTS,
+    PRESSED_BY,
+    friction_force,
+    normal_force,
 )
 from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
@@ -95,9 +107,11 @@ def read_values(
                 values[key] = read_value(tables[table][name], key, place(key))
             except ValueError as error:
                 problems.append(error.args[0])
-        elif not quantity.mandatory or quantity.alternative.partition(".")[2] in tables[table]:
+        elif not quantity.mandatory or any(
+            other.partition(".")[2] in tables[table] for other in quantity.alternative
+        ):
             values[key] = quantity.absent
-        elif key not in meant and quantity.alternative not in meant:
+        elif key not in meant and not any(other in meant for other in quantity.alternative):
             problems.append(f"{place(key)}: {key} is missing; write {line(quantity)} in [{table}]")
     return values, problems
 
@@ -149,9 +163,9 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
         return tuple(rows)
     label = f"{key}[{{}}] {words[0]}"
     firsts = [first for first, _ in rows]
-    if quantity.rows_of == "curve":
+    if quantity.rows_of in SLOPES:
         check_increasing(firsts, across.unit, where=place, label=label)
-        check_slopes(rows, "curve.slope", where=place, label=key)
+        check_slopes(rows, SLOPES[quantity.rows_of], where=place, label=key)
     else:
         no_step = " (a jump would take an infinite force)" if key == "motion.mouse_velocity" else ""
         check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
@@ -169,10 +183,22 @@ def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
 
 
 def contact_of(values: Mapping[str, Value], table: str) -> Contact:
-    """The contact that [plate] or [finger] describes."""
-    given = table_of(values, table)
+    """The contact that [plate] or [finger] describes, with its friction forces."""
+    given = {
+        name: value
+        for name, value in table_of(values, table).items()
+        if f"{table}.{name}" in QUANTITIES  # preload and touch force are the drive's
+    }
     stiffness = given.pop("stiffness", None)
-    return Contact(**given, stiffness=inf if stiffness is None else stiffness)
+    contact = Contact(**given, stiffness=inf if stiffness is None else stiffness)
+    if contact.coefficient is None:
+        return contact
+    return contact.pressed_by(normal_force(table, by_name(values).__getitem__))
+
+
+def by_name(values: Mapping[str, Value]) -> dict[str, Any]:
+    """The values of the keys of the drive by the names of their quantities."""
+    return {DRIVE[key].name: value for key, value in values.items() if key in DRIVE}
 
 
 def drive_of(values: Mapping[str, Value]) -> Drive:
@@ -183,10 +209,11 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
     """
     given = table_of(values, "drive")
     damping, ratio = given.pop("damping"), given.pop("damping_ratio")
-    plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
+    given |= {name: contact_of(values, name) for name in ("plate", "finger")}
+    given |= {"preload": values["plate.preload"], "touch_force": values["finger.touch_force"]}
     if damping is None:
-        return Drive.with_damping_ratio(**given, damping_ratio=ratio, plate=plate, finger=finger)
-    return Drive(**given, damping=damping, plate=plate, finger=finger)
+        return Drive.with_damping_ratio(**given, damping_ratio=ratio)
+    return Drive(**given, damping=damping)
 
 
 def release_of(values: Mapping[str, Value]) -> Release:
@@ -202,13 +229,29 @@ def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together within [plate] and [finger], as far as their values are known."""
     problems = Problems(place)
     for table in ("plate", "finger"):
-        of_curve, of_static, of_kinetic = (f"{table}.{x}" for x in ("curve", "static", "kinetic"))
+        names = (*COEFFICIENTS, *COEFFICIENTS.values())
+        given = [name for name in names if values.get(f"{table}.{name}") is not None]
+        by_coefficient = any(name not in COEFFICIENTS for name in given)
+        keys = tuple(f"{table}.{name}" for name in reversed(given))
+        before = len(problems)
+        problems.check(check_one_kind, given, table, place, keys=keys or (table,))
+        if len(problems) > before:
+            continue
+        of_kinetic, of_static, of_curve = (
+            f"{table}.{name}"
+            for name in (COEFFICIENTS.values() if by_coefficient else COEFFICIENTS)
+        )
         curve, static, kinetic = (values.get(key) for key in (of_curve, of_static, of_kinetic))
         if isinstance(curve, tuple):
             kinetic = curve[0][1] if kinetic is None else kinetic
-            problems.check(check_curve, curve, kinetic, keys=(of_curve, of_kinetic))
+            name = of_curve.partition(".")[2]
+            problems.check(check_curve, curve, kinetic, name, keys=(of_curve, of_kinetic))
         if static is not None and kinetic is not None:
-            problems.check(check_static, static, kinetic, keys=(of_static, of_kinetic, of_curve))
+            keys = of_static, of_kinetic, of_curve
+            problems.check(check_static, static, kinetic, of_static.partition(".")[2], keys=keys)
+        if table == "finger" and given and "finger.touch_force" in values:
+            keys = ("finger.touch_force", *keys)
+            problems.check(check_touch, by_coefficient, values["finger.touch_force"], keys=keys)
     return problems
 
 
@@ -331,6 +374,8 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
     moved = {key for key in DRIVE if key in placed}
     for key, quantity in DRIVE.items():
         table, _, name = key.partition(".")
+        if name not in tables[table] and moved.intersection(friction_parts(key)):
+            moved.add(key)
         if key in moved or not moved.intersection(quantity.follows):
             continue
         moved.add(key)
@@ -342,6 +387,14 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
             tables[table][name] = written(key, given / old * new)
         elif rows := scaled_rows(given, new):
             tables[table][name] = written_rows(key, rows)
+
+
+def friction_parts(key: str) -> tuple[str, ...]:
+    """The keys from which a friction force follows where a coefficient gives it; of others none."""
+    if key not in COEFFICIENT_OF:
+        return ()
+    own, pressing = COEFFICIENT_OF[key], PRESSED_BY[key.partition(".")[0]]
+    return (own, *(QUANTITIES[name].key for name in pressing))
 
 
 def written(key: str, value: float) -> str | float:
@@ -363,10 +416,15 @@ def _value(tables: Tables, key: str) -> float | None:
     table, _, name = key.partition(".")
     found = _given(tables, key)
     if found is None and name not in tables[table]:
+        if key in COEFFICIENT_OF and COEFFICIENTS["kinetic"] in tables[table]:
+            parts = [_value(tables, part) for part in friction_parts(key)]
+            if None not in parts:
+                return float(friction_force(key, lambda n: _value(tables, QUANTITIES[n].key)))
         curve = _given(tables, f"{table}.curve") if name == "kinetic" else None
         if isinstance(curve, tuple):
             return curve[0][1]
-        return _value(tables, DRIVE[key].follows[0]) if name == "static" else None
+        follows, static = DRIVE[key].follows, ("static", COEFFICIENTS["static"])
+        return _value(tables, follows[0]) if name in static else DRIVE[key].absent
     return found if isinstance(found, float) else None
 
 

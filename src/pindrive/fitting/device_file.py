@@ -14,6 +14,7 @@ from pindrive.files.schema import written, written_rows
 from pindrive.fitting.parameters import key_of
 from pindrive.fitting.results import Estimate, is_of_sensor
 from pindrive.motion.drive import Profile
+from pindrive.motion.friction import COEFFICIENTS
 from pindrive.quantities.quantity import significant
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     for key, path in files_named(device.tables, device.path.parent).items():
         _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
     comments: dict[str, list[str]] = {}
+    for table in ("plate", "finger"):  # a fit has forces
+        if COEFFICIENTS.keys().isdisjoint(tables.get(table, {})):
+            for name in (*COEFFICIENTS.values(), "touch_force"):
+                tables.get(table, {}).pop(name, None)
     for key, value in _values(device, found).items():
         _put(tables, key, value)
     tables["drive"].pop("damping_ratio", None)
@@ -85,7 +90,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
     values["motion.mouse_velocity"] = release.mouse_velocity
     values["motion.plate_load"] = release.plate_load
     values["motion.skin_stretch"] = release.skin_stretch
-    before = device.values()
+    before = {k: v for k, v in device.values().items() if k not in device.derived}
     changed = {}
     for key, value in values.items():
         value = value.rows if isinstance(value, Profile) else value

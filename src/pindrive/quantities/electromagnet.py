@@ -62,16 +62,6 @@ MAGNET: Final = in_table(
         "assumed: soft iron and a paint thick enough",
     ),
     Quantity(
-        "pressing",
-        "W",
-        "N",
-        "force that presses the electromagnet on the plate while it is off",
-        between(1e-6, 1e4),
-        source="9.80665 m/s2 (standard gravity) times 1 g",
-        example=0.00980665,
-        remark="its weight unless given",
-    ),
-    Quantity(
         "deviation",
         "ε_P",
         "1",
