@@ -476,8 +476,9 @@ def test_the_example_is_a_study_of_scans() -> None:
         mass=0.001,
         stiffness=250.0,
         damping_ratio=0.5,
-        plate=Contact(0.0022, 0.00265),
-        finger=Contact(0.030, 0.045, stiffness=300.0),
+        plate=Contact(coefficient=0.225, static_coefficient=0.27),
+        finger=Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0),
+        touch_force=columns["finger.touch_force"][1],
     )
     magnet = Electromagnet.from_times(fall_time=columns["magnet.fall_time"][1])
     device = Device(drive=drive, magnet=magnet)

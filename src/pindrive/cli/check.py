@@ -44,7 +44,11 @@ def check(
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.coefficients import Coefficients
 
-    doubt = Coefficients.of(device.drive).doubt
-    if doubt:
+    found = [Coefficients.of(device.drive).doubt]
+    if device.whole:
+        from pindrive.device.geometry import doubts
+
+        found += doubts(device.device)
+    for doubt in filter(None, found):
         typer.echo(f"warning: {doubt}", err=True)
     show(device_report(device))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from pindrive.device.pin_array import Neighbours
     from pindrive.quantities.table import Number
 
 
@@ -42,6 +43,12 @@ class Device:
     def __post_init__(self) -> None:
         """Validate what fits together."""
         check_plate(self.drive.plate)
+
+    @property
+    def magnet_neighbours(self) -> tuple[Neighbours, ...]:
+        """Magnets that would meet if one moved far; none where their diameter is not known."""
+        width = self.magnet.outer_diameter
+        return () if width is None else self.array.neighbours_of(width)
 
     @property
     def friction(self) -> Coefficients:

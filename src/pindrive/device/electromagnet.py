@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.controller import Commands
-    from pindrive.quantities.table import Number
+    from pindrive.quantities.table import Number, OptionalNumber
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""
@@ -155,6 +155,8 @@ class Electromagnet:
         saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
         residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
         deviation: of the piecewise-linear pull, a part of `hold_force`, in (0, 0.1].
+        outer_diameter: of the magnet, a cylinder, m, greater than 0; None: not known.
+        height: of it, m, greater than 0; None: not known.
         coil: what it is made from, where known.
 
     Raises:
@@ -167,11 +169,14 @@ class Electromagnet:
     saturation: Number = default("saturation")
     residual: Number = default("residual")
     deviation: Number = default("deviation")
+    outer_diameter: OptionalNumber = default("outer_diameter")
+    height: OptionalNumber = default("height")
     coil: Coil | None = None
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
         check_residual(self.residual, self.hold_force)
+        check_poles(self.coil, self.outer_diameter)
 
     @classmethod
     def from_times(
@@ -183,6 +188,8 @@ class Electromagnet:
         saturation: float | str = default("saturation"),
         residual: float | str = default("residual"),
         deviation: float | str = default("deviation"),
+        outer_diameter: float | str | None = default("outer_diameter"),
+        height: float | str | None = default("height"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -193,6 +200,8 @@ class Electromagnet:
             saturation: a part of the full current.
             residual: N.
             deviation: a part of `hold_force`.
+            outer_diameter: m.
+            height: m.
 
         Raises:
             ValueError: as for the class.
@@ -206,6 +215,8 @@ class Electromagnet:
             saturation=sigma,
             residual=residual,
             deviation=deviation,
+            outer_diameter=outer_diameter,
+            height=height,
         )
 
     @classmethod
@@ -215,8 +226,10 @@ class Electromagnet:
         *,
         residual: float | str = default("residual"),
         deviation: float | str = default("deviation"),
+        outer_diameter: float | str | None = default("outer_diameter"),
+        height: float | str | None = default("height"),
     ) -> Electromagnet:
-        """An electromagnet by how it is made.
+        """An electromagnet by how it is made; the rest as for the class.
 
         Raises:
             ValueError: as for the class.
@@ -228,6 +241,8 @@ class Electromagnet:
             saturation=coil.saturation,
             residual=residual,
             deviation=deviation,
+            outer_diameter=outer_diameter,
+            height=height,
             coil=coil,
         )
 
@@ -430,3 +445,13 @@ def check_residual(residual: float, hold_force: float) -> None:
     if residual >= hold_force:
         required = f"less than the hold force, {hold_force!r} N"
         raise ValueError(refusal("residual", required, f"{residual!r} N"))
+
+
+def check_poles(coil: Coil | None, outer_diameter: float | None) -> None:
+    """Refuse two poles whose area is more than the face of the magnet (m) has."""
+    if coil is None or outer_diameter is None:
+        return
+    face = pi / 4.0 * outer_diameter**2
+    if 2.0 * coil.pole_area > face:
+        required = f"at most half of the magnet's face, {0.5 * face:.4g} m^2, as it has two poles"
+        raise ValueError(refusal("pole_area", required, f"{coil.pole_area!r} m^2"))

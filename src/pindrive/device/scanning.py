@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Final, Protocol
@@ -23,8 +23,9 @@ from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
+from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Page, Reading
-from pindrive.device.trajectory import Way, check_vibration
+from pindrive.device.trajectory import Way, check_vibration, peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.motion import Motion
@@ -190,6 +191,16 @@ class PinScan:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class SlotRoom:
+    """How close a pin comes to the end of its slot in a scan."""
+
+    pin: int
+    """Its number."""
+    size: float
+    """m; negative where it would go beyond."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scan(lazy.NotebookHtml):
     """What a device did while a hand moved it over a scene."""
@@ -241,8 +252,40 @@ class Scan(lazy.NotebookHtml):
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:
         """The smallest gap of each two neighbouring pins, as the array's `neighbours` has them."""
+        return self._gaps_of(self.device.array.neighbours)
+
+    @cached_property
+    def magnet_gaps(self) -> tuple[Gap, ...]:
+        """The same of neighbouring magnets; none where their diameter is not known."""
+        return self._gaps_of(self.device.magnet_neighbours)
+
+    def _gaps_of(self, neighbours: Sequence[Neighbours]) -> tuple[Gap, ...]:
+        return tuple(
+            replace(self._approaches[pair.behind, pair.ahead], size=pair.clearance + approach)
+            for pair in neighbours
+            for approach in (self._approaches[pair.behind, pair.ahead].size,)
+        )
+
+    @cached_property
+    def _approaches(self) -> dict[tuple[int, int], Gap]:
+        """The gaps of all pairs of pins that are requested, as if they stood at one place."""
+        device = self.device
+        pairs = {(p.behind, p.ahead) for p in device.array.neighbours + device.magnet_neighbours}
+        together = [Neighbours(*pair, 0.0) for pair in sorted(pairs)]
         motions = [pin.motion for pin in self.pins]
-        return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
+        found = smallest_gaps(together, motions, self.path.begin)
+        return {(gap.behind, gap.ahead): gap for gap in found}
+
+    @cached_property
+    def slot_room(self) -> SlotRoom | None:
+        """The least room of a pin to the end of its slot, exactly; None of no known slots."""
+        travel = self.device.array.travel
+        if travel is None:
+            return None
+        return min(
+            (SlotRoom(pin.number, travel - peak_displacement(pin.motion)) for pin in self.pins),
+            key=lambda room: room.size,
+        )
 
     @property
     def status(self) -> Status:
@@ -253,6 +296,11 @@ class Scan(lazy.NotebookHtml):
     def smallest_gap(self) -> Gap | None:
         """The smallest of its gaps; None where no pin stands ahead of another."""
         return min(self.gaps, key=lambda gap: gap.size, default=None)
+
+    @property
+    def smallest_magnet_gap(self) -> Gap | None:
+        """The smallest of those of magnets; None where there is none."""
+        return min(self.magnet_gaps, key=lambda gap: gap.size, default=None)
 
     @property
     def state(self) -> tuple[PinState, ...]:

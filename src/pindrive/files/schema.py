@@ -21,7 +21,7 @@ from pindrive.device.electromagnet import (
     Electromagnet,
     check_one_way,
 )
-from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
+from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
 from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
 from pindrive.motion.contact import (
@@ -331,6 +331,8 @@ class Whole:
         if (places := values["array.places"]) is not None:
             problems.check(_check_no_grid, given["array"], keys=("array.places",))
             problems.check(check_apart, places, keys=("array.places",))
+        slot = values["array.slot_length"], values["array.pin_diameter"]
+        problems.check(check_slot, *slot, keys=("array.slot_length", "array.pin_diameter"))
         counts = "array.columns", "array.rows"
         for key in counts:
             problems.check(check_count, key.partition(".")[2], values[key], keys=(key,))

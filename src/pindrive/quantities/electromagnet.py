@@ -62,6 +62,28 @@ MAGNET: Final = in_table(
         "assumed: soft iron and a paint thick enough",
     ),
     Quantity(
+        "outer_diameter",
+        "d_e",
+        "m",
+        "diameter of the electromagnet, a cylinder",
+        between(1e-6, 1.0),
+        source="assumed: a pot of steel 0.3 mm thick about a winding 0.45 mm thick and a core 2 mm "
+        "wide",
+        example=0.0035,
+        remark="unless it is given, nothing is said of magnets that meet",
+    ),
+    Quantity(
+        "height",
+        "H_e",
+        "m",
+        "height of the electromagnet",
+        between(1e-6, 1.0),
+        source="1 g of iron, 7.87, and copper, 8.96 g/cm3 (CRC Handbook), filled but for 0.2 mm of "
+        "height",
+        example=0.0124,
+        remark="with the diameter it bounds the mass",
+    ),
+    Quantity(
         "deviation",
         "ε_P",
         "1",
