@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from pindrive.device.electromagnet import COIL, COIL_NEEDS, DIRECT
+from pindrive.device.coil import COIL, COIL_NEEDS
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity

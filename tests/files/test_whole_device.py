@@ -112,6 +112,9 @@ def test_the_template_of_a_whole_device_says_what_holds_anyway(write: Write) -> 
     assert told == {"array.columns", "array.rows", "array.spot_scale", *sizes}
 
 
+PULSES = 'pwm_frequency = "1 kHz"\npwm_duty = 0.4'
+
+
 @pytest.mark.parametrize("key", WHOLE)
 def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str) -> None:
     table, _, name = key.partition(".")
@@ -120,8 +123,13 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
     coil = (
         COIL
         if name
-        in ("release_resistance", "saturation_field", "thermal_resistance", "temperature_rise")
+        in (
+            *("release_resistance", "saturation_field", "thermal_resistance", "heat_capacity"),
+            "temperature_rise",
+        )
         or not alone
+        else PULSES
+        if name in ("pwm_frequency", "pwm_duty")
         else ""
     )
     coil = "\n".join(line for line in coil.splitlines() if not line.startswith(f"{name} "))

@@ -23,7 +23,7 @@ from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
-from pindrive.device.electromagnet import COIL as MADE_OF
+from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.reading import Page, Reading
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.files.output import OutputError
@@ -212,6 +212,7 @@ def test_a_coil_may_be_varied() -> None:
     assert "hold_force" not in data.coords, "it changes with the turns"
 
 
+PULSED = '\n[magnet]\npwm_frequency = "1 kHz"\npwm_duty = 0.5\n'
 BY_COEFFICIENT = DEVICE.replace('kinetic = "22 mN"', "coefficient = 0.2").replace(
     'kinetic = "20 mN"', 'coefficient = 0.4\ntouch_force = "50 mN"'
 )
@@ -233,7 +234,7 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
             device=(
                 BY_COEFFICIENT
                 if "coefficient" in key or key == "finger.touch_force"
-                else DEVICE + (COILED if coiled else "")
+                else DEVICE + (COILED if coiled else PULSED if "pwm" in key else "")
             ),
         )
         found = evaluate(plan, plan.columns(0, 2), 2, SCAN_OUTPUTS)

@@ -227,7 +227,7 @@ def device_words(device: Device) -> list[str]:
     if device.reach:
         words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
     else:
-        held = device.drive.plate.static_friction * device.load(device.magnet.hold_force)
+        held = device.drive.plate.static_friction * device.load(device.magnet.sustained_pull)
         words = [
             f"A magnet does not carry its pin: it holds with {force.text(held)} of friction at "
             f"most, the finger with {force.text(device.drive.finger.kinetic)}.{drag}"

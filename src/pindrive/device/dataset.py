@@ -167,6 +167,7 @@ def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDAr
         "command": pin.commands.on(t),
         "current": pin.current(t),
         "pull": scan.device.magnet.pull(pin.current(t)),
+        **({} if pin.current.heat is None else {"warming": pin.current.warming(t)}),
     }
 
 
@@ -263,6 +264,12 @@ def gap_words(scan: Scan) -> list[str]:
     return lines
 
 
+def peak_warming(scan: Scan) -> float | None:
+    """The largest warming of a coil, K; None where it is not simulated."""
+    peaks = [pin.peak_warming for pin in scan.pins if pin.peak_warming is not None]
+    return max(peaks, default=None)
+
+
 # ---- what is doubtful ----------------------------------------------------------------------------
 
 
@@ -302,9 +309,15 @@ def _doubts(scan: Scan) -> list[str]:
         )
     coil = device.magnet.coil
     if coil is not None:
-        lasts = path.end - path.begin
+        lasts, peak = path.end - path.begin, peak_warming(scan)
         most = max(sum(end - begin for begin, end in pin.energised) for pin in scan.pins) / lasts
-        if most > coil.duty:
+        if peak is not None:
+            if peak > coil.temperature_rise:
+                found.append(
+                    f"a coil warms by {peak:.3g} K in this scan, more than "
+                    f"magnet.temperature_rise, {coil.temperature_rise:g} K"
+                )
+        elif most * device.magnet.heating > coil.duty:
             found.append(
                 f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"

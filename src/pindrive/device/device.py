@@ -58,7 +58,7 @@ class Device:
     @property
     def reach(self) -> float:
         """How far a magnet carries a pin at most before the spring overcomes it, m, slowly."""
-        held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
+        held = self.drive.plate.static_friction * self.load(self.magnet.sustained_pull)
         return max(0.0, held - self.drive.finger.kinetic) / self.drive.stiffness
 
     def excursion(self, speed: float) -> float:

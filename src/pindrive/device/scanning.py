@@ -18,8 +18,8 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Commands, Decision
+from pindrive.device.current import CoilState, Current
 from pindrive.device.device import Criteria, Device
-from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
@@ -176,6 +176,14 @@ class PinScan:
     def energised(self) -> list[tuple[float, float]]:
         """From when to when its coil was switched on, s."""
         return self.commands.spans(self.begin, self.end)
+
+    @cached_property
+    def peak_warming(self) -> float | None:
+        """The largest warming of its coil, K, at a switching or the end; None: not simulated."""
+        if self.current.heat is None:
+            return None
+        times = self.current.begins[self.current.begins >= self.begin]
+        return float(self.current.warming(np.append(times, self.end)).max())
 
     @property
     def state(self) -> PinState:
@@ -449,10 +457,10 @@ def prepare(
     for number, state in enumerate(states):
         luminance = _seen(device, scene, path, looks, number)
         commands, decision = device.control.decide(luminance, looks, path.end, state.decision)
-        switchings += len(commands.times)
-        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
         before = CoilState(path.begin) if state.coil is None else state.coil
-        current = device.magnet.current(commands, before)
+        current = device.magnet.current(commands, before, path.begin, path.end)
+        switchings += len(current.begins) - 1
+        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
         load, coil = _load(device, current, before, path)
         rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
@@ -501,6 +509,7 @@ def _load(
         bool(current.on[-1]),
         float(current.starts[-1]),
         float(pull[np.searchsorted(times, since)]),
+        float(current.warmings[-1]),
     )
     gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)
     load = device.load(pull[gone:])

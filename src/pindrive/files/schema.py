@@ -11,16 +11,10 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any, Final
 
+from pindrive.device.coil import COIL, COIL_NEEDS, Coil
 from pindrive.device.controller import ControlBlock, check_band
 from pindrive.device.device import Criteria, Device, check_plate
-from pindrive.device.electromagnet import (
-    COIL,
-    COIL_NEEDS,
-    DIRECT,
-    Coil,
-    Electromagnet,
-    check_one_way,
-)
+from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
 from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
@@ -77,9 +71,11 @@ class Problems(list[str]):
             check(*values)
         except ValueError as error:
             said, where = error.args[0], self._place(*keys)
-            self.append(
-                said.at(where, keys[0]) if isinstance(said, Refusal) else f"{where}: {said}"
-            )
+            if isinstance(said, Refusal):
+                named = [key for key in keys if key.endswith(f".{said.label}")]
+                self.append(said.at(where, (named or keys)[0]))
+            else:
+                self.append(f"{where}: {said}")
 
 
 def read_values(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import FINE, Quantity, between, in_table
+from pindrive.quantities.quantity import FINE, SHARE, Quantity, between, in_table
 
 MAGNET: Final = in_table(
     "magnet",
@@ -60,6 +60,27 @@ MAGNET: Final = in_table(
         between(0.0, 1e4),
         0.0,
         "assumed: soft iron and a paint thick enough",
+    ),
+    Quantity(
+        "pwm_frequency",
+        "f_PWM",
+        "Hz",
+        "pulses a second in which the coil is switched while it is on",
+        between(1.0, 2e4),
+        source="assumed: such that the current follows by a part; beyond 20 kHz eddy currents in "
+        "the iron decide, which are not simulated",
+        example=500.0,
+        remark="with pwm_duty; it stays on unless both are given",
+    ),
+    Quantity(
+        "pwm_duty",
+        "D",
+        "1",
+        "part of each pulse for which the coil is on",
+        SHARE,
+        source="assumed: a pull that holds with half of the current",
+        example=0.5,
+        remark="with pwm_frequency",
     ),
     Quantity(
         "outer_diameter",
@@ -182,6 +203,17 @@ COIL: Final = in_table(
         "2-25 (Incropera, table 1.1)",
         example=430.0,
         absent=430.0,
+    ),
+    Quantity(
+        "heat_capacity",
+        "C_th",
+        "J/K",
+        "heat that warms the electromagnet by a kelvin",
+        between(1e-7, 1e7),
+        source="1 g of copper, 0.385, and iron, 0.449 J/(g K) (CRC Handbook)",
+        example=0.42,
+        remark="its temperature over time is simulated where this is given, from 20 °C on, and the "
+        "resistance grows with it",
     ),
     Quantity(
         "temperature_rise",
