@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from command import GOOD, refused, run
-from pindrive import Contact, Drive
+from pindrive import Contact, Drive, load_device
 from pindrive.device import (
     Coil,
     CoilState,
@@ -106,8 +106,9 @@ def reader(made: Electromagnet) -> Device:
 
 
 @pytest.mark.parametrize("part", [0.3, 0.4137, 0.62])
-def test_a_pulsed_and_warm_scan_in_two_halves_is_the_scan_in_one(part: float) -> None:
-    device, reading = reader(PULSED), Reading()
+@pytest.mark.parametrize("held", [False, True])
+def test_a_driven_and_warm_scan_in_two_halves_is_the_scan_in_one(part: float, held: bool) -> None:
+    device, reading = reader(HELD if held else PULSED), Reading()
     scene = reading.grating([0.004], device.array)
     path = reading.strokes(scene, device.array)
     cut = part * path.end
@@ -120,6 +121,76 @@ def test_a_pulsed_and_warm_scan_in_two_halves_is_the_scan_in_one(part: float) ->
     warm = whole.current.warming(t)
     np.testing.assert_allclose(second.current.warming(t), warm, rtol=1e-9, atol=1e-12)
     assert warm[-1] > 0.1
+
+
+# ---- a given voltage -----------------------------------------------------------------------------
+
+HELD = Electromagnet.from_coil(
+    COIL, voltage=[(0.0, 3.0), (0.004, 0.6), (0.03, 1.5)], deviation=1e-3
+)
+
+
+def test_a_given_voltage_holds_from_each_switching_on() -> None:
+    coil = Coil(**{n: getattr(COIL, n) for n in Coil.__dataclass_fields__ if n != "heat_capacity"})
+    made = Electromagnet.from_coil(coil, voltage=[(0.0, 3.0), (0.004, 0.6), (0.03, 1.5)])
+    told = Commands(np.array([0.010, 0.050, 0.055, 0.057]))
+    current = made.current(told, CoilState(), 0.0, 0.08)
+    rise, fall = made.rise_constant, made.fall_constant
+    value = 0.0
+    for lasts, target, constant, end in (
+        (0.004, 1.0, rise, 0.014),
+        (0.026, 0.2, rise, 0.040),
+        (0.010, 0.5, rise, 0.050),
+        (0.005, 0.0, fall, 0.055),
+        (0.002, 1.0, rise, 0.057),
+        (0.010, 0.0, fall, 0.067),
+    ):
+        value = target + (value - target) * exp(-lasts / constant)
+        assert current(end) == pytest.approx(value, rel=1e-12, abs=1e-15)
+    assert made.sustained_pull == made.pull(0.5)
+    rows, pull = made.pull_rows(current, 0.08)
+    dense = np.linspace(rows[:-1], rows[1:], 20).ravel()
+    error = np.abs(np.interp(dense, rows, pull) - made.pull(current(dense))).max()
+    assert error <= 1.001e-4 * made.hold_force
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([(0.001, 3.0)], "voltage[0] time must be 0 s, when the coil is switched on, got 0.001 s"),
+        ([(0.0, 3.0), (0.0, 1.0)], "voltage[1] time must be greater than the one before, 0.0 s"),
+        ([(0.0, 3.1)], "voltage[0] must be from 0 V to the supply voltage, 3.0 V, got 3.1 V"),
+    ],
+)
+def test_a_voltage_that_cannot_be_is_refused(rows: list[tuple[float, float]], message: str) -> None:
+    with pytest.raises(ValueError) as error:
+        Electromagnet.from_coil(COIL, voltage=rows)
+    assert str(error.value).startswith(message)
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_voltage_stands_in_the_file_or_in_a_csv() -> None:
+    coil = MAGNET.replace('pwm_frequency = "500 Hz"\npwm_duty = 0.6\n', "")
+    rows = 'voltage = [["0 ms", "3 V"], ["4 ms", "0.6 V"]]\n'
+    Path("device.toml").write_text(GOOD + coil + rows)
+    written = load_device("device.toml")
+    Path("drive.csv").write_text("t [ms], voltage [V]\n0, 3\n4, 0.6\n")
+    Path("device.toml").write_text(GOOD + coil + 'voltage = "drive.csv"\n')
+    read = load_device("device.toml")
+    assert read.device.magnet == written.device.magnet
+    assert read.device.magnet.steps
+    assert read.device.magnet.steps.levels == pytest.approx((1.0, 0.2))
+    checked = run("check", "device.toml")
+    assert checked.exit_code == 0 and "U(t)" in checked.stdout, checked.output
+    Path("device.toml").write_text(GOOD + MAGNET + rows)
+    assert refused("check", "device.toml") == (
+        "device.toml: magnet.voltage must be left out where pwm_frequency gives pulses, got both"
+    )
+    Path("device.toml").write_text(f"{GOOD}[magnet]\n{rows}")
+    assert refused("check", "device.toml") == (
+        "device.toml: magnet.voltage must be given with a coil, by turns, gap, wire_diameter and "
+        "the like, got it alone"
+    )
 
 
 # ---- warming -------------------------------------------------------------------------------------

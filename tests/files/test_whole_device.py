@@ -125,7 +125,7 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
         if name
         in (
             *("release_resistance", "saturation_field", "thermal_resistance", "heat_capacity"),
-            "temperature_rise",
+            *("temperature_rise", "voltage"),
         )
         or not alone
         else PULSES
@@ -136,6 +136,8 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
     value = f'"{usual(quantity)}"' if quantity.unit != "1" else usual(quantity)
     if name == "places":
         value = '[["0 mm", "1 mm"], ["1 mm", "0 mm"]]'
+    if name == "voltage":
+        value = '[["0 ms", "1 V"], ["5 ms", "0.5 V"]]'
     assert load_device(write(f"\n[{table}]\n{coil}\n{name} = {value}\n")).whole
     with pytest.raises(ConfigError) as error:
         load_device(write(f'\n[{table}]\n{coil}\n{name} = "three"\n'))

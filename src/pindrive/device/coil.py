@@ -6,10 +6,14 @@ from dataclasses import MISSING, fields
 from math import pi
 from typing import TYPE_CHECKING, Final
 
+from pindrive.device.current import VoltageSteps
 from pindrive.device.heating import Heat
+from pindrive.motion.contact import check_increasing
 from pindrive.quantities.table import check, checked, default, refusal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from pindrive.quantities.table import Number, OptionalNumber
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
@@ -96,6 +100,24 @@ class Coil:
     def power(self) -> float:
         """U I while it is on, W."""
         return self.supply_voltage * self.current
+
+    def steps(self, rows: Sequence[tuple[float, float]]) -> VoltageSteps:
+        """Rows (time since it was switched on in s, V) as parts of the supply voltage.
+
+        Raises:
+            ValueError: the first is not at 0 s, times do not increase, or a voltage is negative or
+                beyond the supply's.
+        """
+        if not rows or rows[0][0] != 0.0:
+            given = f"{rows[0][0]!r} s" if rows else "none"
+            raise ValueError(refusal("voltage[0] time", "0 s, when the coil is switched on", given))
+        check_increasing([t for t, _ in rows], "s", label="voltage[{}] time")
+        for i, (_, volts) in enumerate(rows):
+            if not 0.0 <= volts <= self.supply_voltage:
+                required = f"from 0 V to the supply voltage, {self.supply_voltage!r} V"
+                raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
+        times, volts_ = zip(*rows, strict=True)
+        return VoltageSteps(times, tuple(volts / self.supply_voltage for volts in volts_))
 
     @property
     def heat(self) -> Heat | None:

@@ -32,11 +32,15 @@ class CoilState:
     """The pull then, as its rows have it, N; None: exactly that of the current."""
     warming: float = 0.0
     """Of the coil above 20 °C then, K."""
+    level: float = 1.0
+    """The voltage across it while it is on since then, a part of the full one."""
+    commanded: float = 0.0
+    """When it was commanded on, s, if it is."""
 
 
 Circuit = Callable[[bool, float], tuple[float, float]]
 """Of a coil that is on or off, with its resistance over that at 20 °C: the current to which it
-tends, a part of the full one, and its time constant, s."""
+tends at full voltage, a part of the full one, and its time constant, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +53,8 @@ class Current:
     """The current then."""
     on: NDArray[np.bool_]
     """Whether it is switched on from then on, or off."""
+    levels: NDArray[np.float64]
+    """The voltage across it while it is on, a part of the full one."""
     targets: NDArray[np.float64]
     """The current to which it tends."""
     constants: NDArray[np.float64]
@@ -65,19 +71,25 @@ class Current:
         before: CoilState,
         circuit: Circuit,
         heat: Heat | None = None,
+        levels: NDArray[np.float64] | None = None,
     ) -> Current:
-        """The current of a coil that is switched at `begins`, the first of them the last before."""
+        """The current of a coil that is switched at `begins`, the first of them the last before.
+
+        `levels` are the voltages across it while it is on, parts of the full one: 1 unless given.
+        """
+        levels = np.ones(len(on)) if levels is None else levels
         lasts = [*np.diff(begins).tolist(), 0.0]
         current, warming = float(before.current), before.warming
         pieces = []
-        for rises, each in zip(on.tolist(), lasts, strict=True):
+        for rises, level, each in zip(on.tolist(), levels.tolist(), lasts, strict=True):
             target, constant = circuit(rises, 1.0 if heat is None else heat.resistance(warming))
+            target *= level
             pieces.append((current, target, constant, warming))
             if heat is not None:
                 warming = heat.after(warming, current, target, constant, each)
             current = current_after(current, target, each / constant)
         starts, targets, constants, warmings = np.array(pieces).T
-        return cls(begins, starts, on, targets, constants, warmings, heat)
+        return cls(begins, starts, on, levels, targets, constants, warmings, heat)
 
     @overload
     def __call__(self, t: float) -> float: ...
@@ -159,6 +171,44 @@ class Pulses:
         )
         falls = -0.5 * fall_constant * expm1(-2.0 * off / fall_constant)
         return (on - 2.0 * gap * part + gap**2 * square + high**2 * falls) * self.frequency
+
+
+@dataclass(frozen=True, slots=True)
+class VoltageSteps:
+    """A voltage over the time since a coil was switched on; each holds until the next."""
+
+    times: tuple[float, ...]
+    """s, increasing, the first 0."""
+    levels: tuple[float, ...]
+    """Parts of the full voltage, from 0 to 1."""
+
+    def switchings(
+        self, commands: Commands, before: CoilState, begin: float, end: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]:
+        """When a coil is switched until before `end` (s), whether on, and to which level."""
+        spans = commanded_spans(commands, before, begin, end)
+        rows: list[tuple[float, bool, float]] = []
+        for first, last in spans:
+            rows += [
+                (first + t, True, level)
+                for t, level in zip(self.times, self.levels, strict=True)
+                if first + t < last
+            ]
+            rows.append((last, False, 1.0))
+            budgets.SWITCHINGS.check(len(rows), "one coil")
+        rows = [row for row in rows if row[0] < end]
+        times, on, levels = zip(*rows, strict=True) if rows else ((), (), ())
+        return np.array(times, np.float64), np.array(on, np.bool_), np.array(levels, np.float64)
+
+
+def commanded_spans(
+    commands: Commands, before: CoilState, begin: float, end: float
+) -> list[tuple[float, float]]:
+    """From when to when (s) a coil is commanded on; of one that was on before, since then."""
+    spans = commands.spans(begin, end)
+    if spans and spans[0][0] == begin and commands.at_first:
+        spans[0] = before.commanded, spans[0][1]
+    return spans
 
 
 def current_after(start: float, target: float, constants: float) -> float:

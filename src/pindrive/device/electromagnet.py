@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING, Final, overload
 import numpy as np
 
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil, check_poles
-from pindrive.device.current import CoilState, Current, Pulses, current_after
+from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.controller import Commands
@@ -70,6 +72,7 @@ class Electromagnet:
         outer_diameter: of the magnet, a cylinder, m, greater than 0; None: not known.
         height: of it, m, greater than 0; None: not known.
         coil: what it is made from, where known.
+        steps: the coil's voltage since it was switched on; None: full. Not with pulses.
 
     Raises:
         ValueError: a value is no number or out of its range.
@@ -86,12 +89,16 @@ class Electromagnet:
     outer_diameter: OptionalNumber = default("outer_diameter")
     height: OptionalNumber = default("height")
     coil: Coil | None = None
+    steps: VoltageSteps | None = None
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
         check_residual(self.residual, self.hold_force)
         check_poles(self.coil, self.outer_diameter)
         check_pulses(self.pwm_frequency, self.pwm_duty)
+        if self.steps is not None and self.pwm_frequency is not None:
+            required = "left out where pwm_frequency gives pulses"
+            raise ValueError(refusal("voltage", required, "both"))
 
     @classmethod
     def from_times(
@@ -151,8 +158,20 @@ class Electromagnet:
         pwm_duty: float | str | None = default("pwm_duty"),
         outer_diameter: float | str | None = default("outer_diameter"),
         height: float | str | None = default("height"),
+        voltage: Sequence[tuple[float, float]] | None = None,
     ) -> Electromagnet:
         """An electromagnet by how it is made; the rest as for the class.
+
+        Args:
+            coil: how it is made.
+            residual: N.
+            deviation: a part of the full pull.
+            pwm_frequency: Hz.
+            pwm_duty: a part of each period.
+            outer_diameter: m.
+            height: m.
+            voltage: rows (time since it was switched on in s, V), from 0 s on, at most the supply
+                voltage; each holds until the next.
 
         Raises:
             ValueError: as for the class.
@@ -169,6 +188,7 @@ class Electromagnet:
             outer_diameter=outer_diameter,
             height=height,
             coil=coil,
+            steps=None if voltage is None else coil.steps(voltage),
         )
 
     @property
@@ -201,6 +221,8 @@ class Electromagnet:
     @property
     def sustained_pull(self) -> float:
         """The pull that it keeps while it is on, N: with pulses the least of each period."""
+        if self.steps is not None:
+            return self.pull(self.steps.levels[-1])
         if self.pulses is None:
             return self.hold_force
         return self.pull(self.pulses.steady(self.rise_constant, self.fall_constant)[0])
@@ -208,6 +230,8 @@ class Electromagnet:
     @property
     def heating(self) -> float:
         """Heat while it is on over that of the full current: with pulses the mean of c²."""
+        if self.steps is not None:
+            return self.steps.levels[-1] ** 2
         if self.pulses is None:
             return 1.0
         return self.pulses.mean_square(self.rise_constant, self.fall_constant)
@@ -220,19 +244,23 @@ class Electromagnet:
         Args:
             commands: of the control block.
             before: the last switching.
-            begin: from when the commands hold, s; with pulses.
-            end: until when, s; with pulses.
+            begin: from when the commands hold, s; with pulses or a voltage.
+            end: until when, s; with pulses or a voltage.
         """
-        if self.pulses is None:
+        levels = None
+        if self.steps is not None:
+            times, switched, levels = self.steps.switchings(commands, before, begin, end)
+        elif self.pulses is not None:
+            times, switched = self.pulses.switchings(commands, begin, end)
+        else:
             times = commands.times
             switched = commands.on(times)
-        else:
-            times, switched = self.pulses.switchings(commands, begin, end)
         new = times > before.since
+        levels = None if levels is None else np.concatenate([[before.level], levels[new]])
         begins = np.concatenate([[before.since], times[new]])
         on = np.concatenate([[before.on], switched[new]])
         heat = None if self.coil is None else self.coil.heat
-        return Current.of(begins, on, before, self._circuit, heat)
+        return Current.of(begins, on, before, self._circuit, heat, levels)
 
     def _circuit(self, on: bool, resistance: float) -> tuple[float, float]:
         """The current (of the full one) to which it tends, and its time constant (s).

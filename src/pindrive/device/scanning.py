@@ -18,7 +18,7 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Commands, Decision
-from pindrive.device.current import CoilState, Current
+from pindrive.device.current import CoilState, Current, commanded_spans
 from pindrive.device.device import Criteria, Device
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
@@ -461,7 +461,7 @@ def prepare(
         current = device.magnet.current(commands, before, path.begin, path.end)
         switchings += len(current.begins) - 1
         budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
-        load, coil = _load(device, current, before, path)
+        load, coil = _load(device, commands, current, before, path)
         rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
@@ -497,12 +497,13 @@ def check_work(device: Device, scene: Scene, path: HandPath) -> None:
 
 
 def _load(
-    device: Device, current: Current, before: CoilState, path: HandPath
+    device: Device, commands: Commands, current: Current, before: CoilState, path: HandPath
 ) -> tuple[float | Profile, CoilState]:
     """The load on the plate's friction over the time since the path's begin, and how it ends."""
     if not current.on.any() and before.current == 0.0:
         return device.load(device.magnet.residual), before
     times, pull = device.magnet.pull_rows(current, path.end, before.pull)
+    spans = commanded_spans(commands, before, path.begin, path.end)
     since = float(current.begins[-1])
     after = CoilState(
         since,
@@ -510,6 +511,8 @@ def _load(
         float(current.starts[-1]),
         float(pull[np.searchsorted(times, since)]),
         float(current.warmings[-1]),
+        float(current.levels[-1]),
+        spans[-1][0] if spans else before.commanded,
     )
     gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)
     load = device.load(pull[gone:])

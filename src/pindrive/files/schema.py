@@ -279,11 +279,15 @@ class Whole:
     def magnet(self) -> Electromagnet:
         """The electromagnet: by how it is made where the file says so, else by what it does."""
         given = table_of(self.values, "magnet")
+        voltage = given.pop("voltage")
         coil = {name: given.pop(name) for name in COIL}
         if all(coil[name] is None for name in COIL_NEEDS):
+            if voltage is not None:
+                required = "given with a coil, by turns, gap, wire_diameter and the like"
+                raise ValueError(refusal("voltage", required, "it alone"))
             return Electromagnet.from_times(**given)
         around = {name: value for name, value in given.items() if name not in DIRECT}
-        return Electromagnet.from_coil(Coil(**coil), **around)
+        return Electromagnet.from_coil(Coil(**coil), **around, voltage=voltage)
 
     def array(self) -> PinArray:
         """The pins: at given places, or a grid."""

@@ -467,6 +467,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "curve": ("curve.speed", "curve.force"),
     "coefficient_curve": ("curve.speed", "curve.coefficient"),
     "profile": ("profile.time", "profile.value"),
+    "steps": ("profile.time", "profile.value"),
     "places": ("place.x", "place.y"),
 }
 """What stands in the rows of a curve, of a profile and of places, by the names of the parts."""

@@ -99,8 +99,7 @@ MAGNET: Final = in_table(
         "m",
         "height of the electromagnet",
         between(1e-6, 1.0),
-        source="1 g of iron, 7.87, and copper, 8.96 g/cm3 (CRC Handbook), filled but for 0.2 mm of "
-        "height",
+        source="1 g at 8.4 g/cm3, between iron, 7.87, and copper, 8.96 (CRC Handbook)",
         example=0.0124,
         remark="with the diameter it bounds the mass",
     ),
@@ -172,6 +171,18 @@ COIL: Final = in_table(
         between(1e-3, 1e5),
         source="assumed",
         example=1.0,
+    ),
+    Quantity(
+        "voltage",
+        "U(t)",
+        "V",
+        "voltage across the coil over the time since it was switched on; each row holds until the "
+        "next",
+        between(0.0, 1e5),
+        source="assumed: full voltage until the pull is there, then half of it",
+        remark="rows or a CSV of them, at most supply_voltage, which holds throughout unless given",
+        rows_of="steps",
+        rows=((0.0, 1.0), (0.005, 0.5)),
     ),
     Quantity(
         "release_resistance",
