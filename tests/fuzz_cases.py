@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from pindrive.device.electromagnet import COIL, COIL_NEEDS, DIRECT
+from pindrive.device.coil import COIL, COIL_NEEDS
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.template import DRIVE, NUMBERS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
@@ -185,7 +186,7 @@ BESIDE = {"drive.damping": "drive.damping_ratio", "drive.damping_ratio": "drive.
 def device(given: dict[str, str], varied: dict[str, str]) -> str:
     """A device file with these values, and what they need or exclude."""
     values = dict(BASE)
-    coil = [f"magnet.{name}" for name in COIL]
+    coil = [*(f"magnet.{name}" for name in COIL), "magnet.voltage"]
     if any(key in coil for key in (*given, *varied)):
         for name in COIL_NEEDS:
             quantity = NUMBERS[f"magnet.{name}"]
@@ -199,6 +200,14 @@ def device(given: dict[str, str], varied: dict[str, str]) -> str:
             values[key] = '"0.3 N*s/m"'
         if key.endswith(".curve") and key in given:
             values.pop(key.replace("curve", "kinetic"), None)
+        if "coefficient" in key or key == "finger.touch_force":  # in place of the forces
+            table = key.partition(".")[0]
+            values.pop(f"{table}.kinetic", None)
+            values[f"{table}.coefficient"] = "0.2"
+            if table == "finger":
+                values["finger.touch_force"] = '"10 mN"'
+        if key in ("magnet.pwm_frequency", "magnet.pwm_duty"):
+            values |= {"magnet.pwm_frequency": '"500 Hz"', "magnet.pwm_duty": "0.5"}
     if "motion.skin_stretch" in (*given, *varied):
         values["finger.stiffness"] = '"300 N/m"'
     values |= given

@@ -12,7 +12,7 @@ from pindrive.fitting.friction_curve import fit_friction as fit_friction
 from pindrive.fitting.recording import Recording as Recording
 from pindrive.fitting.recording import read_recording as read_recording
 from pindrive.motion.batch import simulate_batch as simulate_batch
-from pindrive.motion.drive import Contact as Contact
+from pindrive.motion.contact import Contact as Contact
 from pindrive.motion.drive import Drive as Drive
 from pindrive.motion.drive import Profile as Profile
 from pindrive.motion.motion import Motion as Motion

@@ -82,3 +82,20 @@ def test_bad_options_are_one_line(arguments: list[str], said: str) -> None:
 def test_bad_recordings_are_one_line(head: str, span: float, said: str) -> None:
     write("bad.csv", head, span)
     assert said in refused("fit", "device.toml", "bad.csv", "--free", "stiffness")
+
+
+def test_a_fit_of_a_drive_with_coefficients_has_forces() -> None:
+    text = GOOD.replace('kinetic = "5 mN"', 'coefficient = 0.5\ntouch_force = "12 mN"')
+    text = text.replace('kinetic = "20 mN"', "coefficient = 0.2\nstatic_coefficient = 0.2")
+    Path("device.toml").write_text(text + '\n[array]\npitch = "9 mm"\n')
+    done = run(
+        *("fit", "device.toml", "pin.csv", "--free", "stiffness=50 N/m..300 N/m, plate.kinetic"),
+        *("-o", "fitted.toml", "--set", "displacement=2 mm", "--set", "plate.preload=1 mN"),
+        *("--mouse-velocity", "100 mm/s", "--set", "damping=0.31 N*s/m"),
+    )
+    assert done.exit_code == 0, done.output
+    drive = load_device("fitted.toml").drive
+    assert drive.plate.kinetic == pytest.approx(0.019, rel=0.03)  # the recording has noise
+    assert drive.plate.static_friction == drive.plate.kinetic
+    assert drive.finger == Contact(0.5 * 0.012)
+    assert (drive.preload, drive.plate.coefficient) == (0.001, None)

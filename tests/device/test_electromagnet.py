@@ -200,10 +200,6 @@ def test_a_strong_coil_saturates() -> None:
             {"hold_force": 1.0, "residual": 1.0},
             "residual must be less than the hold force, 1.0 N, got 1.0 N",
         ),
-        (
-            {"pressing": -1.0},
-            "pressing must be finite and at least 1e-6 N and at most 10000 N, got -1.0 N",
-        ),
     ],
 )
 def test_bad_magnets_are_refused(given: dict[str, float], message: str) -> None:

@@ -21,6 +21,7 @@ from pindrive.cli.scan_tables import scan_report
 from pindrive.cli.tables import console, meeting_words
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.device.gaps import smallest_gaps
+from pindrive.device.geometry import COPPER, IRON, doubts
 from pindrive.device.pin_array import Neighbours
 from pindrive.evaluation import judge
 from pindrive.files.device import load_device
@@ -335,9 +336,14 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
     device, reading = file.whole.device(file.drive), file.whole.reading()
     assert "cannot meet" in " ".join(meeting_words(device, reading.return_speed))
     assert device.friction.doubt is None
-    magnet = 0.0035  # wide, as its mass says
-    assert device.drive.mass == pytest.approx(8400.0 * pi / 4.0 * magnet**2 * 0.0124, rel=0.01)
+    magnet, height = device.magnet.outer_diameter, device.magnet.height
+    assert magnet and height
+    assert IRON < device.drive.mass / (pi / 4.0 * magnet**2 * height) < COPPER
     assert min(b[0] - a[0] for a, b in pairwise(device.array.places) if a[1] == b[1]) > magnet
+    assert [*doubts(device)] == []
+    travel, slot = device.array.travel, device.array.slot_length
+    assert travel and slot and slot < 0.005
+    assert device.excursion(reading.return_speed) < travel
     for scene in (
         reading.text("Hello", device.array),
         reading.grating([0.001, 0.002, 0.004, 0.008], device.array),
@@ -350,4 +356,6 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
         assert counts["judged.echoes"] == 0
         room = judged.scan.smallest_gap
         assert room and room.size > 0.0015
-        assert room.size - (0.0035 - 0.0015) > 0.0, "nor do the magnets meet"
+        magnets, end = judged.scan.smallest_magnet_gap, judged.scan.slot_room
+        assert magnets and magnets.size == pytest.approx(room.size - (magnet - 0.0015), rel=1e-12)
+        assert magnets.size > 0.0 and end and end.size > 0.0

@@ -20,8 +20,8 @@ PARTS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
     ),
     "electromagnet": (
         Electromagnet,
-        {"hold_force": 1.5, "fall_constant": 0.002, "pressing": 0.1},
-        {"hold_force": "1500 mN", "fall_constant": "2 ms", "pressing": "0.1 N"},
+        {"hold_force": 1.5, "fall_constant": 0.002},
+        {"hold_force": "1500 mN", "fall_constant": "2 ms"},
     ),
     "electromagnet by its times": (
         Electromagnet.from_times,

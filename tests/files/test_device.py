@@ -88,7 +88,9 @@ def test_the_template_shows_every_key() -> None:
     assert [key for key in KEYS if f"\n{key.partition('.')[2]} = " not in text] == []
     assert [line for _, line in COMMENTED if " = [" in line] == [
         'curve = [["0 mm/s", "22 mN"], ["50 mm/s", "15 mN"]]',
+        'coefficient_curve = [["0 mm/s", 0.225], ["50 mm/s", 0.15]]',
         'curve = [["0 mm/s", "5 mN"], ["50 mm/s", "4 mN"]]',
+        'coefficient_curve = [["0 mm/s", 0.5], ["50 mm/s", 0.4]]',
         'mouse_velocity = [["0 ms", "60 mm/s"], ["100 ms", "0 mm/s"]]',
         'plate_load = [["0 ms", 5], ["5 ms", 1]]',
     ]
@@ -101,6 +103,13 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
     lines = [text for text in template().splitlines() if not text.startswith(instead)]
     if name == "skin_stretch":  # of skin, and of skin alone
         lines = [text.replace("# stiffness", "stiffness") for text in template().splitlines()]
+    if "coefficient" in name or name == "touch_force":  # in place of the table's forces
+        begin = lines.index(f"[{table}]")
+        end = next(i for i in range(begin + 1, len(lines)) if lines[i].startswith("["))
+        forces, needed = ("kinetic =", "static ="), ("# coefficient =", "# touch_force =")
+        of_table = [text for text in lines[begin:end] if not text.startswith(forces)]
+        of_table = [text[2:] if text.startswith(needed) else text for text in of_table]
+        lines[begin:end] = [text for text in of_table if not text.startswith(f"{name} =")]
     lines.insert(lines.index(f"[{table}]") + 1, line)
     device = load_device(write(new="\n".join(lines)))
     if table != "device":

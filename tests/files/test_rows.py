@@ -124,8 +124,8 @@ def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Pa
     assert load_device(path).drive == device.drive
 
 
-UNITS = {"mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N", "kinetic": "N",
-         "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
+UNITS = {"preload": "N", "mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N",
+         "kinetic": "N", "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
          "settling_band": ""}  # fmt: skip
 
 

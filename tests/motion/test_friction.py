@@ -9,8 +9,8 @@ import pytest
 
 from command import GOOD, run
 from pindrive import Contact, Drive
-from pindrive.device import Device, Electromagnet
-from pindrive.motion.friction import Coefficients
+from pindrive.device import Device
+from pindrive.motion.coefficients import Coefficients
 from pindrive.study.study import load_study
 from pindrive.study.validation import coefficient_range
 
@@ -19,22 +19,26 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 PLATE = Contact(0.022, 0.0265)
 
 
+def drive(plate: Contact, mass: float, preload: float = 0.0) -> Drive:
+    finger = Contact(0.0)
+    return Drive(mass=mass, stiffness=1.0, damping=1.0, plate=plate, finger=finger, preload=preload)
+
+
 @pytest.mark.parametrize(
     ("mass", "kinetic", "static"), [(0.005, 0.449, 0.540), (0.010, 0.224, 0.270)]
 )
 def test_it_is_friction_over_weight(mass: float, kinetic: float, static: float) -> None:
-    found = Coefficients.of(PLATE, mass)
+    found = Coefficients.of(drive(PLATE, mass))
     assert (round(found.kinetic, 3), round(found.static, 3)) == (kinetic, static)
     words = f"friction coefficient {kinetic:.3f}, static {static:.3f}: its friction over "
     assert found.words.startswith(words)
     assert found.words.endswith(" of weight")
 
 
-def test_another_pressing_force_stands_for_the_weight() -> None:
-    drive = Drive(mass=0.5, stiffness=1.0, damping=1.0, plate=PLATE, finger=Contact(0.0))
-    device = Device(drive=drive, magnet=Electromagnet(pressing=0.1))
+def test_a_preload_presses_beside_the_weight() -> None:
+    device = Device(drive=drive(PLATE, 0.005, preload=0.1 - 0.005 * 9.80665))
     assert device.friction.kinetic == pytest.approx(0.22)
-    assert device.friction.words.endswith("100.0 mN of pressing force")
+    assert device.friction.words.endswith("100.0 mN of weight and preload")
     assert device.friction.doubt is None
 
 
@@ -63,7 +67,7 @@ def test_another_pressing_force_stands_for_the_weight() -> None:
     ],
 )
 def test_handbooks_are_asked(plate: Contact, mass: float, doubt: str | None) -> None:
-    found = Coefficients.of(plate, mass).doubt
+    found = Coefficients.of(drive(plate, mass)).doubt
     assert found is None if doubt is None else found and found.startswith(doubt)
 
 

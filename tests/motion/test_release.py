@@ -6,6 +6,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 import pytest
@@ -47,7 +48,7 @@ def test_text_with_a_unit_is_the_number_in_si() -> None:
     contact = Contact("20 mN", "26.5 mN", [("0 mm/s", "20 mN"), ("50 mm/s", "15 mN")], "1 N/mm")
     assert contact == Contact(0.02, 0.0265, [(0.0, 0.02), (0.05, 0.015)], 1000.0)
     finger = Contact("5 mN")
-    given = {"plate": Contact(0.02), "finger": finger}
+    given: dict[str, Any] = {"plate": Contact(0.02), "finger": finger}
     drive = Drive(mass="10 g", stiffness="0.1 N/mm", damping="0.4 N*s/m", **given)
     assert drive == DRIVE
     ratio = Drive.with_damping_ratio(

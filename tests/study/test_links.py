@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -78,8 +79,12 @@ def test_the_table_says_what_follows_what() -> None:
     assert follows == {
         "plate.static": ("plate.kinetic",),
         "plate.curve": ("plate.kinetic",),
+        "plate.static_coefficient": ("plate.coefficient",),
+        "plate.coefficient_curve": ("plate.coefficient",),
         "finger.static": ("finger.kinetic",),
         "finger.curve": ("finger.kinetic",),
+        "finger.static_coefficient": ("finger.coefficient",),
+        "finger.coefficient_curve": ("finger.coefficient",),
         "motion.skin_stretch": ("finger.static", "finger.stiffness"),
     }
 
@@ -163,7 +168,7 @@ def test_damping_given_as_a_ratio_stays_that_ratio() -> None:
         found = evaluate(plan, plan.columns(0, 2), 2, names)["transient_settling_time"]
         for i, mass in enumerate((0.005, 0.020)):
             damping = 2.0 * 0.16 * np.sqrt(mass * 100.0) if keep else 0.32
-            contacts = {"plate": Contact(0.022, 0.0265), "finger": Contact(0.005)}
+            contacts: dict[str, Any] = {"plate": Contact(0.022, 0.0265), "finger": Contact(0.005)}
             drive = Drive(mass=mass, stiffness=100.0, damping=damping, **contacts)
             motion = simulate(drive, Release(0.060, 0.002))
             assert found[i] == pytest.approx(motion.transient.settling_time, rel=1e-12)

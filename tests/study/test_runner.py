@@ -101,7 +101,7 @@ def test_the_file_says_everything() -> None:
         assert data.stiffness == 100.0
         assert set(data.coords) == {
             *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
-            *("mouse_velocity", "displacement", "plate_load", "settling_band"),
+            *("preload", "mouse_velocity", "displacement", "plate_load", "settling_band"),
         }
         assert data.transient_plate_reversals.notnull().all()
         assert "transient_peak_stretch" not in data, "the finger is rigid"

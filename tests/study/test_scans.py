@@ -23,7 +23,7 @@ from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
-from pindrive.device.electromagnet import COIL as MADE_OF
+from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.reading import Page, Reading
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.files.output import OutputError
@@ -212,6 +212,12 @@ def test_a_coil_may_be_varied() -> None:
     assert "hold_force" not in data.coords, "it changes with the turns"
 
 
+PULSED = '\n[magnet]\npwm_frequency = "1 kHz"\npwm_duty = 0.5\n'
+BY_COEFFICIENT = DEVICE.replace('kinetic = "22 mN"', "coefficient = 0.2").replace(
+    'kinetic = "20 mN"', 'coefficient = 0.4\ntouch_force = "50 mN"'
+)
+
+
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
 def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
     """At a usual value and at another there is a scan."""
@@ -225,7 +231,11 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         coiled = quantity.name in MADE_OF
         plan = study(
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
-            device=DEVICE + (COILED if coiled else ""),
+            device=(
+                BY_COEFFICIENT
+                if "coefficient" in key or key == "finger.touch_force"
+                else DEVICE + (COILED if coiled else PULSED if "pwm" in key else "")
+            ),
         )
         found = evaluate(plan, plan.columns(0, 2), 2, SCAN_OUTPUTS)
         assert (found["status"] == 0).all(), key
@@ -467,8 +477,9 @@ def test_the_example_is_a_study_of_scans() -> None:
         mass=0.001,
         stiffness=250.0,
         damping_ratio=0.5,
-        plate=Contact(0.0022, 0.00265),
-        finger=Contact(0.030, 0.045, stiffness=300.0),
+        plate=Contact(coefficient=0.225, static_coefficient=0.27),
+        finger=Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0),
+        touch_force=columns["finger.touch_force"][1],
     )
     magnet = Electromagnet.from_times(fall_time=columns["magnet.fall_time"][1])
     device = Device(drive=drive, magnet=magnet)

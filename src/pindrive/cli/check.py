@@ -41,11 +41,14 @@ def check(
 
     with refusing():
         device = load_device(file)
-        pressing = device.whole.magnet().pressing if device.whole else None
     from pindrive.cli.tables import device_report, show
-    from pindrive.motion.friction import Coefficients
+    from pindrive.motion.coefficients import Coefficients
 
-    doubt = Coefficients.of(device.drive.plate, device.drive.mass, pressing).doubt
-    if doubt:
+    found = [Coefficients.of(device.drive).doubt]
+    if device.whole:
+        from pindrive.device.geometry import doubts
+
+        found += doubts(device.device)
+    for doubt in filter(None, found):
         typer.echo(f"warning: {doubt}", err=True)
     show(device_report(device))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from rich.console import Group, RenderableType
 
 from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words, whole_lines
-from pindrive.device.dataset import gap_words, numbers
+from pindrive.device.dataset import gap_words, numbers, peak_warming
 from pindrive.evaluation.resolution import criterion
 from pindrive.quantities.device import PIN
 from pindrive.quantities.results import LINE
@@ -85,7 +85,7 @@ def _row(scan: Scan, pin: PinScan, names: list[str]) -> list[str]:
 
 
 def _words(scan: Scan) -> list[str]:
-    device, path = scan.device, scan.path
+    device, path, peak = scan.device, scan.path, peak_warming(scan)
     worst = max(pin.motion.certificate().worst for pin in scan.pins)
     doubt = "" if worst <= TRUSTED else " Do not trust this scan."
     return [
@@ -93,6 +93,7 @@ def _words(scan: Scan) -> list[str]:
         *([path.about] if path.about else []),
         *gap_words(scan),
         *device_words(device),
+        *([] if peak is None else [f"A coil warms by up to {peak:.3g} K in this scan."]),
         f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
     ]
 

@@ -10,7 +10,8 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pindrive.motion.friction import Coefficients
+from pindrive.device.geometry import COPPER, IRON, heaviest
+from pindrive.motion.coefficients import Coefficients
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
 from pindrive.quantities.results import TRANSIENT
@@ -72,7 +73,7 @@ def device_report(device: DeviceFile) -> RenderableType:
         lines += device_words(whole)
         lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
     elif not drive.plate.frictionless:
-        lines.append(f"The plate: {Coefficients.of(drive.plate, drive.mass).words}.")
+        lines.append(f"The plate: {Coefficients.of(drive).words}.")
     lines += [device.recording_words] if device.recording_words else []
     return Group(table, *whole_lines(lines))
 
@@ -226,7 +227,7 @@ def device_words(device: Device) -> list[str]:
     if device.reach:
         words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
     else:
-        held = device.drive.plate.static_friction * device.load(device.magnet.hold_force)
+        held = device.drive.plate.static_friction * device.load(device.magnet.sustained_pull)
         words = [
             f"A magnet does not carry its pin: it holds with {force.text(held)} of friction at "
             f"most, the finger with {force.text(device.drive.finger.kinetic)}.{drag}"
@@ -246,33 +247,45 @@ def device_words(device: Device) -> list[str]:
 
 
 def meeting_words(device: Device, speed: float) -> list[str]:
-    """Whether neighbouring pins can meet, by where they stand and how far they go at most.
+    """Whether pins and magnets can meet, or pins their slots' ends, by how far they go at most.
 
     Args:
         device: the device.
         speed: of the hand at most, m/s.
     """
-    array, length = device.array, QUANTITIES["pin_gap"]
-    neighbours = array.neighbours
+    array, length, reach = device.array, QUANTITIES["pin_gap"], device.excursion(speed)
     words = [
         f"Pins {one} and {other} stand abreast, closer than their diameter: they overlap."
         for one, other in array.abreast[:1]
     ]
-    if not neighbours:
-        return words
-    room, reach = min(pair.clearance for pair in neighbours), device.excursion(speed)
     at = f"at {QUANTITIES['hand_speed'].text(speed)} of the hand a pin goes up to"
     gone = f"{at} {length.text(reach)} either way"
-    if room < 0.0:
-        words.append(f"Neighbouring pins overlap by {length.text(-room)} at rest.")
-    elif room < 2.0 * reach:
+    for name, pairs in (("pins", array.neighbours), ("magnets", device.magnet_neighbours)):
+        if not pairs:
+            continue
+        room = min(pair.clearance for pair in pairs)
+        if room < 0.0:
+            words.append(f"Neighbouring {name} overlap by {length.text(-room)} at rest.")
+        elif room < 2.0 * reach:
+            words.append(
+                f"Neighbouring {name} have {length.text(room)} between them at rest, and can meet: "
+                f"{gone}. A scan says whether they do."
+            )
+        else:
+            words.append(
+                f"Neighbouring {name} have {length.text(room)} between them at rest, and cannot "
+                f"meet: {gone}."
+            )
+    if array.travel is not None:
+        ends = "does not come to its ends" if reach <= array.travel else "can come to its ends"
         words.append(
-            f"Neighbouring pins have {length.text(room)} between them at rest, and can meet: "
-            f"{gone}. A scan says whether they do."
+            f"In its slot a pin has {length.text(array.travel)} either way, and {ends}: {gone}."
         )
-    else:
+    solid = heaviest(device.magnet.outer_diameter, device.magnet.height)
+    if solid is not None:
+        density = device.drive.mass / solid * COPPER
         words.append(
-            f"Neighbouring pins have {length.text(room)} between them at rest, and cannot meet: "
-            f"{gone}."
+            f"The magnet's size makes its density {density / 1e3:.3g} g/cm3; that of iron is "
+            f"{IRON / 1e3:.3g}, of copper {COPPER / 1e3:.3g}."
         )
     return words

@@ -1,12 +1,12 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
-from pindrive.device.electromagnet import Coil as Coil
+from pindrive.device.coil import Coil as Coil
 from pindrive.device.controller import Commands as Commands
 from pindrive.device.controller import ControlBlock as ControlBlock
 from pindrive.device.controller import Decision as Decision
+from pindrive.device.current import CoilState as CoilState
+from pindrive.device.current import Current as Current
 from pindrive.device.device import Device as Device
-from pindrive.device.electromagnet import CoilState as CoilState
-from pindrive.device.electromagnet import Current as Current
 from pindrive.device.electromagnet import Electromagnet as Electromagnet
 from pindrive.device.gaps import Gap as Gap
 from pindrive.device.hand import HandPath as HandPath

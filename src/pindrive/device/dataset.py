@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.device.geometry import doubts
 from pindrive.device.scanning import AT_ONCE
-from pindrive.device.trajectory import Course
+from pindrive.device.trajectory import peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
 from pindrive.quantities import budgets
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
-    from pindrive.motion.motion import Motion
 
 EACH: Final = 1e-3
 """Between two samples unless their times are given, s."""
@@ -76,7 +76,15 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
         "source": f"pindrive {__version__}",
         "warnings": "\n".join(scan.warnings),
         **inputs(scan),
-        **({} if scan.smallest_gap is None else {"smallest_pin_gap": scan.smallest_gap.size}),
+        **{
+            name: value
+            for name, value in (
+                ("smallest_pin_gap", scan.smallest_gap and scan.smallest_gap.size),
+                ("smallest_magnet_gap", scan.smallest_magnet_gap and scan.smallest_magnet_gap.size),
+                ("slot_room", scan.slot_room and scan.slot_room.size),
+            )
+            if value is not None
+        },
     }
     return xr.Dataset(data, coords=coords, attrs=attributes)
 
@@ -115,11 +123,14 @@ def inputs(scan: Scan) -> dict[str, float]:
         "finger.static": drive.finger.static_friction,
         **({} if drive.finger.rigid else {"finger.stiffness": drive.finger.stiffness}),
         **{k: v for k, v in asdict(magnet).items() if isinstance(v, float)},
-        "pressing": device.pressing,
+        "normal_force": drive.normal_force,
+        "preload": drive.preload,
+        **({} if drive.touch_force is None else {"touch_force": drive.touch_force}),
         **asdict(device.control),
         **({} if magnet.coil is None else asdict(magnet.coil)),
         "axis": device.array.axis,
         "pin_diameter": device.array.pin_diameter,
+        **({} if device.array.slot_length is None else {"slot_length": device.array.slot_length}),
         "friction_coefficient": device.friction.kinetic,
         "pixel": scan.scene.pixel,
     }
@@ -146,14 +157,6 @@ def numbers(pin: PinScan) -> dict[str, float]:
     }
 
 
-def peak_displacement(motion: Motion) -> float:
-    """The largest |x| over the motion's duration, m, at its ends or where its velocity is zero.
-
-    Turning points as `Course` finds them.
-    """
-    return float(np.abs(motion.position(Course(motion).knots)).max())
-
-
 def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
     """What is known of one pin at times on the path's clock (s, shape (n,))."""
     found: dict[str, NDArray[Any]] = columns(pin.motion, pin.since(t))
@@ -164,6 +167,7 @@ def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDAr
         "command": pin.commands.on(t),
         "current": pin.current(t),
         "pull": scan.device.magnet.pull(pin.current(t)),
+        **({} if pin.current.heat is None else {"warming": pin.current.warming(t)}),
     }
 
 
@@ -219,28 +223,51 @@ def _numbers(pins: tuple[PinScan, ...]) -> dict[str, Any]:
 
 def _gaps(scan: Scan) -> dict[str, Any]:
     """A row for each two neighbouring pins; nothing where no pin stands ahead of another."""
-    if not scan.gaps:
-        return {}
-    table: dict[str, Any] = {
-        f"pin_gap_{name}": ("neighbours", [getattr(gap, name) for gap in scan.gaps])
-        for name in ("behind", "ahead")
-    }
-    for name, attribute in (("pin_gap", "size"), ("pin_gap.time", "time")):
-        values = [getattr(gap, attribute) for gap in scan.gaps]
-        table[name.replace(".", "_")] = ("neighbours", values, QUANTITIES[name].attributes)
+    table: dict[str, Any] = {}
+    for of, along, gaps in (
+        ("pin_gap", "neighbours", scan.gaps),
+        ("magnet_gap", "magnet_neighbours", scan.magnet_gaps),
+    ):
+        if not gaps:
+            continue
+        for name in ("behind", "ahead"):
+            table[f"{of}_{name}"] = (along, [getattr(gap, name) for gap in gaps])
+        for name, attribute in ((of, "size"), (f"{of}.time", "time")):
+            values = [getattr(gap, attribute) for gap in gaps]
+            table[name.replace(".", "_")] = (along, values, QUANTITIES[name].attributes)
     return table
 
 
 def gap_words(scan: Scan) -> list[str]:
-    """How close neighbouring pins come; nothing where none stands ahead of another."""
-    smallest, length = scan.smallest_gap, QUANTITIES["pin_gap"]
-    if smallest is None:
-        return []
-    pins = f"pins {smallest.behind} and {smallest.ahead} at {smallest.time:.4g} s"
-    if smallest.size < 0.0:
-        overlap = f"Pins overlap by up to {length.text(-smallest.size)}, {pins}"
-        return [f"{overlap}: real pins would push each other."]
-    return [f"Smallest gap between neighbouring pins: {length.text(smallest.size)}, {pins}."]
+    """How close neighbouring pins and magnets come, and pins to the ends of their slots.
+
+    A line each; of pins of which none stands ahead of another, and of sizes that are not known,
+    nothing.
+    """
+    length, lines = QUANTITIES["pin_gap"], []
+    for name, smallest in (("pins", scan.smallest_gap), ("magnets", scan.smallest_magnet_gap)):
+        if smallest is None:
+            continue
+        two = f"{name} {smallest.behind} and {smallest.ahead} at {smallest.time:.4g} s"
+        if smallest.size < 0.0:
+            overlap = f"{name.capitalize()} overlap by up to {length.text(-smallest.size)}, {two}"
+            lines.append(f"{overlap}: real {name} would push each other.")
+        else:
+            least = length.text(smallest.size)
+            lines.append(f"Smallest gap between neighbouring {name}: {least}, {two}.")
+    if room := scan.slot_room:
+        lines.append(
+            f"Pin {room.pin} would go {length.text(-room.size)} beyond the end of its slot."
+            if room.size < 0.0
+            else f"Least room to the end of a slot: {length.text(room.size)}, pin {room.pin}."
+        )
+    return lines
+
+
+def peak_warming(scan: Scan) -> float | None:
+    """The largest warming of a coil, K; None where it is not simulated."""
+    peaks = [pin.peak_warming for pin in scan.pins if pin.peak_warming is not None]
+    return max(peaks, default=None)
 
 
 # ---- what is doubtful ----------------------------------------------------------------------------
@@ -282,9 +309,15 @@ def _doubts(scan: Scan) -> list[str]:
         )
     coil = device.magnet.coil
     if coil is not None:
-        lasts = path.end - path.begin
+        lasts, peak = path.end - path.begin, peak_warming(scan)
         most = max(sum(end - begin for begin, end in pin.energised) for pin in scan.pins) / lasts
-        if most > coil.duty:
+        if peak is not None:
+            if peak > coil.temperature_rise:
+                found.append(
+                    f"a coil warms by {peak:.3g} K in this scan, more than "
+                    f"magnet.temperature_rise, {coil.temperature_rise:g} K"
+                )
+        elif most * device.magnet.heating > coil.duty:
             found.append(
                 f"a magnet is on for {most:.0%} of the time; {coil.power:.3g} W warm it by "
                 f"{coil.temperature_rise:g} K at {coil.duty:.0%}"
@@ -313,16 +346,24 @@ def _beyond(scan: Scan) -> str:
 
 
 def _overlaps(scan: Scan) -> list[str]:
-    """Pins that would have to pass through each other: the motions know nothing of that."""
-    found = []
-    gaps, array = scan.gaps, scan.device.array
-    touching = [gap for gap in gaps if gap.size < 0.0]
-    if touching:
+    """What would have to pass through something else: the motions know nothing of that."""
+    found = [*doubts(scan.device)]
+    array = scan.device.array
+    for name, gaps in (("pins", scan.gaps), ("magnets", scan.magnet_gaps)):
+        touching = [gap for gap in gaps if gap.size < 0.0]
+        if not touching:
+            continue
         worst = min(touching, key=lambda gap: gap.size)
         pairs = f"; {len(touching)} of {len(gaps)} pairs of neighbours do" if len(gaps) > 1 else ""
         found.append(
-            f"pins {worst.behind} and {worst.ahead} overlap by {-1e3 * worst.size:.4g} mm at "
-            f"{worst.time:.4g} s{pairs}: real pins would push each other, these pass through"
+            f"{name} {worst.behind} and {worst.ahead} overlap by {-1e3 * worst.size:.4g} mm at "
+            f"{worst.time:.4g} s{pairs}: real {name} would push each other, these pass through"
+        )
+    room = scan.slot_room
+    if room and room.size < 0.0:
+        found.append(
+            f"pin {room.pin} goes {-1e3 * room.size:.4g} mm beyond the end of its slot, "
+            f"{1e3 * (array.slot_length or 0.0):.4g} mm long: a real one would stop there"
         )
     for one, other in array.abreast[:1]:
         apart = abs(array.places[other][1] - array.places[one][1])

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, overload
 from pindrive.device.controller import ControlBlock
 from pindrive.device.electromagnet import Electromagnet
 from pindrive.device.pin_array import PinArray
+from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Contact, Drive
-from pindrive.motion.friction import Coefficients
 from pindrive.quantities.table import checked, default, refusal
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from pindrive.device.pin_array import Neighbours
     from pindrive.quantities.table import Number
 
 
@@ -44,19 +45,20 @@ class Device:
         check_plate(self.drive.plate)
 
     @property
-    def pressing(self) -> float:
-        """Force that presses an electromagnet on the plate while it is off, N."""
-        return self.magnet.pressed(self.drive.mass)
+    def magnet_neighbours(self) -> tuple[Neighbours, ...]:
+        """Magnets that would meet if one moved far; none where their diameter is not known."""
+        width = self.magnet.outer_diameter
+        return () if width is None else self.array.neighbours_of(width)
 
     @property
     def friction(self) -> Coefficients:
         """The plate's friction over the force that presses: μ = F / W, kinetic and static."""
-        return Coefficients.of(self.drive.plate, self.drive.mass, self.magnet.pressing)
+        return Coefficients.of(self.drive)
 
     @property
     def reach(self) -> float:
         """How far a magnet carries a pin at most before the spring overcomes it, m, slowly."""
-        held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
+        held = self.drive.plate.static_friction * self.load(self.magnet.sustained_pull)
         return max(0.0, held - self.drive.finger.kinetic) / self.drive.stiffness
 
     def excursion(self, speed: float) -> float:
@@ -85,7 +87,7 @@ class Device:
     def load(self, pull: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def load(self, pull: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
         """The factor on the plate's friction at a pull (N), any shape: (W + P) / W."""
-        return 1.0 + pull / self.pressing
+        return 1.0 + pull / self.drive.normal_force
 
 
 def check_plate(plate: Contact) -> None:

@@ -8,120 +8,30 @@ h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
 from functools import cached_property
-from math import exp, log, pi, sqrt
+from math import exp, inf, log, sqrt
 from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
-from pindrive.motion.friction import GRAVITY
+from pindrive.device.coil import COIL, COIL_NEEDS, Coil, check_poles
+from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.controller import Commands
     from pindrive.quantities.table import Number, OptionalNumber
-
-MAGNETIC_CONSTANT: Final = 1.25663706127e-6
-"""N/A², CODATA 2022."""
-COPPER: Final = 1 / 58e6
-"""Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
-
 
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this
 part of its deviation."""
 
 
-@checked
-class Coil:
-    """An electromagnet with two poles on a steel plate, by how it is made.
-
-    Its iron carries any flux without effort up to the saturation field, and no flux leaks: the two
-    gaps in series hold the whole magnetomotive force, 2 g B / μ0 = N I.
-
-    Args:
-        turns: N, at least 1.
-        pole_area: A of one pole, m², greater than 0.
-        gap: g under each pole, m, greater than 0.
-        wire_diameter: d of the copper, m, greater than 0.
-        turn_length: mean length of a turn, m, greater than 0.
-        supply_voltage: U while it is on, V, greater than 0.
-        release_resistance: what the current dies away through beside its own, ohm, at least 0.
-        saturation_field: B_s, T, greater than 0.
-        thermal_resistance: R_th, K/W, greater than 0.
-        temperature_rise: ΔT allowed, K, greater than 0.
-
-    Raises:
-        ValueError: a value is no number or out of its range.
-
-    The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric
-    Machinery", chapters 1 and 3.
-    """
-
-    turns: Number
-    pole_area: Number
-    gap: Number
-    wire_diameter: Number
-    turn_length: Number
-    supply_voltage: Number
-    release_resistance: Number = default("release_resistance")
-    saturation_field: Number = default("saturation_field")
-    thermal_resistance: Number = default("thermal_resistance")
-    temperature_rise: Number = default("temperature_rise")
-
-    def __post_init__(self) -> None:
-        """Validate what follows from them."""
-        for name in ("resistance", "inductance", "current", "field", "power"):
-            check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
-
-    @property
-    def resistance(self) -> float:
-        """R = ρ N l / (π d²/4), ohm, at 20 °C."""
-        return COPPER * self.turns * self.turn_length / (pi / 4.0 * self.wire_diameter**2)
-
-    @property
-    def inductance(self) -> float:
-        """L = N B A / I = μ0 N² A / 2g, H, clamped to the plate."""
-        return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
-
-    @property
-    def current(self) -> float:
-        """Full current I = U / R, A."""
-        return self.supply_voltage / self.resistance
-
-    @property
-    def field(self) -> float:
-        """B = μ0 N I / 2g at full current if the iron did not saturate, T."""
-        return MAGNETIC_CONSTANT * self.turns * self.current / (2.0 * self.gap)
-
-    @property
-    def saturation(self) -> float:
-        """The part of the full current at which the iron saturates, at most 1."""
-        return min(1.0, self.saturation_field / self.field)
-
-    @property
-    def pull(self) -> float:
-        """Two poles' B² A / 2μ0 at full current or saturation, N."""
-        return min(self.field, self.saturation_field) ** 2 * self.pole_area / MAGNETIC_CONSTANT
-
-    @property
-    def power(self) -> float:
-        """U I while it is on, W."""
-        return self.supply_voltage * self.current
-
-    @property
-    def duty(self) -> float:
-        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
-        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
-
-
-COIL: Final = tuple(field.name for field in fields(Coil))
-COIL_NEEDS: Final = tuple(name for name in COIL if default(name) is None)
-"""What a coil must say."""
 DIRECT: Final = ("hold_force", "rise_time", "fall_time", "saturation")
 """What is said instead of a coil."""
 
@@ -155,9 +65,14 @@ class Electromagnet:
         fall_constant: of the falling current, s, greater than 0.
         saturation: σ, the part of the full current at which the pull stops growing, in (0, 1].
         residual: P_r, pull that remains without current, N, at least 0 and less than `hold_force`.
-        pressing: W, what presses it on the plate besides, N, greater than 0; None: its weight.
         deviation: of the piecewise-linear pull, a part of `hold_force`, in (0, 0.1].
+        pwm_frequency: of the pulses in which it is switched while it is on, Hz, from 1 to 20000,
+            given with `pwm_duty`; None: it stays on.
+        pwm_duty: the part of each period for which it is on then, above 0 and at most 1.
+        outer_diameter: of the magnet, a cylinder, m, greater than 0; None: not known.
+        height: of it, m, greater than 0; None: not known.
         coil: what it is made from, where known.
+        steps: the coil's voltage since it was switched on; None: full. Not with pulses.
 
     Raises:
         ValueError: a value is no number or out of its range.
@@ -168,13 +83,22 @@ class Electromagnet:
     fall_constant: Number = default("fall_constant")
     saturation: Number = default("saturation")
     residual: Number = default("residual")
-    pressing: OptionalNumber = default("pressing")
     deviation: Number = default("deviation")
+    pwm_frequency: OptionalNumber = default("pwm_frequency")
+    pwm_duty: OptionalNumber = default("pwm_duty")
+    outer_diameter: OptionalNumber = default("outer_diameter")
+    height: OptionalNumber = default("height")
     coil: Coil | None = None
+    steps: VoltageSteps | None = None
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
         check_residual(self.residual, self.hold_force)
+        check_poles(self.coil, self.outer_diameter)
+        check_pulses(self.pwm_frequency, self.pwm_duty)
+        if self.steps is not None and self.pwm_frequency is not None:
+            required = "left out where pwm_frequency gives pulses"
+            raise ValueError(refusal("voltage", required, "both"))
 
     @classmethod
     def from_times(
@@ -185,8 +109,11 @@ class Electromagnet:
         fall_time: float | str = default("fall_time"),
         saturation: float | str = default("saturation"),
         residual: float | str = default("residual"),
-        pressing: float | str | None = None,
         deviation: float | str = default("deviation"),
+        pwm_frequency: float | str | None = default("pwm_frequency"),
+        pwm_duty: float | str | None = default("pwm_duty"),
+        outer_diameter: float | str | None = default("outer_diameter"),
+        height: float | str | None = default("height"),
     ) -> Electromagnet:
         """An electromagnet by how fast its pull comes and goes; the rest as for the class.
 
@@ -196,8 +123,11 @@ class Electromagnet:
             fall_time: from switching off until 10 % of it, s.
             saturation: a part of the full current.
             residual: N.
-            pressing: N.
             deviation: a part of `hold_force`.
+            pwm_frequency: Hz.
+            pwm_duty: a part of each period.
+            outer_diameter: m.
+            height: m.
 
         Raises:
             ValueError: as for the class.
@@ -210,8 +140,11 @@ class Electromagnet:
             fall_constant=-fall / log(sigma * sqrt(0.1)),
             saturation=sigma,
             residual=residual,
-            pressing=pressing,
             deviation=deviation,
+            pwm_frequency=pwm_frequency,
+            pwm_duty=pwm_duty,
+            outer_diameter=outer_diameter,
+            height=height,
         )
 
     @classmethod
@@ -220,10 +153,25 @@ class Electromagnet:
         coil: Coil,
         *,
         residual: float | str = default("residual"),
-        pressing: float | str | None = None,
         deviation: float | str = default("deviation"),
+        pwm_frequency: float | str | None = default("pwm_frequency"),
+        pwm_duty: float | str | None = default("pwm_duty"),
+        outer_diameter: float | str | None = default("outer_diameter"),
+        height: float | str | None = default("height"),
+        voltage: Sequence[tuple[float, float]] | None = None,
     ) -> Electromagnet:
-        """An electromagnet by how it is made.
+        """An electromagnet by how it is made; the rest as for the class.
+
+        Args:
+            coil: how it is made.
+            residual: N.
+            deviation: a part of the full pull.
+            pwm_frequency: Hz.
+            pwm_duty: a part of each period.
+            outer_diameter: m.
+            height: m.
+            voltage: rows (time since it was switched on in s, V), from 0 s on, at most the supply
+                voltage; each holds until the next.
 
         Raises:
             ValueError: as for the class.
@@ -234,9 +182,13 @@ class Electromagnet:
             fall_constant=coil.inductance / (coil.resistance + coil.release_resistance),
             saturation=coil.saturation,
             residual=residual,
-            pressing=pressing,
             deviation=deviation,
+            pwm_frequency=pwm_frequency,
+            pwm_duty=pwm_duty,
+            outer_diameter=outer_diameter,
+            height=height,
             coil=coil,
+            steps=None if voltage is None else coil.steps(voltage),
         )
 
     @property
@@ -249,10 +201,6 @@ class Electromagnet:
         """From switching off until 10 % of it, s."""
         return -self.fall_constant * log(self.saturation * sqrt(0.1))
 
-    def pressed(self, mass: float) -> float:
-        """W, the force on the plate without any pull, N, of a pin of this mass (kg)."""
-        return mass * GRAVITY if self.pressing is None else self.pressing
-
     @overload
     def pull(self, current: float) -> float: ...
     @overload
@@ -263,12 +211,70 @@ class Electromagnet:
         pull = self.residual + (self.hold_force - self.residual) * share
         return float(pull) if pull.ndim == 0 else pull
 
-    def current(self, commands: Commands, before: CoilState) -> Current:
-        """The current under commands that come after the coil's last switching."""
-        times = commands.times[commands.times > before.since]
-        begins = np.concatenate([[before.since], times])
-        on = np.concatenate([[before.on], commands.on(times)])
-        return Current.of(self, begins, on, before.current)
+    @property
+    def pulses(self) -> Pulses | None:
+        """How it is switched while it is on; None: it stays on."""
+        if self.pwm_frequency is None or self.pwm_duty is None or self.pwm_duty == 1.0:
+            return None
+        return Pulses(self.pwm_frequency, self.pwm_duty)
+
+    @property
+    def sustained_pull(self) -> float:
+        """The pull that it keeps while it is on, N: with pulses the least of each period."""
+        if self.steps is not None:
+            return self.pull(self.steps.levels[-1])
+        if self.pulses is None:
+            return self.hold_force
+        return self.pull(self.pulses.steady(self.rise_constant, self.fall_constant)[0])
+
+    @property
+    def heating(self) -> float:
+        """Heat while it is on over that of the full current: with pulses the mean of c²."""
+        if self.steps is not None:
+            return self.steps.levels[-1] ** 2
+        if self.pulses is None:
+            return 1.0
+        return self.pulses.mean_square(self.rise_constant, self.fall_constant)
+
+    def current(
+        self, commands: Commands, before: CoilState, begin: float = 0.0, end: float = 0.0
+    ) -> Current:
+        """The current under commands that come after the coil's last switching.
+
+        Args:
+            commands: of the control block.
+            before: the last switching.
+            begin: from when the commands hold, s; with pulses or a voltage.
+            end: until when, s; with pulses or a voltage.
+        """
+        levels = None
+        if self.steps is not None:
+            times, switched, levels = self.steps.switchings(commands, before, begin, end)
+        elif self.pulses is not None:
+            times, switched = self.pulses.switchings(commands, begin, end)
+        else:
+            times = commands.times
+            switched = commands.on(times)
+        new = times > before.since
+        levels = None if levels is None else np.concatenate([[before.level], levels[new]])
+        begins = np.concatenate([[before.since], times[new]])
+        on = np.concatenate([[before.on], switched[new]])
+        heat = None if self.coil is None else self.coil.heat
+        return Current.of(begins, on, before, self._circuit, heat, levels)
+
+    def _circuit(self, on: bool, resistance: float) -> tuple[float, float]:
+        """The current (of the full one) to which it tends, and its time constant (s).
+
+        `resistance` is that of the winding over the one at 20 °C.
+        """
+        if on:
+            return 1.0 / resistance, self.rise_constant / resistance
+        if resistance == 1.0:
+            return 0.0, self.fall_constant
+        assert self.coil  # another has no temperature
+        own = self.coil.resistance
+        outer = self.coil.release_resistance
+        return 0.0, self.fall_constant * (own + outer) / (resistance * own + outer)
 
     def pull_rows(
         self, current: Current, end: float, first: float | None = None
@@ -292,14 +298,16 @@ class Electromagnet:
         pulls: list[NDArray[np.float64]] = []
         stops = [*current.begins[1:].tolist(), end]
         pull = self.pull(float(current.starts[0])) if first is None else first
-        for begin, stop, start, rises in zip(
+        for begin, stop, start, target, constant in zip(
             current.begins.tolist(),
             stops,
             current.starts.tolist(),
-            current.on.tolist(),
+            current.targets.tolist(),
+            current.constants.tolist(),
             strict=True,
         ):
-            after, currents = self._rows_after(start, rises)
+            parts, currents = self._rows_after(start, target)
+            after = constant * parts
             t = begin + after
             p = np.concatenate([[pull], self.pull(currents)])
             count = int(np.searchsorted(t, stop))
@@ -312,27 +320,58 @@ class Electromagnet:
         return np.concatenate(times), np.concatenate(pulls)
 
     def _rows_after(
-        self, start: float, rises: bool
+        self, start: float, target: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """When rows are due after a switching at the current `start`, s, and the currents then.
+        """When rows are due after a switching, in time constants, and the currents then.
 
         At the switching, whose current is left out; a moment later; as the current passes its
         levels; and when it has reached its end within the deviation, where it stays.
         """
-        constant, levels, final = (
-            (self.rise_constant, self._rising, 1.0)
-            if rises
-            else (self.fall_constant, self._falling, 0.0)
-        )
-        if start == final:
+        if start == target:
             return np.zeros(1), np.zeros(0)
+        if target not in (0.0, 1.0):
+            return self._rows_between(start, target)
+        rises, final = target == 1.0, target
+        levels = self._rising if rises else self._falling
         moment = AT_ONCE * self.saturation * self._tolerance
-        soon = _after(start, rises, moment)
+        soon = current_after(start, target, moment)
         due = levels[(levels > soon) if rises else (levels < soon)]
         apart = np.log((1.0 - start) / (1.0 - due)) if rises else np.log(start / due)
         due, apart = due[apart > 2.0 * moment], apart[apart > 2.0 * moment]
         after = np.concatenate([[0.0, moment], apart])
-        return constant * np.append(after, after[-1] + 1.0), np.concatenate([[soon], due, [final]])
+        return np.append(after, after[-1] + 1.0), np.concatenate([[soon], due, [final]])
+
+    def _rows_between(
+        self, start: float, target: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The same where the current tends to another than none or the full one.
+
+        With c = A + C E, E = exp(−t/τ), the curvature of c² is 4C²E² + 2AC E, at its largest at
+        first. A row is due where the iron comes to saturation, or out of it.
+        """
+        sigma, tolerance = self.saturation, self._tolerance
+        swing = start - target
+        kink = log(swing / (sigma - target)) if (start > sigma) != (target > sigma) else inf
+        due, x = [AT_ONCE * sigma * tolerance], AT_ONCE * sigma * tolerance
+        while True:
+            left = exp(-x)
+            c = target + swing * left
+            if x < kink and c >= sigma:  # saturated until then, or forever
+                if kink == inf:
+                    break
+                x = kink
+            elif x >= kink and target >= sigma:
+                break
+            else:
+                size = 4.0 * (swing * left) ** 2 + 2.0 * abs(target * swing) * left
+                if abs(2.0 * target * swing * left) + (swing * left) ** 2 <= tolerance * sigma**2:
+                    break
+                step = x + sigma * sqrt(8.0 * tolerance / size)
+                x = kink if x < kink <= step else step
+            due.append(x)
+        after = np.array(due)
+        currents = target + swing * np.exp(-after)
+        return np.concatenate([[0.0], after, [after[-1] + 1.0]]), np.append(currents, target)
 
     @property
     def _tolerance(self) -> float:
@@ -373,68 +412,11 @@ class Electromagnet:
         return np.array(levels)
 
 
-@dataclass(frozen=True, slots=True)
-class CoilState:
-    """All there is to know of a coil: its last switching."""
-
-    since: float = 0.0
-    """When that was, s."""
-    on: bool = False
-    """Whether it is on since then."""
-    current: float = 0.0
-    """The current then, a part of the full one."""
-    pull: float | None = None
-    """The pull then, as its rows have it, N; None: exactly that of the current."""
-
-
-@dataclass(frozen=True, slots=True)
-class Current:
-    """A current over time, a part of the full one, exactly: an exponential after each switching."""
-
-    begins: NDArray[np.float64]
-    """When each piece begins, s, shape (n,), n >= 1."""
-    starts: NDArray[np.float64]
-    """The current then."""
-    on: NDArray[np.bool_]
-    """Whether it rises towards 1 from then on, or falls towards 0."""
-    constants: NDArray[np.float64]
-    """Its time constant, s."""
-
-    @classmethod
-    def of(
-        cls,
-        magnet: Electromagnet,
-        begins: NDArray[np.float64],
-        on: NDArray[np.bool_],
-        start: float,
-    ) -> Current:
-        """The current of a magnet that is switched at `begins`, from the current `start` on."""
-        constants = np.where(on, magnet.rise_constant, magnet.fall_constant)
-        starts = [float(start)]
-        for lasts, rises, constant in zip(
-            np.diff(begins).tolist(), on.tolist(), constants.tolist(), strict=False
-        ):
-            starts.append(_after(starts[-1], rises, lasts / constant))
-        return cls(begins, np.array(starts), on, constants)
-
-    @overload
-    def __call__(self, t: float) -> float: ...
-    @overload
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
-    def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
-        """The current at time t (s), any shape; before its begin what it begins with."""
-        times = np.asarray(t, np.float64)
-        i = np.maximum(np.searchsorted(self.begins, times, "right") - 1, 0)
-        left = np.exp(-np.maximum(times - self.begins[i], 0.0) / self.constants[i])
-        start = self.starts[i]
-        value = np.where(self.on[i], 1.0 - (1.0 - start) * left, start * left)
-        return float(value) if value.ndim == 0 else value
-
-
-def _after(start: float, rises: bool, constants: float) -> float:
-    """A current so many time constants later."""
-    left = exp(-constants)
-    return 1.0 - (1.0 - start) * left if rises else start * left
+def check_pulses(frequency: float | None, duty: float | None) -> None:
+    """Refuse a frequency of pulses (Hz) without a duty, or that without the other."""
+    if (frequency is None) != (duty is None):
+        one, other = ("pwm_frequency", "pwm_duty")[:: 1 if duty is None else -1]
+        raise ValueError(refusal(one, f"given with {other}", "it alone"))
 
 
 def check_residual(residual: float, hold_force: float) -> None:

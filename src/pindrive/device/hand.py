@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.motion.drive import Profile, check_increasing
+from pindrive.motion.contact import check_increasing
+from pindrive.motion.drive import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.table import check, default, refusal
 

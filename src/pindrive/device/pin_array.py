@@ -47,6 +47,8 @@ class PinArray:
             given.
         axis: direction of the drive axis on the page, rad, from its x towards its y.
         pin_diameter: of each pin, m, greater than 0.
+        slot_length: of the slot in which each pin moves along the drive axis, m, at least the
+            pin's diameter; None: not known.
 
     Raises:
         ValueError: no pins, two at one place, as many spots as pins are not given, or a number is
@@ -57,6 +59,7 @@ class PinArray:
     spots: Places
     axis: float
     pin_diameter: float
+    slot_length: float | None
 
     def __init__(
         self,
@@ -64,6 +67,7 @@ class PinArray:
         spots: Iterable[Place] | None = None,
         axis: float | str = default("axis"),
         pin_diameter: float | str = default("pin_diameter"),
+        slot_length: float | str | None = default("slot_length"),
     ) -> None:
         """Validate, and keep tuples of plain floats."""
         stands = _pairs(places, "places")
@@ -77,6 +81,9 @@ class PinArray:
         object.__setattr__(self, "spots", shows)
         object.__setattr__(self, "axis", check("axis", axis))
         object.__setattr__(self, "pin_diameter", check("pin_diameter", pin_diameter))
+        slot = None if slot_length is None else check("slot_length", slot_length)
+        check_slot(slot, self.pin_diameter)
+        object.__setattr__(self, "slot_length", slot)
 
     @classmethod
     def grid(
@@ -88,6 +95,7 @@ class PinArray:
         spot_scale: float | str = default("spot_scale"),
         axis: float | str = default("axis"),
         pin_diameter: float | str = default("pin_diameter"),
+        slot_length: float | str | None = default("slot_length"),
     ) -> PinArray:
         """Pins in columns along the drive axis and rows across it, about the middle, row by row.
 
@@ -98,6 +106,7 @@ class PinArray:
             spot_scale: their spots stand likewise, so many times as far apart.
             axis: as for the class.
             pin_diameter: as for the class.
+            slot_length: as for the class.
 
         Raises:
             ValueError: as for the class, or a count is no whole number.
@@ -110,7 +119,7 @@ class PinArray:
             for j in range(down)
             for i in range(across)
         ]
-        return cls(places, _scaled(places, spot_scale), axis, pin_diameter)
+        return cls(places, _scaled(places, spot_scale), axis, pin_diameter, slot_length)
 
     @classmethod
     def at(
@@ -120,10 +129,11 @@ class PinArray:
         spot_scale: float | str = default("spot_scale"),
         axis: float | str = default("axis"),
         pin_diameter: float | str = default("pin_diameter"),
+        slot_length: float | str | None = default("slot_length"),
     ) -> PinArray:
         """Pins at given places (m), their spots likewise, `spot_scale` times as far apart."""
         stands = _pairs(places, "places")
-        return cls(stands, _scaled(stands, spot_scale), axis, pin_diameter)
+        return cls(stands, _scaled(stands, spot_scale), axis, pin_diameter, slot_length)
 
     def __len__(self) -> int:
         """How many pins there are."""
@@ -135,15 +145,24 @@ class PinArray:
         return cos(self.axis), sin(self.axis)
 
     @property
+    def travel(self) -> float | None:
+        """How far a pin can go from its rest in its slot, either way, m; None without a slot."""
+        return None if self.slot_length is None else 0.5 * (self.slot_length - self.pin_diameter)
+
+    @property
     def neighbours(self) -> tuple[Neighbours, ...]:
         """Pins that are next to each other along the drive axis, closer across it than a diameter.
 
         Of each pin and each row of pins across the axis, the nearest that stands ahead of it. Pins
         that stand exactly abreast never pass each other: see `abreast`.
         """
+        return self.neighbours_of(self.pin_diameter)
+
+    def neighbours_of(self, diameter: float) -> tuple[Neighbours, ...]:
+        """The same of what is so wide (m) and moves with each pin, such as its magnet."""
         found = []
-        for row, ahead, across in self._rows_apart(-self.pin_diameter):
-            touching = sqrt(self.pin_diameter**2 - across**2)
+        for row, ahead, across in self._rows_apart(-diameter, diameter):
+            touching = sqrt(diameter**2 - across**2)
             for x, number in row:
                 i = bisect_right(ahead, (x, len(self)))
                 if i < len(ahead):
@@ -154,13 +173,13 @@ class PinArray:
     def abreast(self) -> tuple[tuple[int, int], ...]:
         """The numbers of pins that stand abreast, across the drive axis, and always overlap."""
         found = []
-        for row, other, _ in self._rows_apart(0.0):
+        for row, other, _ in self._rows_apart(0.0, self.pin_diameter):
             at = dict(other)
             found += [(number, at[x]) for x, number in row if x in at]
         return tuple(found)
 
-    def _rows_apart(self, least: float) -> Iterator[tuple[Row, Row, float]]:
-        """Pairs of rows more than `least` and less than a diameter apart, and how much, m.
+    def _rows_apart(self, least: float, most: float) -> Iterator[tuple[Row, Row, float]]:
+        """Pairs of rows more than `least` and less than `most` apart, and how much, m.
 
         Rows across the drive axis; each is the places of its pins along it, with their numbers, in
         order.
@@ -172,7 +191,7 @@ class PinArray:
         ordered = [sorted(rows[y]) for y in places]
         for y, row in zip(places, ordered, strict=True):
             first = bisect_right(places, y + least)
-            last = bisect_left(places, y + self.pin_diameter)
+            last = bisect_left(places, y + most)
             for i in range(first, last):
                 yield row, ordered[i], places[i] - y
 
@@ -222,3 +241,10 @@ def _pairs(places: Iterable[Place], label: str) -> Places:
 def _scaled(places: Iterable[tuple[float, float]], scale: float | str) -> Places:
     factor = check("spot_scale", scale)
     return tuple((factor * x, factor * y) for x, y in places)
+
+
+def check_slot(slot_length: float | None, pin_diameter: float) -> None:
+    """Refuse a slot (m) in which the pin has no room."""
+    if slot_length is not None and slot_length < pin_diameter:
+        required = f"at least array.pin_diameter, {pin_diameter!r} m, which moves in it"
+        raise ValueError(refusal("slot_length", required, f"{slot_length!r} m"))

@@ -26,7 +26,7 @@ import numpy as np
 
 from pindrive.device.hand import HandPath
 from pindrive.lazy import signal
-from pindrive.motion.drive import check_increasing
+from pindrive.motion.contact import check_increasing
 from pindrive.quantities import budgets
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.table import QUANTITIES, check, default, refusal

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Final, Protocol
@@ -18,13 +18,14 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Commands, Decision
+from pindrive.device.current import CoilState, Current, commanded_spans
 from pindrive.device.device import Criteria, Device
-from pindrive.device.electromagnet import CoilState, Current
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
+from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Page, Reading
-from pindrive.device.trajectory import Way, check_vibration
+from pindrive.device.trajectory import Way, check_vibration, peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive, Profile
 from pindrive.motion.motion import Motion
@@ -176,6 +177,14 @@ class PinScan:
         """From when to when its coil was switched on, s."""
         return self.commands.spans(self.begin, self.end)
 
+    @cached_property
+    def peak_warming(self) -> float | None:
+        """The largest warming of its coil, K, at a switching or the end; None: not simulated."""
+        if self.current.heat is None:
+            return None
+        times = self.current.begins[self.current.begins >= self.begin]
+        return float(self.current.warming(np.append(times, self.end)).max())
+
     @property
     def state(self) -> PinState:
         """Where it stands at the end."""
@@ -188,6 +197,16 @@ class PinScan:
             coil=self.coil,
             decision=self.decision,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class SlotRoom:
+    """How close a pin comes to the end of its slot in a scan."""
+
+    pin: int
+    """Its number."""
+    size: float
+    """m; negative where it would go beyond."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -241,8 +260,40 @@ class Scan(lazy.NotebookHtml):
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:
         """The smallest gap of each two neighbouring pins, as the array's `neighbours` has them."""
+        return self._gaps_of(self.device.array.neighbours)
+
+    @cached_property
+    def magnet_gaps(self) -> tuple[Gap, ...]:
+        """The same of neighbouring magnets; none where their diameter is not known."""
+        return self._gaps_of(self.device.magnet_neighbours)
+
+    def _gaps_of(self, neighbours: Sequence[Neighbours]) -> tuple[Gap, ...]:
+        return tuple(
+            replace(self._approaches[pair.behind, pair.ahead], size=pair.clearance + approach)
+            for pair in neighbours
+            for approach in (self._approaches[pair.behind, pair.ahead].size,)
+        )
+
+    @cached_property
+    def _approaches(self) -> dict[tuple[int, int], Gap]:
+        """The gaps of all pairs of pins that are requested, as if they stood at one place."""
+        device = self.device
+        pairs = {(p.behind, p.ahead) for p in device.array.neighbours + device.magnet_neighbours}
+        together = [Neighbours(*pair, 0.0) for pair in sorted(pairs)]
         motions = [pin.motion for pin in self.pins]
-        return smallest_gaps(self.device.array.neighbours, motions, self.path.begin)
+        found = smallest_gaps(together, motions, self.path.begin)
+        return {(gap.behind, gap.ahead): gap for gap in found}
+
+    @cached_property
+    def slot_room(self) -> SlotRoom | None:
+        """The least room of a pin to the end of its slot, exactly; None of no known slots."""
+        travel = self.device.array.travel
+        if travel is None:
+            return None
+        return min(
+            (SlotRoom(pin.number, travel - peak_displacement(pin.motion)) for pin in self.pins),
+            key=lambda room: room.size,
+        )
 
     @property
     def status(self) -> Status:
@@ -253,6 +304,11 @@ class Scan(lazy.NotebookHtml):
     def smallest_gap(self) -> Gap | None:
         """The smallest of its gaps; None where no pin stands ahead of another."""
         return min(self.gaps, key=lambda gap: gap.size, default=None)
+
+    @property
+    def smallest_magnet_gap(self) -> Gap | None:
+        """The smallest of those of magnets; None where there is none."""
+        return min(self.magnet_gaps, key=lambda gap: gap.size, default=None)
 
     @property
     def state(self) -> tuple[PinState, ...]:
@@ -401,11 +457,11 @@ def prepare(
     for number, state in enumerate(states):
         luminance = _seen(device, scene, path, looks, number)
         commands, decision = device.control.decide(luminance, looks, path.end, state.decision)
-        switchings += len(commands.times)
-        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
         before = CoilState(path.begin) if state.coil is None else state.coil
-        current = device.magnet.current(commands, before)
-        load, coil = _load(device, current, before, path)
+        current = device.magnet.current(commands, before, path.begin, path.end)
+        switchings += len(current.begins) - 1
+        budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
+        load, coil = _load(device, commands, current, before, path)
         rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
@@ -441,18 +497,22 @@ def check_work(device: Device, scene: Scene, path: HandPath) -> None:
 
 
 def _load(
-    device: Device, current: Current, before: CoilState, path: HandPath
+    device: Device, commands: Commands, current: Current, before: CoilState, path: HandPath
 ) -> tuple[float | Profile, CoilState]:
     """The load on the plate's friction over the time since the path's begin, and how it ends."""
     if not current.on.any() and before.current == 0.0:
         return device.load(device.magnet.residual), before
     times, pull = device.magnet.pull_rows(current, path.end, before.pull)
+    spans = commanded_spans(commands, before, path.begin, path.end)
     since = float(current.begins[-1])
     after = CoilState(
         since,
         bool(current.on[-1]),
         float(current.starts[-1]),
         float(pull[np.searchsorted(times, since)]),
+        float(current.warmings[-1]),
+        float(current.levels[-1]),
+        spans[-1][0] if spans else before.commanded,
     )
     gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)
     load = device.load(pull[gone:])

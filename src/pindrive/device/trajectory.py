@@ -245,3 +245,11 @@ class Way:
             return nan if begin != begin or end != end else -self.between(end, begin)
         first, last = self((begin, end))
         return float(last - first)
+
+
+def peak_displacement(motion: Motion) -> float:
+    """The largest |x| over the motion's duration, m, at its ends or where its velocity is zero.
+
+    Turning points as `Course` finds them.
+    """
+    return float(np.abs(motion.position(Course(motion).knots)).max())

@@ -31,8 +31,9 @@ from pindrive.files.schema import (
 )
 from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES, WHOLE
 from pindrive.motion.drive import Drive, Profile
+from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.release import Release
-from pindrive.quantities.quantity import Rows, counted
+from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.table import refusal, warn_of
 from pindrive.quantities.units import quoted
 
@@ -87,6 +88,21 @@ class DeviceFile:
         """Whether the damping is given as a ratio, which then holds for any mass and stiffness."""
         return "damping_ratio" in self.tables["drive"]
 
+    @property
+    def derived(self) -> tuple[str, ...]:
+        """The keys whose values follow from those of others that the file gives instead."""
+        drive = self.drive
+        contacts = {"plate": drive.plate, "finger": drive.finger}
+        return (
+            "drive.damping" if self.by_ratio else "drive.damping_ratio",
+            *(
+                f"{table}.{name}"
+                for table, contact in contacts.items()
+                if contact.coefficient is not None
+                for name in COEFFICIENTS
+            ),
+        )
+
     def __repr__(self) -> str:
         """Which file, and what it describes, in a line."""
         pins = f", {counted(len(self.whole.array()), 'pin')}" if self.whole else ""
@@ -138,13 +154,16 @@ class DeviceFile:
         What changes is its rows: (speed, force) or (time, value).
         """
         drive = self.drive
-        parts = {"plate": drive.plate, "finger": drive.finger, "motion": self.release}
+        contacts = {"plate": drive.plate, "finger": drive.finger}
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
-        places = ((key, *key.split(".")) for key in DRIVE)
-        values = {
-            key: own[key] if key in own else getattr(parts.get(table, drive), name)
-            for key, table, name in places
-        }
+
+        def value(key: str, quantity: Quantity) -> Any:
+            table, _, name = key.partition(".")
+            if quantity.name == key:
+                return getattr(contacts[table], name)
+            return getattr(self.release if table == "motion" else drive, name)
+
+        values = {key: own[key] if key in own else value(key, q) for key, q in DRIVE.items()}
         if self.whole:
             values |= {key: self.whole.value(key) for key in WHOLE}
         return {

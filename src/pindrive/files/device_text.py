@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pindrive.files.recording import files_named
+from pindrive.motion.friction import COEFFICIENTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -35,6 +36,10 @@ def device_text(
     tables = {name: dict(table) for name, table in device.tables.items() if table}
     for key, path in files_named(device.tables, device.path.parent).items():
         _put(tables, key, Path(os.path.relpath(path, target.parent)).as_posix())
+    for name in ("plate", "finger"):
+        if f"{name}.kinetic" in values:  # a force in place of a coefficient
+            for other in (*COEFFICIENTS.values(), "touch_force"):
+                tables.get(name, {}).pop(other, None)
     for key, value in values.items():
         _put(tables, key, value)
     if "drive.damping" in values:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.files.schema import Tables, number
 from pindrive.files.template import NUMBERS, usual
-from pindrive.motion.drive import check_slopes, check_times
+from pindrive.motion.contact import check_slopes
+from pindrive.motion.drive import check_times
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.table import QUANTITIES, default, refusal
@@ -18,13 +19,15 @@ if TYPE_CHECKING:
     from pindrive.device.hand import HandPath
 
 SUFFIX: Final = ".csv"
+OVER_TIME: Final = ("profile", "steps")
+"""What rows over time make: linear between them, or constant until the next."""
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
 
 
 def is_file(key: str, value: object) -> bool:
     """Whether a value of a device file names a CSV, where the key may change over time."""
-    over_time = key in NUMBERS and NUMBERS[key].rows_of == "profile"
+    over_time = key in NUMBERS and NUMBERS[key].rows_of in OVER_TIME
     return over_time and isinstance(value, str) and value.strip().lower().endswith(SUFFIX)
 
 
@@ -81,7 +84,7 @@ def profile_words(file: Path) -> str:
     """
     table = CsvTable.read(file, "a CSV", profile_header(NUMBERS[SPEED]))
     for key, quantity in NUMBERS.items():
-        if quantity.rows_of == "profile" and quantity.name in table:
+        if quantity.rows_of in OVER_TIME and quantity.name in table:
             rows = _rows(file, key, {})
             lasts = QUANTITIES["profile.time"].text(rows[-1][0] - rows[0][0])
             low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))

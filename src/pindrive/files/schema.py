@@ -11,30 +11,36 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any, Final
 
+from pindrive.device.coil import COIL, COIL_NEEDS, Coil
 from pindrive.device.controller import ControlBlock, check_band
 from pindrive.device.device import Criteria, Device, check_plate
-from pindrive.device.electromagnet import (
-    COIL,
-    COIL_NEEDS,
-    DIRECT,
-    Coil,
-    Electromagnet,
-    check_one_way,
-)
-from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins
+from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
+from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
 from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
-from pindrive.motion.drive import (
+from pindrive.motion.contact import (
+    SLOPES,
     Contact,
-    Drive,
-    Profile,
     check_curve,
     check_increasing,
-    check_skin,
+    check_one_kind,
     check_slopes,
     check_static,
+)
+from pindrive.motion.drive import (
+    Drive,
+    Profile,
+    check_skin,
     check_stretch,
     check_times,
+    check_touch,
+)
+from pindrive.motion.friction import (
+    COEFFICIENT_OF,
+    COEFFICIENTS,
+    PRESSED_BY,
+    friction_force,
+    normal_force,
 )
 from pindrive.motion.release import Release
 from pindrive.quantities.drive import COLUMNS
@@ -65,9 +71,11 @@ class Problems(list[str]):
             check(*values)
         except ValueError as error:
             said, where = error.args[0], self._place(*keys)
-            self.append(
-                said.at(where, keys[0]) if isinstance(said, Refusal) else f"{where}: {said}"
-            )
+            if isinstance(said, Refusal):
+                named = [key for key in keys if key.endswith(f".{said.label}")]
+                self.append(said.at(where, (named or keys)[0]))
+            else:
+                self.append(f"{where}: {said}")
 
 
 def read_values(
@@ -95,9 +103,11 @@ def read_values(
                 values[key] = read_value(tables[table][name], key, place(key))
             except ValueError as error:
                 problems.append(error.args[0])
-        elif not quantity.mandatory or quantity.alternative.partition(".")[2] in tables[table]:
+        elif not quantity.mandatory or any(
+            other.partition(".")[2] in tables[table] for other in quantity.alternative
+        ):
             values[key] = quantity.absent
-        elif key not in meant and quantity.alternative not in meant:
+        elif key not in meant and not any(other in meant for other in quantity.alternative):
             problems.append(f"{place(key)}: {key} is missing; write {line(quantity)} in [{table}]")
     return values, problems
 
@@ -149,9 +159,9 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
         return tuple(rows)
     label = f"{key}[{{}}] {words[0]}"
     firsts = [first for first, _ in rows]
-    if quantity.rows_of == "curve":
+    if quantity.rows_of in SLOPES:
         check_increasing(firsts, across.unit, where=place, label=label)
-        check_slopes(rows, "curve.slope", where=place, label=key)
+        check_slopes(rows, SLOPES[quantity.rows_of], where=place, label=key)
     else:
         no_step = " (a jump would take an infinite force)" if key == "motion.mouse_velocity" else ""
         check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
@@ -169,10 +179,22 @@ def table_of(values: Mapping[str, Value], table: str) -> dict[str, Any]:
 
 
 def contact_of(values: Mapping[str, Value], table: str) -> Contact:
-    """The contact that [plate] or [finger] describes."""
-    given = table_of(values, table)
+    """The contact that [plate] or [finger] describes, with its friction forces."""
+    given = {
+        name: value
+        for name, value in table_of(values, table).items()
+        if f"{table}.{name}" in QUANTITIES  # preload and touch force are the drive's
+    }
     stiffness = given.pop("stiffness", None)
-    return Contact(**given, stiffness=inf if stiffness is None else stiffness)
+    contact = Contact(**given, stiffness=inf if stiffness is None else stiffness)
+    if contact.coefficient is None:
+        return contact
+    return contact.pressed_by(normal_force(table, by_name(values).__getitem__))
+
+
+def by_name(values: Mapping[str, Value]) -> dict[str, Any]:
+    """The values of the keys of the drive by the names of their quantities."""
+    return {DRIVE[key].name: value for key, value in values.items() if key in DRIVE}
 
 
 def drive_of(values: Mapping[str, Value]) -> Drive:
@@ -183,10 +205,11 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
     """
     given = table_of(values, "drive")
     damping, ratio = given.pop("damping"), given.pop("damping_ratio")
-    plate, finger = contact_of(values, "plate"), contact_of(values, "finger")
+    given |= {name: contact_of(values, name) for name in ("plate", "finger")}
+    given |= {"preload": values["plate.preload"], "touch_force": values["finger.touch_force"]}
     if damping is None:
-        return Drive.with_damping_ratio(**given, damping_ratio=ratio, plate=plate, finger=finger)
-    return Drive(**given, damping=damping, plate=plate, finger=finger)
+        return Drive.with_damping_ratio(**given, damping_ratio=ratio)
+    return Drive(**given, damping=damping)
 
 
 def release_of(values: Mapping[str, Value]) -> Release:
@@ -202,13 +225,29 @@ def contact_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together within [plate] and [finger], as far as their values are known."""
     problems = Problems(place)
     for table in ("plate", "finger"):
-        of_curve, of_static, of_kinetic = (f"{table}.{x}" for x in ("curve", "static", "kinetic"))
+        names = (*COEFFICIENTS, *COEFFICIENTS.values())
+        given = [name for name in names if values.get(f"{table}.{name}") is not None]
+        by_coefficient = any(name not in COEFFICIENTS for name in given)
+        keys = tuple(f"{table}.{name}" for name in reversed(given))
+        before = len(problems)
+        problems.check(check_one_kind, given, table, place, keys=keys or (table,))
+        if len(problems) > before:
+            continue
+        of_kinetic, of_static, of_curve = (
+            f"{table}.{name}"
+            for name in (COEFFICIENTS.values() if by_coefficient else COEFFICIENTS)
+        )
         curve, static, kinetic = (values.get(key) for key in (of_curve, of_static, of_kinetic))
         if isinstance(curve, tuple):
             kinetic = curve[0][1] if kinetic is None else kinetic
-            problems.check(check_curve, curve, kinetic, keys=(of_curve, of_kinetic))
+            name = of_curve.partition(".")[2]
+            problems.check(check_curve, curve, kinetic, name, keys=(of_curve, of_kinetic))
         if static is not None and kinetic is not None:
-            problems.check(check_static, static, kinetic, keys=(of_static, of_kinetic, of_curve))
+            keys = of_static, of_kinetic, of_curve
+            problems.check(check_static, static, kinetic, of_static.partition(".")[2], keys=keys)
+        if table == "finger" and given and "finger.touch_force" in values:
+            keys = ("finger.touch_force", *keys)
+            problems.check(check_touch, by_coefficient, values["finger.touch_force"], keys=keys)
     return problems
 
 
@@ -240,11 +279,15 @@ class Whole:
     def magnet(self) -> Electromagnet:
         """The electromagnet: by how it is made where the file says so, else by what it does."""
         given = table_of(self.values, "magnet")
+        voltage = given.pop("voltage")
         coil = {name: given.pop(name) for name in COIL}
         if all(coil[name] is None for name in COIL_NEEDS):
+            if voltage is not None:
+                required = "given with a coil, by turns, gap, wire_diameter and the like"
+                raise ValueError(refusal("voltage", required, "it alone"))
             return Electromagnet.from_times(**given)
         around = {name: value for name, value in given.items() if name not in DIRECT}
-        return Electromagnet.from_coil(Coil(**coil), **around)
+        return Electromagnet.from_coil(Coil(**coil), **around, voltage=voltage)
 
     def array(self) -> PinArray:
         """The pins: at given places, or a grid."""
@@ -288,6 +331,8 @@ class Whole:
         if (places := values["array.places"]) is not None:
             problems.check(_check_no_grid, given["array"], keys=("array.places",))
             problems.check(check_apart, places, keys=("array.places",))
+        slot = values["array.slot_length"], values["array.pin_diameter"]
+        problems.check(check_slot, *slot, keys=("array.slot_length", "array.pin_diameter"))
         counts = "array.columns", "array.rows"
         for key in counts:
             problems.check(check_count, key.partition(".")[2], values[key], keys=(key,))
@@ -331,6 +376,8 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
     moved = {key for key in DRIVE if key in placed}
     for key, quantity in DRIVE.items():
         table, _, name = key.partition(".")
+        if name not in tables[table] and moved.intersection(friction_parts(key)):
+            moved.add(key)
         if key in moved or not moved.intersection(quantity.follows):
             continue
         moved.add(key)
@@ -342,6 +389,14 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
             tables[table][name] = written(key, given / old * new)
         elif rows := scaled_rows(given, new):
             tables[table][name] = written_rows(key, rows)
+
+
+def friction_parts(key: str) -> tuple[str, ...]:
+    """The keys from which a friction force follows where a coefficient gives it; of others none."""
+    if key not in COEFFICIENT_OF:
+        return ()
+    own, pressing = COEFFICIENT_OF[key], PRESSED_BY[key.partition(".")[0]]
+    return (own, *(QUANTITIES[name].key for name in pressing))
 
 
 def written(key: str, value: float) -> str | float:
@@ -363,10 +418,15 @@ def _value(tables: Tables, key: str) -> float | None:
     table, _, name = key.partition(".")
     found = _given(tables, key)
     if found is None and name not in tables[table]:
+        if key in COEFFICIENT_OF and COEFFICIENTS["kinetic"] in tables[table]:
+            parts = [_value(tables, part) for part in friction_parts(key)]
+            if None not in parts:
+                return float(friction_force(key, lambda n: _value(tables, QUANTITIES[n].key)))
         curve = _given(tables, f"{table}.curve") if name == "kinetic" else None
         if isinstance(curve, tuple):
             return curve[0][1]
-        return _value(tables, DRIVE[key].follows[0]) if name == "static" else None
+        follows, static = DRIVE[key].follows, ("static", COEFFICIENTS["static"])
+        return _value(tables, follows[0]) if name in static else DRIVE[key].absent
     return found if isinstance(found, float) else None
 
 

@@ -144,7 +144,7 @@ def _changed(
 ) -> tuple[Drive | None, list[str]]:
     """A drive of another law and what is free of it; None, and why it cannot be."""
     drive = found.drive
-    made = {name: _coulomb(getattr(drive, name)) for name in ("plate", "finger")}
+    made: dict[str, Any] = {name: _coulomb(getattr(drive, name)) for name in ("plate", "finger")}
     keys = friction or [f"{name}.kinetic" for name in contacts]
     match law:
         case "static friction":

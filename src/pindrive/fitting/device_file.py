@@ -61,7 +61,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
     values["motion.mouse_velocity"] = release.mouse_velocity
     values["motion.plate_load"] = release.plate_load
     values["motion.skin_stretch"] = release.skin_stretch
-    before = device.values()
+    before = {k: v for k, v in device.values().items() if k not in device.derived}
     changed = {}
     for key, value in values.items():
         value = value.rows if isinstance(value, Profile) else value

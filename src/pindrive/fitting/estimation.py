@@ -92,6 +92,7 @@ def fit(
         raise ValueError(refusal("confidence", "between 0 and 1", repr(confidence)))
     for each in releases:
         check_fits(drive, each)
+    drive = drive.by_forces
     found = parameters(free, bounds or {}, drive, releases, given)
     _check_lengths(given, drive, [p.key for p in found])
     model = Model(found, drive, releases, given)

@@ -303,6 +303,7 @@ class Assembly:
             damping=float(damping),
             plate=made[0],
             finger=made[1],
+            preload=self._drive.preload,
         )
 
     def release(self, theta: Any, r: int) -> Release:

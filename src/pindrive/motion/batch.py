@@ -9,7 +9,9 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.lazy import xr
+from pindrive.motion.contact import check_one_kind
 from pindrive.motion.drive import Profile
+from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
 from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
@@ -19,7 +21,7 @@ from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES, check, hint, refusal, warn_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -49,6 +51,13 @@ _ARGUMENTS: Final = {
         "settling_band",
         "plate_load",
     )
+}
+# What may be given in place of friction forces, likewise.
+_FORCES: Final = [name for name in COEFFICIENT_OF if not name.endswith("curve")]
+_PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
+_TAKEN: Final = _ARGUMENTS | {
+    name.replace(".", "_"): QUANTITIES[name]
+    for name in (*(COEFFICIENT_OF[name] for name in _FORCES), *_PRESSING)
 }
 # What an argument is where it is left out: another one, infinite, or the usual value.
 _SAME_AS: Final = {
@@ -119,7 +128,10 @@ def simulate_batch(
             of the time of all numbers.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
         **varied: of the drive `mass`, `stiffness`, `damping`, `plate_kinetic`, `plate_static`,
-            `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite: rigid); of the release
+            `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite: rigid); in place of
+            forces, of a contact given by coefficients, `plate_coefficient`,
+            `plate_static_coefficient`, `preload`, `finger_coefficient`,
+            `finger_static_coefficient` and `touch_force`; of the release
             `mouse_velocity`, `displacement`, `velocity`, `plate_load`; and `duration` (infinite:
             long enough to see each ending) and `settling_band`, as for `simulate`, which has their
             ranges. Static friction that is None in a contact is the kinetic one, and a velocity
@@ -132,24 +144,24 @@ def simulate_batch(
         with their values and meanings in the attributes `flag_values` and `flag_meanings`; and the
         number of `events`. The coordinates are what was varied, and what drive and release have. A
         point that `simulate` would refuse does not stop the others: its status says which argument
-        is bad, and its numbers are NaN.
+        is bad (of a coefficient, the force that it makes), and its numbers are NaN.
 
     Raises:
         ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
-            together, `threads` is no count, or `outputs` names what there is not; a drive or a
-            release has what only `simulate` follows: a friction curve, an input that changes, a
-            given stretch of the skin.
+            together, `threads` is no count, or `outputs` names what there is not; friction is given
+            both by a force and by a coefficient; a drive or a release has what only `simulate`
+            follows: a friction curve, an input that changes, a given stretch of the skin.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    unknown = varied.keys() - _ARGUMENTS.keys()
+    unknown = varied.keys() - _TAKEN.keys()
     if unknown:
-        raise ValueError(refusal("varied", f"of {', '.join(_ARGUMENTS)}", min(unknown)))
+        raise ValueError(refusal("varied", f"of {', '.join(_TAKEN)}", min(unknown)))
     dataset, extremes = _followed(drive, release, varied, energy, outputs, threads)
     for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
-            _warn(name, argument, extremes[name])
+            _warn(name, argument, extremes.get(name, (nan, nan)))
     return dataset
 
 
@@ -187,7 +199,8 @@ def _followed(
     shape = tuple(sizes.values())
 
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
-    for name in _ARGUMENTS.keys() - named.keys():
+    aligned |= _forces(aligned)
+    for name in _ARGUMENTS.keys() - aligned.keys():
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
     if np.isinf(aligned["duration"]).any():
@@ -227,10 +240,7 @@ def _constants(
         "mass": drive.mass,
         "stiffness": drive.stiffness,
         "damping": drive.damping,
-        "plate_kinetic": plate.kinetic,
-        "plate_static": plate.static,
-        "finger_kinetic": finger.kinetic,
-        "finger_static": finger.static,
+        **_friction(drive, {name for name, value in varied.items() if value is not None}),
         "finger_stiffness": None if finger.rigid else finger.stiffness,
         "mouse_velocity": release.mouse_velocity,
         "displacement": release.displacement,
@@ -248,6 +258,43 @@ def _constants(
             value = value.values[0]
         found[name] = value
     return found
+
+
+def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
+    """The friction of a drive, by forces or by coefficients and what presses.
+
+    Raises:
+        ValueError: what is varied is the other of both, or a touch force without a coefficient.
+    """
+    found: dict[str, float | None] = {}
+    for table, contact in (("plate", drive.plate), ("finger", drive.finger)):
+        names = [n for pair in COEFFICIENTS.items() for n in pair if f"{table}_{n}" in varied]
+        by_coefficient = contact.coefficient is not None
+        own = "coefficient" if by_coefficient else "kinetic"
+        check_one_kind([own, *names], table)
+        static = COEFFICIENTS["static"] if by_coefficient else "static"
+        found |= {f"{table}_{name}": getattr(contact, name) for name in (own, static)}
+        if by_coefficient:
+            found |= {name: getattr(drive, name) for name in PRESSED_BY[table] if name != "mass"}
+        elif table == "finger" and "touch_force" in varied:
+            required = "left out where the finger's friction is given as a force"
+            raise ValueError(refusal("touch_force", required, "it"))
+    return found
+
+
+def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+    """The friction forces that coefficients amount to; NaN where one of their parts is refused."""
+
+    def value(name: str) -> NDArray[np.float64]:
+        quantity, values = QUANTITIES[name], given[name.replace(".", "_")]
+        good = _within(quantity.bounds, values) & _within(quantity.limits, values)
+        return np.where(good, values, nan)
+
+    return {
+        name.replace(".", "_"): friction_force(name, value)
+        for name in _FORCES
+        if COEFFICIENT_OF[name].replace(".", "_") in given
+    }
 
 
 # ---- what is computed ----------------------------------------------------------------------------
@@ -329,16 +376,16 @@ def _floats(name: str, values: object) -> NDArray[np.float64]:
     except ValueError:  # rows of unlike length
         array = np.empty(0, np.object_)
     if array.dtype.kind == "U":
-        texts = (check(_ARGUMENTS[name].name, str(text), label=name) for text in array.flat)
+        texts = (check(_TAKEN[name].name, str(text), label=name) for text in array.flat)
         return np.fromiter(texts, np.float64, array.size).reshape(array.shape)
     if array.dtype.kind not in "iuf":
-        raise ValueError(refusal(name, _ARGUMENTS[name].kinds, repr(values)))
+        raise ValueError(refusal(name, _TAKEN[name].kinds, repr(values)))
     return array.astype(np.float64, copy=False)
 
 
 def _warn(name: str, given: Broadcastable, ends: tuple[float, float]) -> None:
     """Warn of the largest or the smallest value that is computed, if no such device has it."""
-    quantity = _ARGUMENTS[name]
+    quantity = _TAKEN[name]
     seen = quantity.seen
     if seen is None:
         return
@@ -353,7 +400,7 @@ def _warn(name: str, given: Broadcastable, ends: tuple[float, float]) -> None:
         return
     for size in (sizes.max(), sizes.min()):
         if float(size) not in seen:
-            warn_of(_ARGUMENTS[name].name, float(size), label=name, stacklevel=3)
+            warn_of(quantity.name, float(size), label=name, stacklevel=3)
             return
 
 
@@ -372,4 +419,4 @@ def _attributes(name: str) -> dict[str, Any]:
     if name in OUTCOMES:
         return outcome_attributes(name)
     named = "transient.settled" if name == _SETTLED else name
-    return {**(_ARGUMENTS[name] if name in _ARGUMENTS else QUANTITIES[named]).attributes}
+    return {**(_TAKEN[name] if name in _TAKEN else QUANTITIES[named]).attributes}

@@ -5,136 +5,25 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
-from itertools import islice, pairwise
-from math import copysign, inf, isinf, isnan, sqrt
-from operator import lt
-from typing import TYPE_CHECKING, Any, cast, overload
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import pairwise
+from math import isnan, sqrt
+from typing import TYPE_CHECKING, Any, overload
 
+from pindrive.motion.contact import Contact, check_increasing, check_slopes, slopes_of
+from pindrive.motion.friction import normal_force
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.table import QUANTITIES, check, checked, refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from pindrive.quantities.table import Number
+    from pindrive.quantities.table import Number, OptionalNumber
 
 __all__ = ["Contact", "Drive", "Profile"]
-
-
-@dataclass(frozen=True, slots=True, init=False)
-class Contact:
-    """Dry friction between the pin drive and a surface: the plate or the fingertip.
-
-    Every number may also be text with a unit, such as "20 mN"; a bare number is SI.
-
-    Args:
-        kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
-            contact at all. None with a curve: its first force.
-        static: largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
-            None.
-        curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
-            increasing from 0, linear between rows and on beyond the last; its first force is
-            `kinetic`. None: `kinetic` at every speed (Coulomb).
-        stiffness: tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
-
-    Raises:
-        ValueError: a value is no number or out of its range, static friction is below kinetic,
-            neither kinetic friction nor a curve is given, or they disagree.
-    """
-
-    kinetic: float
-    static: float | None
-    curve: tuple[tuple[float, float], ...] | None
-    stiffness: float
-
-    def __init__(
-        self,
-        kinetic: float | str | None = None,
-        static: float | str | None = None,
-        curve: Iterable[tuple[float | str, float | str]] | None = None,
-        stiffness: float | str = inf,
-    ) -> None:
-        """Validate, and keep plain floats and tuples."""
-        rows = None if curve is None else _checked_curve(curve)
-        if kinetic is None and rows is None:
-            raise ValueError(refusal("kinetic", "a number in N unless a curve is given", "None"))
-        at_rest = (
-            rows[0][1]
-            if kinetic is None and rows
-            else check("kinetic", cast("float | str", kinetic))
-        )
-        if rows:
-            check_curve(rows, at_rest)
-        if static is not None:
-            static = check("static", static)
-            check_static(static, at_rest)
-        object.__setattr__(self, "kinetic", at_rest)
-        object.__setattr__(self, "static", static)
-        object.__setattr__(self, "curve", rows)
-        object.__setattr__(
-            self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
-        )
-
-    @property
-    def static_friction(self) -> float:
-        """Largest friction force without sliding, N."""
-        return self.kinetic if self.static is None else self.static
-
-    @property
-    def frictionless(self) -> bool:
-        """Whether the contact carries no force at all."""
-        return self.static_friction == 0.0 and (
-            self.curve is None or not any(force for _, force in self.curve)
-        )
-
-    @property
-    def curved(self) -> bool:
-        """Whether friction depends on the sliding speed."""
-        return self.curve is not None and len(self.curve) > 1
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the surface gives way by sliding alone."""
-        return isinf(self.stiffness)
-
-
-def check_static(static: float, kinetic: float) -> None:
-    """Refuse static friction below kinetic friction (both N)."""
-    if static < kinetic:
-        required = f"at least the kinetic friction, {kinetic!r} N"
-        raise ValueError(refusal("static", required, f"{static!r} N"))
-
-
-def check_curve(rows: Sequence[tuple[float, float]], kinetic: float) -> None:
-    """Refuse rows (m/s, N) that do not start at speed 0 with the kinetic friction (N)."""
-    speed, force = rows[0]
-    if speed != 0.0:
-        raise ValueError(refusal("curve[0] speed", "0 m/s", f"{speed!r} m/s"))
-    if force != kinetic:
-        raise ValueError(
-            refusal("curve[0] force", f"the kinetic friction, {kinetic!r} N", f"{force!r} N")
-        )
-
-
-def check_increasing(
-    values: Sequence[float],
-    unit: str,
-    *,
-    where: str = "",
-    label: str | Callable[[int], str] = "[{}]",
-    why: str = "",
-) -> None:
-    """Refuse values of which one is not greater than the one before; `label` is of its index."""
-    if all(map(lt, values, islice(values, 1, None))):
-        return
-    named = label.format if isinstance(label, str) else label
-    for i in range(1, len(values)):
-        if not values[i - 1] < values[i]:
-            required = f"greater than the one before, {values[i - 1]!r} {unit}{why}"
-            raise ValueError(refusal(named(i), required, f"{values[i]!r} {unit}", where))
 
 
 def check_times(
@@ -172,6 +61,16 @@ def check_continuous(velocity: Profile) -> None:
         raise ValueError(refusal("mouse_velocity", required, given))
 
 
+def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
+    """Refuse a coefficient of the finger without a touch force (N), or that without the other."""
+    if by_coefficient and touch_force is None:
+        required = "given where a coefficient gives the finger's friction"
+        raise ValueError(refusal("touch_force", required, "none"))
+    if not by_coefficient and touch_force is not None:
+        required = "left out where the finger's friction is given as a force"
+        raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
+
+
 def check_skin(finger: Contact) -> None:
     """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
     if finger.curved and not finger.rigid:
@@ -190,50 +89,6 @@ def check_stretch(stretch: float, finger: Contact) -> None:
         raise ValueError(refusal("skin_stretch", required, given))
 
 
-def _checked_curve(
-    curve: Iterable[tuple[float | str, float | str]],
-) -> tuple[tuple[float, float], ...]:
-    try:
-        rows = [(speed, force) for speed, force in curve]
-    except (TypeError, ValueError):
-        raise ValueError(refusal("curve", "rows of (speed, force)", repr(curve))) from None
-    if not rows:
-        raise ValueError(refusal("curve", "at least one row of (speed, force)", "none"))
-    speeds = [
-        check("curve.speed", speed, label=f"curve[{i}] speed") for i, (speed, _) in enumerate(rows)
-    ]
-    forces = [
-        check("curve.force", force, label=f"curve[{i}] force") for i, (_, force) in enumerate(rows)
-    ]
-    check_increasing(speeds, "m/s", label="curve[{}] speed")
-    found = tuple(zip(speeds, forces, strict=True))
-    check_slopes(found, "curve.slope", label="curve")
-    return found
-
-
-def _slopes(rows: Sequence[tuple[float, float]]) -> list[float]:
-    """The slopes between rows but for steps; infinite where the quotient overflows."""
-    return [
-        (y1 - y0) / (x1 - x0) if x1 - x0 > abs(y1 - y0) * 1e-300 else copysign(inf, y1 - y0)
-        for (x0, y0), (x1, y1) in pairwise(rows)
-        if x1 > x0
-    ]
-
-
-def check_slopes(
-    rows: Sequence[tuple[float, float]], name: str, *, where: str = "", label: str
-) -> None:
-    """Refuse rows of which two lie so close that the slope between them is out of range."""
-    bounds = QUANTITIES[name].limits
-    slopes = _slopes(rows)
-    if all(bounds.lower <= slope <= bounds.upper for slope in slopes):
-        return
-    worst = max(slopes, key=abs)
-    unit = QUANTITIES[name].unit
-    shown = f"{worst:g} {unit}"
-    raise ValueError(refusal(f"{label} slope", bounds.words(unit), shown, where))
-
-
 @checked
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
@@ -244,8 +99,13 @@ class Drive:
         mass: electromagnet and pin, kg, from 1e-12 to 1e12.
         stiffness: of the spring, N/m, from 1e-12 to 1e12.
         damping: viscous, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
-        plate: friction of the moving plate on the electromagnet.
-        finger: friction of the resting fingertip on the pin.
+        plate: friction of the moving plate on the electromagnet; given by a coefficient it is
+            that of weight and preload (and the pull, by which a load multiplies it).
+        finger: friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
+        preload: what presses the electromagnet on the plate beside weight and pull, N, from 0 to
+            1e12.
+        touch_force: with which the finger presses on the pin, N, from 0 to 1e12; for a finger
+            given by a coefficient alone.
 
     Raises:
         ValueError: a value is no number or out of its range.
@@ -256,9 +116,11 @@ class Drive:
     damping: Number
     plate: Contact
     finger: Contact
+    preload: Number = default("preload")
+    touch_force: OptionalNumber = default("touch_force")
 
     def __post_init__(self) -> None:
-        """Validate what follows from them."""
+        """Validate what follows from them; coefficients become forces."""
         ratios = QUANTITIES["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios
@@ -269,7 +131,13 @@ class Drive:
         for label, contact in (("plate", self.plate), ("finger", self.finger)):
             if not isinstance(contact, Contact):
                 raise ValueError(refusal(label, "a Contact", repr(contact)))
-            steepest = max(map(abs, _slopes(contact.curve or ())), default=0.0)
+            if label == "finger":
+                check_touch(contact.coefficient is not None, self.touch_force)
+            if contact.coefficient is not None:
+                pressed = contact.pressed_by(normal_force(label, partial(getattr, self)))
+                object.__setattr__(self, label, pressed)
+                contact = pressed
+            steepest = max(map(abs, slopes_of(contact.curve or ())), default=0.0)
             if steepest > ratios.upper * self._critical_damping:  # it acts as damping does
                 most = f"at most {brief(ratios.upper)} times critical damping"
                 raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
@@ -283,6 +151,8 @@ class Drive:
         damping_ratio: float | str,
         plate: Contact,
         finger: Contact,
+        preload: float | str = default("preload"),
+        touch_force: float | str | None = None,
     ) -> Drive:
         """A drive whose damping is given as a fraction of the critical one, 0 or from 1e-11 to 1e6.
 
@@ -291,7 +161,28 @@ class Drive:
         """
         mass, stiffness = check("mass", mass), check("stiffness", stiffness)
         damping = 2.0 * check("damping_ratio", damping_ratio) * sqrt(mass) * sqrt(stiffness)
-        return cls(mass=mass, stiffness=stiffness, damping=damping, plate=plate, finger=finger)
+        return cls(
+            mass=mass,
+            stiffness=stiffness,
+            damping=damping,
+            plate=plate,
+            finger=finger,
+            preload=preload,
+            touch_force=touch_force,
+        )
+
+    @property
+    def normal_force(self) -> float:
+        """What presses the electromagnet on the plate without any pull, N: weight and preload."""
+        return float(normal_force("plate", partial(getattr, self)))
+
+    @property
+    def by_forces(self) -> Drive:
+        """The same, its friction given by forces alone, which then stay as they are."""
+        plate, finger = (
+            Contact(c.kinetic, c.static, c.curve, c.stiffness) for c in (self.plate, self.finger)
+        )
+        return replace(self, plate=plate, finger=finger, touch_force=None)
 
     @property
     def natural_frequency(self) -> float:

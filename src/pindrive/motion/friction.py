@@ -1,80 +1,51 @@
-"""The coefficient of friction that a plate's friction force amounts to, held against handbooks.
+"""Friction as a coefficient: what presses on a contact, and the forces that follow.
 
-Friction is given as a force: where the weight changes and the force does not, the coefficient does.
+At the plate weight, preload and pull press, at the finger the touch. The core knows forces alone:
+they are made here, and the pull is a factor on them.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
-
-from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from pindrive.motion.drive import Contact
+from collections.abc import Callable
+from typing import Any, Final
 
 GRAVITY: Final = 9.80665
 """Standard gravity, m/s²."""
-KINETIC: Final = (0.15, 0.30)
-"""Steel on steel, handbook tables."""
-STATIC: Final = (0.15, 0.78)
-"""The same at rest: up to 0.78 where both are clean."""
-_SLACK: Final = 1e-9
-"""So much beyond a limit is rounding."""
+PRESSED_BY: Final[dict[str, dict[str, float]]] = {
+    "plate": {"mass": GRAVITY, "preload": 1.0},
+    "finger": {"touch_force": 1.0},
+}
+"""What presses on each contact while the magnet is off: quantities, and how much each one does."""
+COEFFICIENTS: Final = {
+    "kinetic": "coefficient",
+    "static": "static_coefficient",
+    "curve": "coefficient_curve",
+}
+"""The coefficient by which each friction force of a contact may be given instead."""
+COEFFICIENT_OF: Final = {
+    f"{contact}.{force}": f"{contact}.{coefficient}"
+    for contact in PRESSED_BY
+    for force, coefficient in COEFFICIENTS.items()
+}
+"""The same by the names of the table of quantities."""
 
 
-@dataclass(frozen=True, slots=True)
-class Coefficients:
-    """Friction of a plate over the force that presses on it."""
+def normal_force(contact: str, value: Callable[[str], Any]) -> Any:
+    """What presses on a contact while the magnet is off, N.
 
-    kinetic: float
-    static: float
-    pressing: float
-    """That force, N."""
-    weighs: bool
-    """Whether it is the weight, of no other being given."""
-
-    @classmethod
-    def of(cls, plate: Contact, mass: float, pressing: float | None = None) -> Coefficients:
-        """Those of a plate.
-
-        Args:
-            plate: its friction with the magnet off.
-            mass: what stands on it, kg.
-            pressing: the force that presses, N; None: the weight.
-        """
-        force = mass * GRAVITY if pressing is None else pressing
-        return cls(plate.kinetic / force, plate.static_friction / force, force, pressing is None)
-
-    @property
-    def words(self) -> str:
-        """Both, and over which force."""
-        over = QUANTITIES["pressing"].text(self.pressing)
-        return (
-            f"friction coefficient {self.kinetic:.3f}, static {self.static:.3f}: its friction over "
-            f"{over} of {'weight' if self.weighs else 'pressing force'}"
-        )
-
-    @property
-    def doubt(self) -> str | None:
-        """What handbooks say to them; None where they agree, or there is no friction."""
-        if not self.static:
-            return None
-        for name, value, range_ in (
-            ("kinetic", self.kinetic, KINETIC),
-            ("static", self.static, STATIC),
-        ):
-            if not within(value, range_):
-                low, high = range_
-                return (
-                    f"the plate's {name} friction coefficient is {value:.3g}, outside the "
-                    f"{low:.2f} to {high:.2f} of steel on steel in handbooks: plate.{name} over "
-                    f"{QUANTITIES['pressing'].text(self.pressing)} of "
-                    f"{'weight' if self.weighs else 'magnet.pressing'}"
-                )
-        return None
+    Args:
+        contact: "plate" or "finger".
+        value: the value of a quantity by its name, SI: a number or an array.
+    """
+    parts = [factor * value(name) for name, factor in PRESSED_BY[contact].items()]
+    return sum(parts[1:], parts[0])
 
 
-def within(value: float, range_: tuple[float, float]) -> bool:
-    """Whether a value lies in a range, up to rounding."""
-    return range_[0] * (1.0 - _SLACK) <= value <= range_[1] * (1.0 + _SLACK)
+def friction_force(name: str, value: Callable[[str], Any]) -> Any:
+    """The friction force called "plate.kinetic" or alike that a coefficient amounts to, N.
+
+    Args:
+        name: of a force, but for a curve.
+        value: the value of a quantity by its name, SI: a number or an array.
+    """
+    return value(COEFFICIENT_OF[name]) * normal_force(name.partition(".")[0], value)

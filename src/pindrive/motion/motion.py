@@ -13,6 +13,7 @@ import numpy as np
 from pindrive import _core, lazy
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
+from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.release import core_numbers
 from pindrive.motion.results import (
     Certificate,
@@ -402,6 +403,10 @@ class Motion(lazy.NotebookHtml):
             values[f"{name}.static"] = contact.static_friction
             if contact.curve:
                 values[f"{name}.curve"] = contact.curve
+            if contact.coefficient is not None:
+                parts = {n: getattr(contact, n) for n in COEFFICIENTS.values()}
+                values |= {f"{name}.{n}": value for n, value in parts.items() if value is not None}
+                values |= {n: getattr(drive, n) for n in PRESSED_BY[name] if n != "mass"}
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
         for name in ("mouse_velocity", "plate_load"):
@@ -421,7 +426,9 @@ class Motion(lazy.NotebookHtml):
 
         Args:
             parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
-                `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
+                `finger_kinetic`, `finger_static`, `finger_stiffness`; of a contact given by a
+                coefficient `plate_coefficient`, `plate_static_coefficient`, `preload`,
+                `finger_coefficient`, `finger_static_coefficient`, `touch_force`; `mouse_velocity`,
                 `plate_load` (all rows of a profile together), `displacement`, `velocity`,
                 `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
                 `mouse_velocity[2].value`, `plate_load[2].time`.

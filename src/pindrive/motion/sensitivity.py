@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, Any, Protocol
@@ -12,6 +12,7 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
+from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
 from pindrive.motion.release import PLACES, ROWS, entry
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
@@ -40,6 +41,11 @@ Place = tuple[int, ...]
 """Where a number stands among the core's numbers (`CoreNumbers`)."""
 
 _PLACES: dict[str, Place] = {name.replace(".", "_"): place for name, place in PLACES.items()}
+_COEFFICIENTS = (
+    *(f"{table}_{COEFFICIENTS[part]}" for table in PRESSED_BY for part in ("kinetic", "static")),
+    *(name for parts in PRESSED_BY.values() for name in parts if name not in _PLACES),
+)
+"""Parameters that the core knows by the forces that follow from them."""
 _ROW = re.compile(
     r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
     r"|(mouse_velocity|plate_load)\[(\d+)\]\.(time|value))"
@@ -283,6 +289,8 @@ def _numbers(
 def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
     """How the core's numbers change with a parameter, and the size of the parameter."""
     numbers = motion.core_numbers
+    if (name := _key_as_name(given)) in _COEFFICIENTS:
+        return _along_friction(motion, name)
     places = _places(numbers, given)
     size = max(abs(entry(numbers, place)) for place in places) or _natural_size(motion, places[0])
     for contact, (kinetic, static, _, curve) in ((3, numbers[3]), (4, numbers[4])):
@@ -293,11 +301,53 @@ def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
             tied = [(contact, 1)] if static == kinetic else []
             places = [(contact, 0), *first_row, *tied]
     along = _mapped(lambda _: 0.0, numbers)
-    for place in places:
-        along = _replaced(along, place, 1.0)
+    for place, slope in (dict.fromkeys(places, 1.0) | _friction_slopes(motion.drive, name)).items():
+        along = _replaced(along, place, slope)
     if motion.release.velocity is None:
         along = _replaced(along, (8,), _start_slope(numbers[5], along[5]) + along[8])
     return along, size
+
+
+def _along_friction(motion: Simulated, name: str) -> tuple[CoreNumbers, float]:
+    """The same of a coefficient, or of what presses on a contact given by one."""
+    slopes = _friction_slopes(motion.drive, name)
+    table, _, part = name.partition("_")
+    owner = getattr(motion.drive, table) if part in COEFFICIENTS.values() else motion.drive
+    value = getattr(owner, name if owner is motion.drive else part)
+    if not slopes or value is None:
+        raise ValueError(refusal("parameter", "one that this motion was given", repr(name)))
+    along = _mapped(lambda _: 0.0, motion.core_numbers)
+    for place, slope in slopes.items():
+        along = _replaced(along, place, slope)
+    largest = max(map(abs, slopes.values())) or 1.0
+    return along, abs(value) or _natural_size(motion, next(iter(slopes))) / largest
+
+
+def _friction_slopes(drive: Drive, name: str) -> dict[Place, float]:
+    """How friction forces given by coefficients change with a parameter: (μ N)' = μ' N + μ N'."""
+    found: dict[Place, float] = {}
+    for i, table in ((3, "plate"), (4, "finger")):
+        contact = getattr(drive, table)
+        if contact.coefficient is None:
+            continue
+        own_static, rows = contact.static_coefficient, contact.coefficient_curve or ()
+        at_rest = contact.coefficient if own_static is None else own_static
+        pressed = PRESSED_BY[table].get(name, 0.0)
+        if pressed:
+            found[i, 0], found[i, 1] = contact.coefficient * pressed, at_rest * pressed
+            found |= {(i, 3, j, 1): each * pressed for j, (_, each) in enumerate(rows)}
+        force = normal_force(table, partial(getattr, drive))
+        if name == f"{table}_coefficient":
+            tied = [(i, 1)] if at_rest == contact.coefficient else []
+            found |= dict.fromkeys([(i, 0), *([(i, 3, 0, 1)] if rows else []), *tied], force)
+        elif name == f"{table}_static_coefficient":
+            found[i, 1] = force
+    return found
+
+
+def _key_as_name(given: str) -> str:
+    """A device file's key as the name of a parameter."""
+    return re.sub(r"^(plate|finger)\.", r"\1_", given)
 
 
 def _unit(given: str) -> str:
@@ -313,7 +363,7 @@ def _unit(given: str) -> str:
 
 def _places(numbers: CoreNumbers, given: str) -> list[Place]:
     """Where the numbers stand that a parameter is."""
-    name = re.sub(r"^(plate|finger)\.", r"\1_", given)  # a device file's key is its name too
+    name = _key_as_name(given)
     if row := _ROW.fullmatch(name):
         table, index, column = (group for group in row.groups() if group)
         rows = entry(numbers, ROWS[table])
@@ -327,7 +377,8 @@ def _places(numbers: CoreNumbers, given: str) -> list[Place]:
         time = rows[int(index)][0]
         return [(*ROWS[table], i, 0) for i, (t, _) in enumerate(rows) if t == time]
     if name not in _PLACES:
-        known = f"one of {', '.join(_PLACES)}, or a row like mouse_velocity[0].value"
+        names = ", ".join((*_PLACES, *_COEFFICIENTS))
+        known = f"one of {names}, or a row like mouse_velocity[0].value"
         raise ValueError(refusal("parameter", known, repr(given)))
     place = _PLACES[name]
     if name in ROWS:

@@ -180,8 +180,12 @@ def _relief_title(judgement: Judgement) -> str:
     lag, smear = (judgement.spread(f"line.{name}")[1] for name in ("lag_off", "smear"))
     found = f"{counts['judged.shown']} of {counted(counts['judged.lines'], 'line')} shown"
     smeared = "not settled" if isnan(smear) else f"smear {MM * smear:.2g} mm"
-    gap = judgement.scan.smallest_gap
-    overlap = f"\npins overlap by {-MM * gap.size:.2g} mm" if gap and gap.size < 0.0 else ""
+    scan = judgement.scan
+    overlap = "".join(
+        f"\n{name} overlap by {-MM * gap.size:.2g} mm"
+        for name, gap in (("pins", scan.smallest_gap), ("magnets", scan.smallest_magnet_gap))
+        if gap and gap.size < 0.0
+    )
     return f"hand at up to {speed}\n{found}\nlag {MM * lag:.2g} mm\n{smeared}{overlap}"
 
 

@@ -101,6 +101,17 @@ ARRAY: Final = in_table(
         "as a Braille dot at its base, 1.4-1.6 mm",
     ),
     Quantity(
+        "slot_length",
+        "l_s",
+        "m",
+        "length of the slot in which a pin moves, along the drive axis",
+        between(1e-6, 1.0),
+        source="the pin's diameter and 1.35 mm either way: a pin goes up to 1.29 mm, and slots are "
+        "cut to 0.1 mm (ISO 2768-1, medium, 3-6 mm); 0.8 mm of wall is left at a pitch of 5 mm",
+        example=0.0042,
+        remark="unless it is given, nothing is said of pins that come to its ends",
+    ),
+    Quantity(
         "places",
         "(x_i, y_i)",
         "m",
@@ -313,6 +324,20 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         "smallest gap between neighbouring pins along the drive axis; negative where they overlap",
     ),
     Quantity("pin_gap.time", "t_g", "s", "when it is so small"),
+    Quantity(
+        "magnet_gap",
+        "g_m",
+        "m",
+        "smallest gap between neighbouring magnets along the drive axis; negative where they "
+        "overlap",
+    ),
+    Quantity("magnet_gap.time", "t_g", "s", "when it is so small"),
+    Quantity(
+        "slot_room",
+        "g_s",
+        "m",
+        "least room of a pin to the end of its slot; negative where it goes beyond",
+    ),
 )
 """What the parts of a device are made of in Python, and what follows from them."""
 
@@ -351,13 +376,21 @@ READER: Final[dict[str, dict[str, Any]]] = {
         '0.32 in Fig. 4 of "Dynamics of tactile device drive", read as ratios; it settles sooner',
     },
     "plate.kinetic": {
-        "default": 0.0022,
+        "default": None,
+        "example": 0.0022,
         "source": "steel on steel, friction coefficient 0.15-0.30 (handbook tables), 0.225 (the "
         "middle) of a weight of 9.8 mN",
+        "remark": "in place of a coefficient",
     },
     "plate.static": {
-        "default": 0.00265,
+        "default": None,
+        "example": 0.00265,
         "source": "steel on steel, 0.27 (oxidised, handbook tables) of a weight of 9.8 mN",
+    },
+    "plate.coefficient": {"default": 0.225},
+    "plate.static_coefficient": {"default": 0.27},
+    "plate.coefficient_curve": {
+        "remark": "for `pindrive simulate` alone: not where a magnet changes the load",
     },
     "plate.curve": {
         "source": "steel on steel, 0.225 falling to 0.15 of a weight of 9.8 mN",
@@ -365,11 +398,25 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "rows": ((0.0, 0.0022), (0.05, 0.0015)),
     },
     "finger.kinetic": {
-        "default": 0.030,
+        "default": None,
+        "example": 0.030,
+        "remark": "in place of a coefficient and touch_force",
         "source": "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 60 mN of touch: "
         "1 N of a finger on sixteen pins, assumed",
     },
-    "finger.static": {"default": 0.045},
+    "finger.static": {"default": None, "example": 0.045},
+    "finger.coefficient": {"default": 0.5},
+    "finger.static_coefficient": {"default": 0.75},
+    "finger.coefficient_curve": {
+        "remark": "speeds from 0 m/s up; coefficient and stiffness are left out then",
+    },
+    "finger.touch_force": {
+        "default": 0.060,
+        "source": "assumed: 1 N of a finger on sixteen pins",
+    },
+    "magnet.outer_diameter": {"default": 0.0035},
+    "magnet.height": {"default": 0.0124},
+    "array.slot_length": {"default": 0.0042},
     "finger.curve": {
         "remark": "speeds from 0 m/s up; kinetic and stiffness are left out then",
         "rows": ((0.0, 0.030), (0.05, 0.024)),

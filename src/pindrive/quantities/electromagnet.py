@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import FINE, Quantity, between, in_table
+from pindrive.quantities.quantity import FINE, SHARE, Quantity, between, in_table
 
 MAGNET: Final = in_table(
     "magnet",
@@ -62,14 +62,46 @@ MAGNET: Final = in_table(
         "assumed: soft iron and a paint thick enough",
     ),
     Quantity(
-        "pressing",
-        "W",
-        "N",
-        "force that presses the electromagnet on the plate while it is off",
-        between(1e-6, 1e4),
-        source="9.80665 m/s2 (standard gravity) times 1 g",
-        example=0.00980665,
-        remark="its weight unless given",
+        "pwm_frequency",
+        "f_PWM",
+        "Hz",
+        "pulses a second in which the coil is switched while it is on",
+        between(1.0, 2e4),
+        source="assumed: such that the current follows by a part; beyond 20 kHz eddy currents in "
+        "the iron decide, which are not simulated",
+        example=500.0,
+        remark="with pwm_duty; it stays on unless both are given",
+    ),
+    Quantity(
+        "pwm_duty",
+        "D",
+        "1",
+        "part of each pulse for which the coil is on",
+        SHARE,
+        source="assumed: a pull that holds with half of the current",
+        example=0.5,
+        remark="with pwm_frequency",
+    ),
+    Quantity(
+        "outer_diameter",
+        "d_e",
+        "m",
+        "diameter of the electromagnet, a cylinder",
+        between(1e-6, 1.0),
+        source="assumed: a pot of steel 0.3 mm thick about a winding 0.45 mm thick and a core 2 mm "
+        "wide",
+        example=0.0035,
+        remark="unless it is given, nothing is said of magnets that meet",
+    ),
+    Quantity(
+        "height",
+        "H_e",
+        "m",
+        "height of the electromagnet",
+        between(1e-6, 1.0),
+        source="1 g at 8.4 g/cm3, between iron, 7.87, and copper, 8.96 (CRC Handbook)",
+        example=0.0124,
+        remark="with the diameter it bounds the mass",
     ),
     Quantity(
         "deviation",
@@ -141,6 +173,18 @@ COIL: Final = in_table(
         example=1.0,
     ),
     Quantity(
+        "voltage",
+        "U(t)",
+        "V",
+        "voltage across the coil over the time since it was switched on; each row holds until the "
+        "next",
+        between(0.0, 1e5),
+        source="assumed: full voltage until the pull is there, then half of it",
+        remark="rows or a CSV of them, at most supply_voltage, which holds throughout unless given",
+        rows_of="steps",
+        rows=((0.0, 1.0), (0.005, 0.5)),
+    ),
+    Quantity(
         "release_resistance",
         "R_d",
         "ohm",
@@ -170,6 +214,17 @@ COIL: Final = in_table(
         "2-25 (Incropera, table 1.1)",
         example=430.0,
         absent=430.0,
+    ),
+    Quantity(
+        "heat_capacity",
+        "C_th",
+        "J/K",
+        "heat that warms the electromagnet by a kelvin",
+        between(1e-7, 1e7),
+        source="1 g of copper, 0.385, and iron, 0.449 J/(g K) (CRC Handbook)",
+        example=0.42,
+        remark="its temperature over time is simulated where this is given, from 20 °C on, and the "
+        "resistance grows with it",
     ),
     Quantity(
         "temperature_rise",

@@ -98,8 +98,8 @@ class Quantity:
     """The table of the device file that holds it; empty when the name says so or it is no input."""
     mandatory: bool = False
     """Whether a device file must give it."""
-    alternative: str = ""
-    """The key from which a mandatory one follows where that is given in its place."""
+    alternative: tuple[str, ...] = ()
+    """The keys from one of which a mandatory one follows where that is given in its place."""
     absent: float | None = None
     """SI value that holds where a device file, or a call in Python, leaves it out; None: there is
     none, or it follows from others."""

@@ -161,6 +161,7 @@ SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("command", "u", "", "whether the magnet is switched on"),
     Quantity("current", "c", "1", "current in the coil, a part of the full one"),
     Quantity("pull", "P", "N", "pull of the magnet"),
+    Quantity("warming", "ΔT", "K", "warming of the magnet above 20 °C"),
 )
 """What is known of a scan at a time besides, on the clock of the hand's path."""
 

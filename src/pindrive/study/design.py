@@ -267,11 +267,11 @@ class Plan:
     @property
     def values(self) -> dict[str, Any]:
         """The device's value of each key that has a part in this study, SI; None: not given."""
-        derived = "drive.damping" if self.device.by_ratio else "drive.damping_ratio"
+        derived = self.device.derived
         return {
             key: value
             for key, value in self.device.values().items()
-            if has_part(key, self.page is not None) and key != derived
+            if has_part(key, self.page is not None) and key not in derived
         }
 
     @property

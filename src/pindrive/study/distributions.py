@@ -17,8 +17,11 @@ from zlib import crc32
 
 import numpy as np
 
+from pindrive.files.schema import friction_parts
 from pindrive.files.template import DRIVE
 from pindrive.lazy import qmc, special
+from pindrive.motion.friction import COEFFICIENT_OF, friction_force
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -219,6 +222,8 @@ def _sobol(keys: tuple[str, ...], seed: int, block: int) -> NDArray[np.float64]:
 LEFT_OUT: Final = {
     "plate.static": "plate.kinetic",
     "finger.static": "finger.kinetic",
+    "plate.static_coefficient": "plate.coefficient",
+    "finger.static_coefficient": "finger.coefficient",
     "motion.velocity": "motion.mouse_velocity",
 }
 """Keys that are another one's value where a device file leaves them out."""
@@ -246,6 +251,11 @@ def implied_links(device: DeviceFile, varied: Collection[str], scans: bool) -> d
     moving = {*varied}
     found = {}
     for key, quantity in DRIVE.items():
+        if key in device.derived:
+            parts = friction_parts(key)
+            if moving.intersection((*parts, *(LEFT_OUT[p] for p in parts if p in LEFT_OUT))):
+                moving.add(key)
+            continue
         if key in moving or not moving.intersection(quantity.follows):
             continue
         value, leaders = device.values()[key], [base_value(device, k) for k in quantity.follows]
@@ -274,6 +284,8 @@ def with_links(device: DeviceFile, columns: Columns, links: Mapping[str, Linked]
             link = links[key]
             leader = value(link.of) / value(link.over) if link.over else value(link.of)
             return link.times * leader
+        if key in COEFFICIENT_OF and key in device.derived:
+            return np.asarray(friction_force(key, lambda name: value(QUANTITIES[name].key)))
         if key in LEFT_OUT and device.values()[key] is None:
             return value(LEFT_OUT[key])
         return np.asarray(base_value(device, key))

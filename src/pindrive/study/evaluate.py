@@ -15,6 +15,7 @@ from pindrive.files.device import motion_of
 from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
@@ -208,7 +209,7 @@ def _inputs(device: DeviceFile, columns: Columns) -> dict[str, Any]:
     if "drive.damping_ratio" in columns or (device.by_ratio and "drive.damping" not in columns):
         mass, stiffness = np.sqrt(given["mass"]), np.sqrt(given["stiffness"])
         given["damping"] = 2.0 * given["damping_ratio"] * mass * stiffness
-    return given
+    return given | dict.fromkeys(variable(key) for key in device.derived if key in COEFFICIENT_OF)
 
 
 def _refused(status: NDArray[np.int8]) -> NDArray[Any]:
@@ -255,18 +256,15 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _motion(given: Mapping[str, Any]) -> Motion:
-    plate, finger = (
-        Contact(
-            given[f"{name}_kinetic"],
-            given[f"{name}_static"],
-            scaled_rows(given[f"{name}_curve"], given[f"{name}_kinetic"]),
-            stiffness,
-        )
-        for name, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf))
-    )
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
+    body |= {name: given[name] for name in ("preload", "touch_force")}
+    for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
+        own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
+        for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):
+            own[curve] = scaled_rows(own[curve], own[kinetic])
+        body[table] = Contact(**own, stiffness=stiffness)
     return simulated(
-        Drive(**body, plate=plate, finger=finger),
+        Drive(**body),
         Release(**{name: given[name] for name in _RELEASE}),
         **{name: given[name] for name in _NOT_OF_THE_DRIVE},
     )

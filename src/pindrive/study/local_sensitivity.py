@@ -11,6 +11,7 @@ import numpy as np
 from pindrive import lazy
 from pindrive.files.device import motion_of
 from pindrive.lazy import xr
+from pindrive.motion.friction import COEFFICIENTS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.study.design import ranges_of, variable
@@ -164,11 +165,15 @@ def _changes(plan: Plan, key: str, links: Mapping[str, Linked]) -> dict[str, flo
     for name, share in shares.items():
         table, _, part = name.rpartition(".")
         contact = {"plate": drive.plate, "finger": drive.finger}.get(table)
-        tied = contact and part == "static" and contact.static_friction == contact.kinetic
+        tied = (
+            contact
+            and part in ("static", COEFFICIENTS["static"])
+            and contact.static_friction == contact.kinetic
+        )
         if tied and name != key:
             continue  # one number with the kinetic friction: the core changes it along
         found[variable(name)] = share * base_value(plan.device, name)
-        if contact and part == "kinetic":  # its curve keeps its shape
+        if contact and part in ("kinetic", "coefficient"):  # its curve keeps its shape
             rows = enumerate(contact.curve or ())
             found |= {f"{table}_curve[{i}].force": force for i, (_, force) in rows if i}
     return found

@@ -20,7 +20,8 @@ from zlib import crc32
 
 import numpy as np
 
-from pindrive.device.electromagnet import COIL, DIRECT
+from pindrive.device.coil import COIL
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py

@@ -39,14 +39,14 @@ grating = ["4 mm", "2 mm"]
 # Every combination of these is computed: 5 x 3 x 2 scans.
 scan.hand_speed = { lin = ["30 mm/s", "150 mm/s"], count = 5 }
 magnet.fall_time = { lin = ["3 ms", "15 ms"], count = 3 }
-finger.kinetic = ["20 mN", "40 mN"]
+finger.touch_force = ["40 mN", "80 mN"]
 
 [tolerances]
 # How far the values of a built device are from those above, for `robustness`, and for `sensitivity`
 # with --tolerances: either way, as a normal distribution with this standard deviation, or between
 # two values.
-finger.kinetic = "50 %"
-plate.kinetic = "15 %"
+finger.touch_force = "50 %"
+plate.coefficient = "15 %"
 control.latency = { uniform = ["2 ms", "10 ms"] }
 scan.hand_speed = { normal = "15 %" }
 

@@ -9,8 +9,11 @@ import numpy as np
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
 from pindrive.files.template import NUMBERS
-from pindrive.motion.friction import GRAVITY, KINETIC, within
+from pindrive.motion.coefficients import KINETIC, within
+from pindrive.motion.contact import check_one_kind
+from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities import budgets
+from pindrive.quantities.table import QUANTITIES
 from pindrive.study.design import COUNTS
 from pindrive.study.distributions import (
     Axis,
@@ -43,8 +46,8 @@ def conflicts(plan: Plan, file: str) -> list[str]:
         problems += [f"{file}: {table}: {words}" for words in _among(plan.device, axes)]
         if plan.page:
             problems += [f"{file}: {table}: {words}" for words in _around(plan, axes)]
-        for contact in ("plate", "finger"):
-            if words := _static_below_kinetic(plan, axes, contact):
+        for kinetic, static in _PAIRS:
+            if words := _static_below_kinetic(plan, axes, static, kinetic):
                 problems.append(f"{file}: {table}: {words}")
     if plan.page and not any(_sizes(key) for key in (*plan.axes, *tolerances)):
         problems += [f"{file}: page: {words}" for words in _unreadable(plan)]
@@ -69,7 +72,17 @@ def _unreadable(plan: Plan) -> Iterator[str]:
 def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
     if {"drive.damping", "drive.damping_ratio"} <= axes.keys():
         yield "vary drive.damping or drive.damping_ratio, not both"
+    for table in ("plate", "finger"):
+        names = [name for pair in COEFFICIENTS.items() for name in pair]
+        varied = [name for name in names if f"{table}.{name}" in axes]
+        own = [name for name in names if name in device.tables[table]]
+        try:
+            check_one_kind([*own, *varied], table)
+        except ValueError as error:
+            yield str(error)
     drive = device.drive
+    if "finger.touch_force" in axes and drive.finger.coefficient is None:
+        yield "finger.touch_force cannot be varied where finger.kinetic is a force"
     if drive.finger.curved and "finger.stiffness" in axes:
         yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
     if "motion.skin_stretch" in axes and drive.finger.rigid and "finger.stiffness" not in axes:
@@ -113,9 +126,18 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
                 yield str(error)
 
 
-def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], contact: str) -> str:
+_PAIRS: Final = [
+    (f"{contact}.{kinetic}", f"{contact}.{static}")
+    for contact in ("plate", "finger")
+    for kinetic, static in zip(
+        *([name, COEFFICIENTS[name]] for name in ("kinetic", "static")), strict=True
+    )
+]
+"""Kinetic and static friction, by forces and by coefficients."""
+
+
+def _static_below_kinetic(plan: Plan, axes: Mapping[str, Axis], static: str, kinetic: str) -> str:
     """Words for static friction that is below kinetic friction at every point."""
-    static, kinetic = f"{contact}.static", f"{contact}.kinetic"
     if not {static, kinetic} & axes.keys():
         return ""
     if static not in axes and plan.device.values()[static] is None:
@@ -153,12 +175,6 @@ def _below_along(plan: Plan, static: str, kinetic: str) -> bool:
     return False
 
 
-_MASS: Final = "drive.mass"
-_KINETIC: Final = "plate.kinetic"
-_PRESSING: Final = "magnet.pressing"
-_PARTS: Final = (_MASS, _KINETIC, _PRESSING)
-
-
 def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | None:
     """The least and the largest kinetic coefficient of the plate; None where it does not change.
 
@@ -167,7 +183,9 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
         tolerances: over its tolerances, not over its axes.
     """
     links = plan.tolerance_links if tolerances else plan.links
-    followed = list(_PARTS)
+    by_coefficient = plan.device.drive.plate.coefficient is not None
+    own = "plate.coefficient" if by_coefficient else "plate.kinetic"
+    followed = [own] if by_coefficient else [own, "drive.mass", "plate.preload"]
     for key in followed:  # and what they follow, and so on
         if key in links:
             followed += [of for of in (links[key].of, links[key].over) if of and of not in followed]
@@ -189,11 +207,10 @@ def coefficient_range(plan: Plan, *, tolerances: bool) -> tuple[float, float] | 
         for key, values in column.items()
     }
     found = plan.values | with_links(plan.device, spread, links)
-    pressing = found.get(_PRESSING)
-    force = found[_MASS] * GRAVITY if pressing is None else pressing
     # A spread that goes down to no mass has no upper end.
     with np.errstate(divide="ignore", invalid="ignore"):
-        coefficient = np.asarray(found[_KINETIC] / np.maximum(force, 0.0))
+        force = 1.0 if by_coefficient else normal_force("plate", lambda n: found[QUANTITIES[n].key])
+        coefficient = np.asarray(found[own] / np.maximum(force, 0.0))
     low, high = float(coefficient.min()), float(coefficient.max())
     return (low, high) if high > low * (1.0 + 1e-9) else None
 
@@ -205,10 +222,12 @@ def coefficient_words(plan: Plan, *, tolerances: bool = False) -> tuple[str, boo
         return None
     low, high = found
     over = "the tolerances" if tolerances else "the study"
+    by_force = plan.device.drive.plate.coefficient is None
+    how = ", plate.kinetic over what presses" if by_force else ", plate.coefficient"
     known = all(within(value, KINETIC) for value in found)
     doubt = f"; steel on steel has {KINETIC[0]:.2f} to {KINETIC[1]:.2f} in handbooks"
     words = (
-        "the plate's friction coefficient, plate.kinetic over what presses, goes from "
+        f"the plate's friction coefficient{how}, goes from "
         f"{low:.3g} to {high:.3g} over {over}{'' if known else doubt}"
     )
     return words, not known

@@ -1,0 +1,147 @@
+"""How an electromagnet is made, and what follows from that: currents, times, fields, power."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, fields
+from math import pi
+from typing import TYPE_CHECKING, Final
+
+from pindrive.device.current import VoltageSteps
+from pindrive.device.heating import Heat
+from pindrive.motion.contact import check_increasing
+from pindrive.quantities.table import check, checked, default, refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pindrive.quantities.table import Number, OptionalNumber
+
+MAGNETIC_CONSTANT: Final = 1.25663706127e-6
+"""N/A², CODATA 2022."""
+COPPER: Final = 1 / 58e6
+"""Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
+
+
+@checked
+class Coil:
+    """An electromagnet with two poles on a steel plate, by how it is made.
+
+    Its iron carries any flux without effort up to the saturation field, and no flux leaks: the two
+    gaps in series hold the whole magnetomotive force, 2 g B / μ0 = N I.
+
+    Args:
+        turns: N, at least 1.
+        pole_area: A of one pole, m², greater than 0.
+        gap: g under each pole, m, greater than 0.
+        wire_diameter: d of the copper, m, greater than 0.
+        turn_length: mean length of a turn, m, greater than 0.
+        supply_voltage: U while it is on, V, greater than 0.
+        release_resistance: what the current dies away through beside its own, ohm, at least 0.
+        saturation_field: B_s, T, greater than 0.
+        thermal_resistance: R_th, K/W, greater than 0.
+        heat_capacity: C_th, J/K, greater than 0; None: its temperature is not simulated.
+        temperature_rise: ΔT allowed, K, greater than 0.
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+
+    The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric
+    Machinery", chapters 1 and 3.
+    """
+
+    turns: Number
+    pole_area: Number
+    gap: Number
+    wire_diameter: Number
+    turn_length: Number
+    supply_voltage: Number
+    release_resistance: Number = default("release_resistance")
+    saturation_field: Number = default("saturation_field")
+    thermal_resistance: Number = default("thermal_resistance")
+    heat_capacity: OptionalNumber = default("heat_capacity")
+    temperature_rise: Number = default("temperature_rise")
+
+    def __post_init__(self) -> None:
+        """Validate what follows from them."""
+        for name in ("resistance", "inductance", "current", "field", "power"):
+            check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
+
+    @property
+    def resistance(self) -> float:
+        """R = ρ N l / (π d²/4), ohm, at 20 °C."""
+        return COPPER * self.turns * self.turn_length / (pi / 4.0 * self.wire_diameter**2)
+
+    @property
+    def inductance(self) -> float:
+        """L = N B A / I = μ0 N² A / 2g, H, clamped to the plate."""
+        return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
+
+    @property
+    def current(self) -> float:
+        """Full current I = U / R, A."""
+        return self.supply_voltage / self.resistance
+
+    @property
+    def field(self) -> float:
+        """B = μ0 N I / 2g at full current if the iron did not saturate, T."""
+        return MAGNETIC_CONSTANT * self.turns * self.current / (2.0 * self.gap)
+
+    @property
+    def saturation(self) -> float:
+        """The part of the full current at which the iron saturates, at most 1."""
+        return min(1.0, self.saturation_field / self.field)
+
+    @property
+    def pull(self) -> float:
+        """Two poles' B² A / 2μ0 at full current or saturation, N."""
+        return min(self.field, self.saturation_field) ** 2 * self.pole_area / MAGNETIC_CONSTANT
+
+    @property
+    def power(self) -> float:
+        """U I while it is on, W."""
+        return self.supply_voltage * self.current
+
+    def steps(self, rows: Sequence[tuple[float, float]]) -> VoltageSteps:
+        """Rows (time since it was switched on in s, V) as parts of the supply voltage.
+
+        Raises:
+            ValueError: the first is not at 0 s, times do not increase, or a voltage is negative or
+                beyond the supply's.
+        """
+        if not rows or rows[0][0] != 0.0:
+            given = f"{rows[0][0]!r} s" if rows else "none"
+            raise ValueError(refusal("voltage[0] time", "0 s, when the coil is switched on", given))
+        check_increasing([t for t, _ in rows], "s", label="voltage[{}] time")
+        for i, (_, volts) in enumerate(rows):
+            if not 0.0 <= volts <= self.supply_voltage:
+                required = f"from 0 V to the supply voltage, {self.supply_voltage!r} V"
+                raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
+        times, volts_ = zip(*rows, strict=True)
+        return VoltageSteps(times, tuple(volts / self.supply_voltage for volts in volts_))
+
+    @property
+    def heat(self) -> Heat | None:
+        """What warms and cools it over time; None where its heat capacity is not known."""
+        if self.heat_capacity is None:
+            return None
+        return Heat(self.power, self.thermal_resistance, self.heat_capacity)
+
+    @property
+    def duty(self) -> float:
+        """The part of the time it may be on before it warms by more than is allowed, at most 1."""
+        return min(1.0, self.temperature_rise / (self.thermal_resistance * self.power))
+
+
+COIL: Final = tuple(field.name for field in fields(Coil))
+COIL_NEEDS: Final = tuple(field.name for field in fields(Coil) if field.default is MISSING)
+"""What a coil must say."""
+
+
+def check_poles(coil: Coil | None, outer_diameter: float | None) -> None:
+    """Refuse two poles whose area is more than the face of the magnet (m) has."""
+    if coil is None or outer_diameter is None:
+        return
+    face = pi / 4.0 * outer_diameter**2
+    if 2.0 * coil.pole_area > face:
+        required = f"at most half of the magnet's face, {0.5 * face:.4g} m^2, as it has two poles"
+        raise ValueError(refusal("pole_area", required, f"{coil.pole_area!r} m^2"))

@@ -1,0 +1,81 @@
+"""The coefficient of friction that a plate's friction amounts to, held against handbooks.
+
+Where friction is given as a force and the weight changes, the coefficient does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from pindrive.quantities.table import QUANTITIES
+
+if TYPE_CHECKING:
+    from pindrive.motion.drive import Drive
+
+KINETIC: Final = (0.15, 0.30)
+"""Steel on steel, handbook tables."""
+STATIC: Final = (0.15, 0.78)
+"""The same at rest: up to 0.78 where both are clean."""
+_SLACK: Final = 1e-9
+"""So much beyond a limit is rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficients:
+    """Friction of a plate over the force that presses on it."""
+
+    kinetic: float
+    static: float
+    normal_force: float
+    """That force, N."""
+    preloaded: bool
+    """Whether it is more than the weight."""
+    given: bool
+    """Whether the friction was given so, not as a force."""
+
+    @classmethod
+    def of(cls, drive: Drive) -> Coefficients:
+        """Those of a drive's plate, with the magnet off."""
+        plate, force = drive.plate, drive.normal_force
+        given = plate.coefficient is not None
+        kinetic, static = plate.kinetic / force, plate.static_friction / force
+        return cls(kinetic, static, force, drive.preload > 0.0, given)
+
+    @property
+    def words(self) -> str:
+        """Both, and over which force."""
+        over = QUANTITIES["normal_force"].text(self.normal_force)
+        return (
+            f"friction coefficient {self.kinetic:.3f}, static {self.static:.3f}: its friction over "
+            f"{over} of {self._presses}"
+        )
+
+    @property
+    def _presses(self) -> str:
+        return "weight and preload" if self.preloaded else "weight"
+
+    @property
+    def doubt(self) -> str | None:
+        """What handbooks say to them; None where they agree, or there is no friction."""
+        if not self.static:
+            return None
+        for name, value, range_ in (
+            ("kinetic", self.kinetic, KINETIC),
+            ("static", self.static, STATIC),
+        ):
+            if not within(value, range_):
+                low, high = range_
+                over = QUANTITIES["normal_force"].text(self.normal_force)
+                how = "as it is given" if self.given else f"plate.{name} over {over}"
+                of = "" if self.given else f" of {self._presses}"
+                return (
+                    f"the plate's {name} friction coefficient is {value:.3g}, outside the "
+                    f"{low:.2f} to {high:.2f} of steel on steel in handbooks: {how}{of}"
+                )
+        return None
+
+
+def within(value: float, range_: tuple[float, float]) -> bool:
+    """Whether a value lies in a range, up to rounding."""
+    return range_[0] * (1.0 - _SLACK) <= value <= range_[1] * (1.0 + _SLACK)

@@ -1,0 +1,198 @@
+"""Sizes: what cannot be built so, and what a scan says of magnets that meet and slots that end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import hypot, pi, sqrt
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from command import GOOD, refused, run
+from pindrive import Contact, Drive
+from pindrive.device import Coil, Device, Electromagnet, PinArray, scan
+from pindrive.device.geometry import COPPER, doubts, nearest_pins
+from pindrive.device.reading import Reading
+from pindrive.evaluation import judge
+from pindrive.plot.scan import plot_reliefs, plot_scan
+
+DRIVE = Drive(
+    mass=0.010,
+    stiffness=100.0,
+    damping=0.32,
+    plate=Contact(0.022, 0.0265),
+    finger=Contact(0.020, 0.030, stiffness=300.0),
+)
+WIDE = Electromagnet(hold_force=1.0, outer_diameter="8 mm", height="24 mm")
+
+
+def device(magnet: Electromagnet = WIDE, pitch: float = 0.010, slot: float | None = None) -> Device:
+    return Device(drive=DRIVE, magnet=magnet, array=PinArray.grid(2, 1, pitch, slot_length=slot))
+
+
+# ---- what cannot be built ------------------------------------------------------------------------
+
+
+def test_nearest_pins_are_those_of_all_pairs() -> None:
+    random = Random(5)
+    for count in (2, 3, 30):
+        places = [(random.random(), random.random()) for _ in range(count)]
+        pairs = [(i, j) for j in range(count) for i in range(j)]
+        apart = [hypot(*np.subtract(places[i], places[j])) for i, j in pairs]
+        best = int(np.argmin(apart))
+        found = nearest_pins(places)
+        assert found and found[:2] == pairs[best]
+        assert found[2] == pytest.approx(apart[best])
+    assert nearest_pins([(0.0, 0.0)]) is None
+
+
+SOLID = COPPER * pi / 4.0 * 0.008**2 * 0.024
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (device(), []),
+        (device(pitch=0.008), []),  # side by side, touching
+        (
+            device(pitch=0.0079),
+            [
+                "magnets cannot stand side by side: magnet.outer_diameter is 8.000 mm, and pins 0 "
+                "and 1 are 7.900 mm apart"
+            ],
+        ),
+        (device(slot=0.010), []),
+        (
+            device(slot=0.0101),
+            [
+                "slots overlap: array.slot_length is 10.10 mm, and pins 0 and 1 are 10.00 mm apart "
+                "along the drive axis"
+            ],
+        ),
+        (replace(device(), drive=replace(DRIVE, mass=SOLID)), []),
+        (
+            replace(device(), drive=replace(DRIVE, mass=1.001 * SOLID)),
+            [
+                "a magnet cannot be so heavy: drive.mass is 10.82 g, and a cylinder as wide and "
+                "high as magnet.outer_diameter and magnet.height say weighs 10.81 g in solid copper"
+            ],
+        ),
+        (device(Electromagnet(), pitch=0.001), []),  # sizes that are not known
+    ],
+)
+def test_doubts(made: Device, words: list[str]) -> None:
+    assert [*doubts(made)] == words
+
+
+def test_magnets_of_other_rows_come_as_close() -> None:
+    """Pins that pass each other, and magnets of twice their width that do not."""
+    array = PinArray([(0.0, 0.0), (0.004, 0.003)], pin_diameter=0.002)
+    wide = Device(drive=DRIVE, magnet=Electromagnet(outer_diameter=0.004), array=array)
+    assert array.neighbours == ()
+    (pair,) = wide.magnet_neighbours
+    assert pair.clearance == pytest.approx(0.004 - sqrt(0.004**2 - 0.003**2))
+    assert [*doubts(wide)] == []
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (
+            lambda: PinArray(pin_diameter=0.002, slot_length=0.001),
+            "slot_length must be at least array.pin_diameter, 0.002 m, which moves in it, got "
+            "0.001 m",
+        ),
+        (
+            lambda: Electromagnet.from_coil(
+                Coil(
+                    turns=250,
+                    pole_area=3e-6,
+                    gap=5e-5,
+                    wire_diameter=1e-4,
+                    turn_length=0.0085,
+                    supply_voltage=1.0,
+                ),
+                outer_diameter=0.0025,
+            ),
+            "pole_area must be at most half of the magnet's face, 2.454e-06 m^2, as it has two "
+            "poles, got 3e-06 m^2",
+        ),
+        (
+            lambda: Electromagnet(outer_diameter=-0.003),
+            "outer_diameter must be finite and at least 1e-6 m and at most 1 m, got -0.003 m",
+        ),
+    ],
+)
+def test_impossible_sizes_are_refused(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError) as error:
+        make()
+    assert str(error.value) == message
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_file_says_impossible_sizes_in_one_line() -> None:
+    Path("device.toml").write_text(GOOD + '\n[array]\nslot_length = "1 mm"\n')
+    assert refused("check", "device.toml") == (
+        "device.toml: array.slot_length must be at least array.pin_diameter, 0.0015 m, which moves "
+        "in it, got 0.001 m"
+    )
+
+
+# ---- what check and scan say ---------------------------------------------------------------------
+
+SIZES = """
+[magnet]
+outer_diameter = "6 mm"
+height = "10 mm"
+[array]
+columns = 2
+pitch = "6.5 mm"
+slot_length = "5 mm"
+"""
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_check_and_scan_say_what_does_not_fit() -> None:
+    Path("device.toml").write_text(GOOD + SIZES)
+    heavy = "warning: a magnet cannot be so heavy: drive.mass is 10.00 g"
+    checked = run("check", "device.toml")
+    assert checked.exit_code == 0
+    assert [line for line in checked.stderr.splitlines() if line.startswith(heavy)]
+    said = " ".join(checked.stdout.split())
+    assert "Neighbouring magnets have 0.5000 mm between them at rest, and can meet" in said
+    assert "In its slot a pin has 1.750 mm either way, and can come to its ends" in said
+    assert "density 35.4 g/cm3; that of iron is 7.87, of copper 8.96" in said
+    scanned = run("scan", "device.toml", "--grating", "4 mm", "-o", "a.nc")
+    assert scanned.exit_code == 0
+    magnets, slot = (
+        next(line for line in scanned.stderr.splitlines() if line.startswith(f"warning: {words}"))
+        for words in ("magnets 0 and 1 overlap by ", "pin 1 goes ")
+    )
+    assert magnets.endswith("real magnets would push each other, these pass through")
+    assert slot.endswith("beyond the end of its slot, 5 mm long: a real one would stop there")
+    with xr.open_dataset("a.nc", engine="h5netcdf") as data:
+        overlap, beyond = data.smallest_magnet_gap, data.slot_room
+        assert overlap == float(data.magnet_gap[0]) < 0.0 < data.smallest_pin_gap
+        assert overlap == pytest.approx(data.smallest_pin_gap - 0.0045)
+        most = float(np.abs(data.position).max())
+        assert beyond < 0.0 and -beyond == pytest.approx(most - 0.00175, abs=2e-5)
+    assert f"Magnets overlap by up to {-1e3 * overlap:.4g}" in scanned.stdout
+    assert f"Pin 1 would go {-1e3 * beyond:.4g}" in scanned.stdout
+
+
+def test_the_picture_says_it() -> None:
+    made = device(pitch=0.0082, slot=0.005)
+    reading = Reading(hand_speed=0.1)
+    scene = reading.grating([0.004], made.array)
+    judged = judge(scan(made, scene, reading.strokes(scene, made.array)))
+    gap, room = judged.scan.smallest_magnet_gap, judged.scan.slot_room
+    assert gap and gap.size < 0.0 and room and room.size < 0.0
+    title = plot_scan(judged).get_suptitle().splitlines()
+    assert f"Magnets overlap by up to {-1e3 * gap.size:.4g}" in title[-2]
+    assert title[-1].startswith(f"Pin {room.pin} would go {-1e3 * room.size:.4g}")
+    relief = plot_reliefs([judged]).axes[1].get_title(loc="left")
+    assert f"magnets overlap by {-1e3 * gap.size:.2g} mm" in relief
