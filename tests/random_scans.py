@@ -2,6 +2,7 @@
 
 python -m random_scans COUNT SEED            the worst of so many, from that seed on
 python -m random_scans COUNT SEED sundials   the same against SUNDIALS, of those it can follow
+python -m random_scans COUNT SEED [sundials] curved   with a friction curve at the plate
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class RandomScan:
     """A time within the path, s."""
 
     @classmethod
-    def of(cls, seed: int) -> RandomScan:
+    def of(cls, seed: int, *, curved: bool = False) -> RandomScan:
         draw = np.random.default_rng(seed)
 
         def between(low: float, high: float) -> float:
@@ -46,11 +47,15 @@ class RandomScan:
             return float(draw.choice(values))
 
         plate, finger = between(0.002, 0.1), between(0.0005, 0.05)
+        rows = np.random.default_rng([seed, 1])  # so that all else is as without a curve
+        speeds = np.cumsum([0.0, *np.exp(rows.uniform(np.log(0.002), np.log(0.2), 2))])
+        forces = plate * np.array([1.0, *rows.uniform(0.3, 1.5, 2)])
+        curve = list(zip(speeds.tolist(), forces.tolist(), strict=True)) if curved else None
         drive = Drive.with_damping_ratio(
             mass=between(0.002, 0.05),
             stiffness=between(20.0, 1000.0),
             damping_ratio=either(0.0, between(0.01, 2.0)),
-            plate=Contact(plate, plate * either(1.0, 1.2, 1.8)),
+            plate=Contact(plate, plate * either(1.0, 1.2, 1.8), curve=curve),
             finger=Contact(
                 finger, finger * either(1.0, 1.5), stiffness=either(inf, between(50.0, 3000.0))
             ),
@@ -123,10 +128,10 @@ def mirrors(pin: PinScan, other: PinScan) -> bool:
     )
 
 
-def main(count: int, seed: int) -> None:
+def main(count: int, seed: int, *, curved: bool) -> None:
     residual = part = 0.0
     events = turned = 0
-    for one in (RandomScan.of(s) for s in range(seed, seed + count)):
+    for one in (RandomScan.of(s, curved=curved) for s in range(seed, seed + count)):
         pin = one.scan()
         residual = max(residual, pin.motion.certificate().worst)
         part = max(part, parting(pin, one.halves()))
@@ -136,10 +141,11 @@ def main(count: int, seed: int) -> None:
     print(f"in two halves {part:.1e} apart, {turned} mirrored to the bit")
 
 
-def main_sundials(count: int, seed: int) -> None:
+def main_sundials(count: int, seed: int, *, curved: bool) -> None:
     from oracle.scan_cycles import distance
 
-    pins = [pin for s in range(seed, seed + count) if short(pin := RandomScan.of(s).scan())]
+    drawn = (RandomScan.of(s, curved=curved).scan() for s in range(seed, seed + count))
+    pins = [pin for pin in drawn if short(pin)]
     found = [distance(pin) for pin in pins]
     print(
         f"{len(found)} scans, {sum(len(pin.events) for pin in pins)} events: "
@@ -152,4 +158,4 @@ def main_sundials(count: int, seed: int) -> None:
 
 if __name__ == "__main__":
     run = main_sundials if "sundials" in sys.argv else main
-    run(int(sys.argv[1]), int(sys.argv[2]))
+    run(int(sys.argv[1]), int(sys.argv[2]), curved="curved" in sys.argv)

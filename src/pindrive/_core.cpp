@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <tuple>
 #include <type_traits>
@@ -162,6 +163,18 @@ nb::dict segments(const CoreMotion<T>& motion) {
   table["finger_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.finger; });
   return table;
+}
+
+/// Of each segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+Array<double> acceleration_bounds(const CoreMotion<double>& motion) {
+  return column<double>(motion, [view = motion.view()](const pd::Segment<double>& segment) {
+    return view.along(segment, [](const auto& along) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(along)>, pd::BySeries<double>>)
+        return pd::largest_size(along.acceleration());
+      else
+        return std::numeric_limits<double>::quiet_NaN();
+    });
+  });
 }
 
 template <class T>
@@ -326,6 +339,8 @@ NB_MODULE(_core, m) {
       .def("extrema", &extrema, "quantity"_a, "until"_a, "most"_a, "Times and values.")
       .def("events", &events, "begin"_a, "end"_a, "most"_a,
            "Times and the segments that the events end, cycles expanded.")
+      .def("acceleration_bounds", &acceleration_bounds,
+           "Of each segment without a closed form, what |x''| stays below, m/s²; else NaN.")
       .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })

@@ -50,6 +50,11 @@ class Motion:
     def events(self, begin: float, end: float, most: int) -> tuple:
         """Times and the segments that the events end, cycles expanded."""
 
+    def acceleration_bounds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+        """
+        Of each segment without a closed form, what |x''| stays below, m/s²; else NaN.
+        """
+
     @property
     def known_until(self) -> float: ...
 

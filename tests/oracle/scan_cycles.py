@@ -75,5 +75,5 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
 
 def _contact(surface: Contact) -> dict[str, Any]:
     stiffness = None if surface.rigid else surface.stiffness
-    curve = [(0.0, surface.kinetic)]
+    curve = surface.curve or [(0.0, surface.kinetic)]
     return {"curve": curve, "static": surface.static_friction, "stiffness": stiffness}

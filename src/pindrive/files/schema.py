@@ -12,7 +12,7 @@ from math import inf
 from typing import Any, Final
 
 from pindrive.device.controller import ControlBlock, check_band
-from pindrive.device.device import Criteria, Device, check_plate
+from pindrive.device.device import Criteria, Device, check_holds
 from pindrive.device.electromagnet import (
     COIL,
     COIL_NEEDS,
@@ -280,7 +280,7 @@ class Whole:
         """What does not fit together; `given` is the file's tables."""
         values, problems = self.values, Problems(place)
         plate_keys = ("plate", "plate.curve", "plate.kinetic")
-        problems.check(check_plate, contact_of(values, "plate"), keys=plate_keys)
+        problems.check(check_holds, contact_of(values, "plate"), keys=plate_keys)
         magnet_keys = tuple(f"magnet.{name}" for name in given["magnet"]) or ("magnet",)
         problems.check(self._check_magnet, set(given["magnet"]), keys=magnet_keys)
         band = values["control.threshold"], values["control.hysteresis"]

@@ -286,6 +286,14 @@ class Motion(lazy.NotebookHtml):
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
         return segments_of(self._table)
 
+    @cached_property
+    def acceleration_bounds(self) -> NDArray[np.float64]:
+        """Of each segment without a closed form, what |x''| stays below, m/s², shape (segments,).
+
+        NaN of one in closed form, whose swing says so.
+        """
+        return self._core.acceleration_bounds()
+
     @property
     def status(self) -> Status:
         """Whether the motion was followed to its end; `Status.explanation` says why not."""
