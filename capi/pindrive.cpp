@@ -93,7 +93,7 @@ struct pindrive_drive {
 };
 
 struct pindrive_release {
-  pd::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}};
+  pd::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}};
   double displacement{0}, velocity{none}, skin_stretch{none}, duration{infinity};
 };
 
@@ -126,6 +126,7 @@ bool set(pindrive_drive& drive, const char* name, double value) {
 pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
+  if (std::strcmp(name, "force") == 0) return &release.force;
   return nullptr;
 }
 
@@ -150,7 +151,7 @@ constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
     "finger.stiffness";
 constexpr const char* release_names =
-    "mouse_velocity, plate_load, displacement, velocity, skin_stretch, duration";
+    "mouse_velocity, plate_load, force, displacement, velocity, skin_stretch, duration";
 
 pindrive_error bad_name(const char* of, const char* name, const char* names) {
   return fail(PINDRIVE_BAD_NAME, "%s has no %.40s, but %s", of, name, names);
@@ -164,10 +165,13 @@ pindrive_error check(const char* name, double value, bool good, const char* rang
   return fail(PINDRIVE_BAD_VALUE, "%s must be %s, not %.17g", name, range, value);
 }
 
-pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative) {
+/// Two rows at one time are a step, where there may be one.
+pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative, bool steps) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto [first, second] = rows[i];
-    if (!std::isfinite(first) || (i > 0 && !(first > rows[i - 1].first)))
+    const bool steps_here =
+        steps && i > 0 && first == rows[i - 1].first && !(i > 1 && first == rows[i - 2].first);
+    if (!std::isfinite(first) || (i > 0 && !(first > rows[i - 1].first) && !steps_here))
       return fail(PINDRIVE_BAD_VALUE, "row %zu of %s must come after the one before, not at %.17g",
                   i, name, first);
     if (!std::isfinite(second) || (!negative && second < 0))
@@ -194,7 +198,7 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   if (!error && !contact.curve.empty()) {
     error = check(named("curve"), contact.curve[0].first, contact.curve[0].first == 0,
                   "a curve from speed 0 on");
-    if (!error) error = check_rows(of, contact.curve, false);
+    if (!error) error = check_rows(of, contact.curve, false, false);
     if (!error)
       error = check(named("kinetic"), kinetic, kinetic == contact.curve[0].second,
                     "the first force of its curve");
@@ -215,8 +219,9 @@ pindrive_error check(const pindrive_drive& drive, const pindrive_release& releas
                   "at least 0 and finite");
   if (!error) error = check_contact("plate", drive.plate);
   if (!error) error = check_contact("finger", drive.finger);
-  if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true);
-  if (!error) error = check_rows("plate_load", release.plate_load, false);
+  if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
+  if (!error) error = check_rows("plate_load", release.plate_load, false, true);
+  if (!error) error = check_rows("force", release.force, true, true);
   if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
@@ -248,7 +253,7 @@ pindrive_error same_rows(const char* name, const pd::Rows& rows, const pd::Rows&
 pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
   return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
           drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity, release.skin_stretch,   release.duration};
+          release.velocity, release.skin_stretch,   release.force,      release.duration};
 }
 
 /// What stands for the plate's velocity at the release, with its derivative.
@@ -437,9 +442,9 @@ void write(const pd::Transient<T>& t, const pd::Outcome<T>& outcome, double* val
 }
 
 constexpr const char* energy_names[] = {
-    "kinetic_start",     "kinetic_end",      "spring_start",      "spring_end",
-    "skin_start",        "skin_end",         "plate_work",        "inertia_work",
-    "damper_dissipated", "plate_dissipated", "finger_dissipated", "residual"};
+    "kinetic_start",    "kinetic_end",       "spring_start", "spring_end", "skin_start",
+    "skin_end",         "plate_work",        "inertia_work", "force_work", "damper_dissipated",
+    "plate_dissipated", "finger_dissipated", "residual"};
 constexpr std::size_t energy_count = sizeof energy_names / sizeof *energy_names;
 
 constexpr const char* certificate_names[] = {
@@ -505,7 +510,8 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!name) return null_pointer("name");
   if (!times || !values) return null_pointer("times and values");
   pd::Rows* input = profile(*release, name);
-  if (!input) return bad_name("a release", name, "the profiles mouse_velocity and plate_load");
+  if (!input)
+    return bad_name("a release", name, "the profiles mouse_velocity, plate_load and force");
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
@@ -534,6 +540,7 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
     guarded([&]() -> pindrive_error {
       rate = new pindrive_release{pd::Rows(release->mouse_velocity.size()),
                                   pd::Rows(release->plate_load.size()),
+                                  pd::Rows(release->force.size()),
                                   0,
                                   0,
                                   0,
@@ -572,6 +579,7 @@ pindrive_error pindrive_differentiate(const pindrive_drive* drive, const pindriv
   if (!error)
     error = same_rows("mouse_velocity", release->mouse_velocity, release_rate->mouse_velocity);
   if (!error) error = same_rows("plate_load", release->plate_load, release_rate->plate_load);
+  if (!error) error = same_rows("force", release->force, release_rate->force);
   if (error) return error;
   return guarded([&]() -> pindrive_error {
     auto made = std::make_unique<pindrive_motion>();
@@ -767,10 +775,11 @@ pindrive_error pindrive_energy(const pindrive_motion* motion, double duration, d
     const auto view = of.view();
     const auto ledger = pd::energy_ledger(view, decltype(view.known_until())(duration));
     const decltype(ledger.residual()) entries[] = {
-        ledger.kinetic_start,    ledger.kinetic_end,       ledger.spring_start,
-        ledger.spring_end,       ledger.skin_start,        ledger.skin_end,
-        ledger.plate_work,       ledger.inertia_work,      ledger.damper_dissipated,
-        ledger.plate_dissipated, ledger.finger_dissipated, ledger.residual()};
+        ledger.kinetic_start,     ledger.kinetic_end,      ledger.spring_start,
+        ledger.spring_end,        ledger.skin_start,       ledger.skin_end,
+        ledger.plate_work,        ledger.inertia_work,     ledger.force_work,
+        ledger.damper_dissipated, ledger.plate_dissipated, ledger.finger_dissipated,
+        ledger.residual()};
     static_assert(sizeof entries / sizeof *entries == energy_count);
     for (const auto& entry : entries) *values++ = pd::result(entry);
     return PINDRIVE_OK;

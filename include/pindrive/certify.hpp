@@ -101,7 +101,7 @@ class Certifier {
 
     const Segment<T>& segment;
     const Trajectory& along;
-    Line<T> plate_velocity, load;
+    Line<T> plate_velocity, load, force;
     T span;
     Quantity x_rate, acceleration, finger_rate;
     std::array<Watch<Guard>, 4> watches;
@@ -130,6 +130,7 @@ class Certifier {
         along,
         motion_.inputs().mouse_velocity.from(segment.begin),
         motion_.inputs().plate_load.from(segment.begin),
+        motion_.inputs().force.from(segment.begin),
         std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
         along.derivative(along.position()),
         along.acceleration(),
@@ -218,8 +219,9 @@ class Certifier {
         const Numbers s = state(stage, tau);
         x_scale_ = std::max(
             {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
-        force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                                 abs(s.plate_force), abs(s.finger_force)});
+        force_scale_ =
+            std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                      abs(s.plate_force), abs(s.finger_force), abs(stage.force.at(tau))});
       }
     });
     v_scale_ = x_scale_ * omega0;
@@ -353,7 +355,9 @@ class Certifier {
     const auto over = [&](const Path<T>& p, const Path<T>& q) {
       return product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
     };
-    const Path<T> inertia = Line<T>{drive_.mass * stage.plate_velocity.rate, T(0)};
+    Line<T> push = stage.force;
+    push.value += drive_.mass * stage.plate_velocity.rate;
+    const Path<T> inertia = push;
     Sums sums;
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
@@ -372,7 +376,8 @@ class Certifier {
     if (mode.finger == ContactState::elastic_stick)
       raise(errors.velocity, along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
-                          drive_.stiffness * s.x - s.plate_force - s.finger_force);
+                          drive_.stiffness * s.x - s.plate_force - s.finger_force -
+                          stage.force.at(s.tau));
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
       if (slips(does))
         raise(errors.friction, force + sign(does) * load * kinetic(law, abs(u)));
@@ -387,10 +392,10 @@ class Certifier {
   template <class Stage>
   void gather(const Stage& stage, const Numbers& s, T weight, Sums& sums) const {
     const T v_plate = stage.plate_velocity.at(s.tau);
+    const T push = drive_.mass * stage.plate_velocity.rate + stage.force.at(s.tau);
     sums.v += weight * s.v;
     sums.a += weight * s.a;
-    sums.input +=
-        weight * (s.plate_force * v_plate + drive_.mass * stage.plate_velocity.rate * s.v);
+    sums.input += weight * (s.plate_force * v_plate + push * s.v);
     sums.damper += weight * drive_.damping * s.v * s.v;
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
     if (stage.segment.mode.finger != ContactState::elastic_stick)
@@ -446,9 +451,17 @@ class Certifier {
     const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
     const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
-    const Beginning<T> now{
-        s.x,      s.v,       s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
-        on_plate, on_finger, plate,         finger};
+    const Beginning<T> now{s.x,
+                           s.v,
+                           s.plate_force,
+                           s.finger_force,
+                           stage.plate_velocity,
+                           stage.load.value,
+                           stage.force.value,
+                           on_plate,
+                           on_finger,
+                           plate,
+                           finger};
     worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
   }
 

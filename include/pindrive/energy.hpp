@@ -20,18 +20,20 @@ struct Ledger {
   T skin_start, skin_end;        ///< in a compliant finger, J
   T plate_work;                  ///< what the moving plate puts in through friction, J
   T inertia_work;                ///< what the housing puts in by accelerating, J
+  T force_work;                  ///< what the force from outside puts in, J
   T damper_dissipated, plate_dissipated, finger_dissipated;  ///< J
 
   T residual() const {
     return (kinetic_end - kinetic_start) + (spring_end - spring_start) + (skin_end - skin_start) -
-           plate_work - inertia_work + damper_dissipated + plate_dissipated + finger_dissipated;
+           plate_work - inertia_work - force_work + damper_dissipated + plate_dissipated +
+           finger_dissipated;
   }
   /// The largest energy in the ledger: what the residual is measured against.
   T scale() const {
     using std::abs;
     return std::max({kinetic_start, kinetic_end, spring_start, spring_end, skin_start, skin_end,
-                     abs(plate_work), abs(inertia_work), damper_dissipated, plate_dissipated,
-                     finger_dissipated});
+                     abs(plate_work), abs(inertia_work), abs(force_work), damper_dissipated,
+                     plate_dissipated, finger_dissipated});
   }
 };
 
@@ -41,6 +43,8 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
                         GoOn go_on = {}) {
   const Drive<T>& drive = motion.drive();
   const bool skin = drive.finger.present() && !drive.finger.rigid();
+  const auto& force = motion.inputs().force;
+  const bool pushed = !force.constant() || force.first() != 0;
   Ledger<T> ledger{};
   const auto state = [&](T t, T& kinetic, T& spring, T& in_skin) {
     const auto [segment, tau] = motion.locate(t, Side::left);
@@ -64,6 +68,9 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
       ledger.damper_dissipated += drive.damping * over(along.velocity(), along.velocity());
       ledger.plate_work += over(along.plate_force(), along.line(segment.plate_velocity));
       ledger.inertia_work += over(inertia, along.velocity());
+      if (pushed)
+        ledger.force_work +=
+            over(along.line(motion.inputs().force.from(segment.begin)), along.velocity());
     });
     return go_on();
   });

@@ -165,6 +165,7 @@ struct Inputs {
   Input plate_load{T(1)};                          ///< factor on the plate's friction; >= 0
   /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
+  Input force{T(0)};  ///< on the pin from outside, N
 };
 
 /// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is

@@ -66,10 +66,10 @@ class Motion {
     if (drive_.plate.branches == 0 || inputs_.plate_load.constant() ||
         !(segment.end > segment.begin))
       return visit(ClosedForm<T>(segment));
-    const Line<T> load = inputs_.plate_load.from(segment.begin);
-    const SeriesMode<T> mode(drive_, segment.mode, {segment.plate_velocity, load});
-    if (mode.has_closed_form()) return visit(ClosedForm<T>(segment));
-    return visit(BySeries<T>(drive_, segment, load));
+    const auto lines = InputLines<T>::of(inputs_, segment);
+    if (SeriesMode<T>(drive_, segment.mode, lines).has_closed_form())
+      return visit(ClosedForm<T>(segment));
+    return visit(BySeries<T>(drive_, segment, lines));
   }
 
   struct Friction {

@@ -19,11 +19,19 @@ struct InputLines {
   Line<T> plate_velocity;          ///< v_p, m/s
   Line<T> plate_load{T(1), T(0)};  ///< >= 0
   Line<T> across_velocity{};       ///< w, m/s
+  Line<T> force{};                 ///< on the pin from outside, N
 
   bool oblique() const { return across_velocity.value != 0 || across_velocity.rate != 0; }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
-    return {later(plate_velocity), later(plate_load), later(across_velocity)};
+    return {later(plate_velocity), later(plate_load), later(across_velocity), later(force)};
+  }
+  /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
+  static InputLines of(const Inputs<T>& inputs, const Segment<T>& segment) {
+    return {segment.plate_velocity,
+            inputs.plate_load.from(segment.begin),
+            {},
+            inputs.force.from(segment.begin)};
   }
 };
 
@@ -46,7 +54,8 @@ class SeriesMode {
   /// a sloped branch of its curve.
   SeriesEquation<T> equation() const {
     SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
-    e.force.value = drive_.mass * inputs_.plate_velocity.rate;
+    e.force = inputs_.force;
+    e.force.value += drive_.mass * inputs_.plate_velocity.rate;
     e.plate_velocity = inputs_.plate_velocity;
     e.load = inputs_.plate_load;
     if (slips(mode_.plate)) {

@@ -22,9 +22,10 @@ class SeriesSegment {
   /// whether it has none. Its flow says where it begins. `at_limit` is the side on which a stick force is at
   /// its limit, `span` the time until the next row, s. Its guards come with their zeros.
   template <class Side>
-  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
-             const Side& finger, const State<T>& state, T acceleration, int at_limit, T span) {
-    const SeriesMode<T> mode(drive, segment.mode, {plate.surface, plate.load});
+  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Inputs<T>& inputs,
+             const Side& plate, const Side& finger, const State<T>& state, T acceleration,
+             int at_limit, T span) {
+    const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
     used_ = !mode.has_closed_form();
     if (!used_) return false;
     step_ = SeriesFlow<T>(mode.equation(), {state.x, state.v, state.skin, acceleration}, span);

@@ -91,6 +91,7 @@ class Simulation {
     plate_.ask(state_);
     finger_.ask(state_);
     inertia_ = drive_.mass * plate_.surface.rate;
+    if constexpr (!Surface::plain) inertia_ += force_.value;
     pull_ = drive_.stiffness * state_.x + damper;
     state_.roundoff =
         rounding<T> * (drive_.stiffness * state_.x_size + abs(damper) + 2 * abs(inertia_) +
@@ -136,7 +137,12 @@ class Simulation {
     const T rate = other.force_rate(state_.v, a);
     const T stiffness = drive_.stiffness + (other.elastic() ? other.contact.stiffness : T(0));
     size = abs(spring) + abs(damper) + other.force_rate_size(rate, a);
-    return {force, T(0), T(0), spring + damper - rate, stiffness * a - other.force_bend(a)};
+    T drift = spring + damper - rate;
+    if constexpr (!Surface::plain) {
+      drift -= force_.rate;
+      size += abs(force_.rate);
+    }
+    return {force, T(0), T(0), drift, stiffness * a - other.force_bend(a)};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -212,7 +218,7 @@ class Simulation {
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
     if constexpr (!Surface::plain)
-      if (series_.begin(segment, guards_, drive_, plate_, finger_, state_, acceleration_,
+      if (series_.begin(segment, guards_, drive_, inputs_, plate_, finger_, state_, acceleration_,
                         continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
         return;
     segment.flow = flow(plate, finger);
@@ -231,7 +237,8 @@ class Simulation {
     T damping = drive_.damping + plate.drag + finger.drag;
     const T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
     const T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
-    const T rate = plate.constant.rate + finger.constant.rate;
+    T rate = plate.constant.rate + finger.constant.rate;
+    if constexpr (!Surface::plain) rate += force_.rate;
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
@@ -289,6 +296,7 @@ class Simulation {
     time_ = row ? row_ : time_ + tau;
     plate_.surface.value = plate_.surface.at(tau);
     plate_.load.value = plate_.load.at(tau);
+    if constexpr (!Surface::plain) force_.value = force_.at(tau);
     if (row) look_ahead();
     segment.end = time_;
     limit_ = 0;
@@ -318,6 +326,10 @@ class Simulation {
       plate_.surface = inputs_.mouse_velocity.from(time_);
       plate_.load = inputs_.plate_load.from(time_);
       row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
+      if constexpr (!Surface::plain) {
+        force_ = inputs_.force.from(time_);
+        row_ = std::min(row_, inputs_.force.next_row(time_));
+      }
       if (row_ - time_ > rounding<T> * time_) return;
     }
   }
@@ -332,7 +344,8 @@ class Simulation {
   State<T> state_;
   Side plate_, finger_;   ///< in the mode that was selected
   int limit_{0};          ///< the side of a stick force that has just come to its limit
-  T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
+  Line<T> force_{};       ///< from outside, N
+  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v, N
 
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
   bool tangential_{false};

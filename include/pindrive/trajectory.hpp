@@ -91,8 +91,8 @@ template <class T>
 class BySeries {
  public:
   /// Expands it anew from where it begins: nothing but its beginning is stored.
-  BySeries(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load)
-      : step_(expand(drive, segment, load)) {
+  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
+      : step_(expand(drive, segment, lines)) {
     const bool held = segment.mode.stuck();
     plate_force_ = step_.plate_force;
     if (segment.mode.plate == ContactState::stick) plate_force_ = step_.stick_force;
@@ -159,8 +159,8 @@ class BySeries {
 
  private:
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
-                              const Line<T>& load) {
-    const SeriesMode<T> mode(drive, segment.mode, {segment.plate_velocity, load});
+                              const InputLines<T>& lines) {
+    const SeriesMode<T> mode(drive, segment.mode, lines);
     const SeriesState<T> start{segment.flow.position.start, segment.flow.velocity.start,
                                -segment.finger_force.start};
     return SeriesFlow<T>(mode.equation(), start, segment.end - segment.begin, true);

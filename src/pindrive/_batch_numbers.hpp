@@ -97,6 +97,7 @@ inline constexpr Number<Ledger> energies[] = {
     {"energy.skin_end", [](const Ledger& l) { return l.skin_end; }},
     {"energy.plate_work", [](const Ledger& l) { return l.plate_work; }},
     {"energy.inertia_work", [](const Ledger& l) { return l.inertia_work; }},
+    {"energy.force_work", [](const Ledger& l) { return l.force_work; }},
     {"energy.damper_dissipated", [](const Ledger& l) { return l.damper_dissipated; }},
     {"energy.plate_dissipated", [](const Ledger& l) { return l.plate_dissipated; }},
     {"energy.finger_dissipated", [](const Ledger& l) { return l.finger_dissipated; }},

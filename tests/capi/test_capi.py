@@ -100,7 +100,11 @@ class Case:
     )
     curves: dict[str, Rows] = field(default_factory=lambda: {"plate": [], "finger": []})
     inputs: dict[str, Rows] = field(
-        default_factory=lambda: {"mouse_velocity": [(0.0, 0.10)], "plate_load": [(0.0, 1.0)]}
+        default_factory=lambda: {
+            "mouse_velocity": [(0.0, 0.10)],
+            "plate_load": [(0.0, 1.0)],
+            "force": [(0.0, 0.0)],
+        }
     )
 
     def as_core(self) -> tuple[Any, ...]:
@@ -115,7 +119,8 @@ class Case:
             *(n["mass"], n["stiffness"], n["damping"]),
             *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
-            *(n["displacement"], n["velocity"], n["skin_stretch"], n["duration"]),
+            *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
+            n["duration"],
         )
 
     def core(self) -> _core.Motion:
@@ -153,6 +158,7 @@ def drawn(random: np.random.Generator) -> Case:
         case.inputs["mouse_velocity"] = [(t, between(-0.3, 0.3)) for t in times]
     if kind == 3 or (kind == 2 and random.integers(2)):
         case.inputs["plate_load"] = [(t, between(0, 2)) for t in times]
+        case.inputs["force"] = [(t, between(-0.1, 0.1)) for t in [*times, times[-1]]]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)

@@ -88,6 +88,7 @@ def release(case: Case) -> Motion:
             velocity=pin["velocity"],
             plate_load=profile(pin["load"]),
             skin_stretch=pin["skin_stretch"],
+            force=profile(pin.get("force", [[0.0, 0.0]])),
         ),
         duration=case["duration"],
     )

@@ -65,6 +65,8 @@ class Draw {
     c.velocity = chance(0.6)   ? c.mouse_velocity.value[0]
                  : chance(0.3) ? 0
                                : speed_ * uniform(-2, 2);
+    if (chance(0.15))
+      c.force = profile([&] { return chance(0.3) ? 0 : tidy(force_ * uniform(-1, 1)); }, last, 0.3);
     c.duration = last + period_ * uniform(0.3, long_ ? 12 : 2);
     return c;
   }

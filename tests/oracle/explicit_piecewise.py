@@ -72,6 +72,7 @@ class ExplicitModes:
         self.plate, self.finger = Law(inputs["plate"]), Law(inputs["finger"])
         self.soft = not self.finger.absent and self.finger.stiffness < inf
         self.mouse, self.load = (np.array(inputs[n], float).T for n in ("mouse_velocity", "load"))
+        self.push = np.array(inputs.get("force", [[0.0, 0.0]]), float).T
         self.samples, self.tool = list(samples), tool
         self.t = 0.0
         self.enter_knot()
@@ -96,12 +97,14 @@ class ExplicitModes:
 
     def enter_knot(self) -> None:
         """The lines of mouse velocity and load from the knot t on."""
-        later = [u for u in (*self.mouse[0], *self.load[0]) if u > self.t]
+        later = [u for u in (*self.mouse[0], *self.load[0], *self.push[0]) if u > self.t]
         self.t0, self.t1 = self.t, min(later, default=inf)
         self.vp, self.lam = np.interp(self.t, *self.mouse), np.interp(self.t, *self.load)
+        self.pushed = np.interp(self.t, *self.push)
         width = self.t1 - self.t0
         moving = width < inf
         self.w = (np.interp(self.t1, *self.mouse) - self.vp) / width if moving else 0.0
+        self.harder = (before(self.t1, *self.push) - self.pushed) / width if moving else 0.0
         self.rise = (before(self.t1, *self.load) - self.lam) / width if moving else 0.0
 
     def mouse_at(self, t: float) -> float:
@@ -131,7 +134,8 @@ class ExplicitModes:
 
     def free(self, t: float, x: float, v: float) -> float:
         """All but friction."""
-        return float(self.m * self.w - self.b * v - self.k * x)
+        pushed = self.pushed + self.harder * (t - self.t0)
+        return float(self.m * self.w + pushed - self.b * v - self.k * x)
 
     def plate_needed(self, t: float, y: State) -> float:
         v = self.mouse_at(t)

@@ -36,7 +36,7 @@ from pindrive.motion.drive import (
     check_stretch,
     check_times,
 )
-from pindrive.motion.release import Release
+from pindrive.motion.release import INPUTS, Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
@@ -193,7 +193,7 @@ def release_of(values: Mapping[str, Value]) -> Release:
     """The initial state and the inputs that [motion] describes."""
     given = table_of(values, "motion")
     del given["duration"], given["settling_band"]
-    for name in ("mouse_velocity", "plate_load"):
+    for name in INPUTS:
         given[name] = over_time(given[name])
     return Release(**given)
 

@@ -13,7 +13,7 @@ import numpy as np
 from pindrive import _core, lazy
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
-from pindrive.motion.release import core_numbers
+from pindrive.motion.release import INPUTS, core_numbers
 from pindrive.motion.results import (
     Certificate,
     ContactName,
@@ -408,7 +408,7 @@ class Motion(lazy.NotebookHtml):
                 values[f"{name}.curve"] = contact.curve
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
-        for name in ("mouse_velocity", "plate_load"):
+        for name in INPUTS:
             given = getattr(self.release, name)
             values[name] = given.rows if isinstance(given, Profile) else given
         values["displacement"] = self.release.displacement
@@ -426,7 +426,7 @@ class Motion(lazy.NotebookHtml):
         Args:
             parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
-                `plate_load` (all rows of a profile together), `displacement`, `velocity`,
+                `plate_load`, `force` (all rows of a profile together), `displacement`, `velocity`,
                 `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
                 `mouse_velocity[2].value`, `plate_load[2].time`.
 

@@ -19,7 +19,18 @@ from pindrive.quantities.table import QUANTITIES, check, default, refusal
 Rows = Sequence[tuple[float, float]]
 ContactNumbers = tuple[float, float, float, Rows]
 CoreNumbers = tuple[
-    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
+    float,
+    float,
+    float,
+    ContactNumbers,
+    ContactNumbers,
+    Rows,
+    Rows,
+    float,
+    float,
+    float,
+    Rows,
+    float,
 ]
 """In the order of `Numbers` in _core.cpp."""
 PLACES: Final[dict[str, tuple[int, ...]]] = {
@@ -36,6 +47,7 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "displacement": (7,),
     "velocity": (8,),
     "skin_stretch": (9,),
+    "force": (10,),
 }
 """Where each number, or the rows of an input, stands among them."""
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -43,10 +55,13 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
     "finger_curve": (4, 3),
     "mouse_velocity": (5,),
     "plate_load": (6,),
+    "force": (10,),
 }
 """Where all rows of a table stand."""
+INPUTS: Final = ("mouse_velocity", "plate_load", "force")
+"""What a release has over time: a number or a `Profile` each."""
 
-__all__ = ["PLACES", "ROWS", "CoreNumbers", "Release", "Rows", "core_numbers", "entry"]
+__all__ = ["INPUTS", "PLACES", "ROWS", "CoreNumbers", "Release", "Rows", "core_numbers", "entry"]
 
 
 def entry(numbers: Any, place: tuple[int, ...]) -> Any:
@@ -71,6 +86,8 @@ class Release:
         plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
         skin_stretch: stretch of a compliant finger that grips at the start, m, up to 1e12 either
             way; None: the stretch of a finger being slid along or, for a pin at rest, none.
+        force: external force on the pin, N, up to 1e12 either way, positive the way of x; constant
+            or a `Profile`, which may have steps.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -81,6 +98,7 @@ class Release:
     velocity: float | None
     plate_load: float | Profile
     skin_stretch: float | None
+    force: float | Profile
 
     def __init__(
         self,
@@ -89,6 +107,7 @@ class Release:
         velocity: float | str | None = None,
         plate_load: float | str | Profile = default("plate_load"),
         skin_stretch: float | str | None = None,
+        force: float | str | Profile = default("force"),
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -98,6 +117,7 @@ class Release:
         put(self, "plate_load", _input("plate_load", plate_load))
         stretch = None if skin_stretch is None else check("skin_stretch", skin_stretch)
         put(self, "skin_stretch", stretch)
+        put(self, "force", _input("force", force))
 
     @property
     def initial_velocity(self) -> float:
@@ -157,6 +177,7 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         release.displacement,
         release.initial_velocity,
         nan if release.skin_stretch is None else release.skin_stretch,
+        _rows(release.force),
         inf if duration is None else duration,
     )
 

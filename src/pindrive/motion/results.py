@@ -280,6 +280,7 @@ class Ledger:
     skin_end: float
     plate_work: float
     inertia_work: float
+    force_work: float
     damper_dissipated: float
     plate_dissipated: float
     finger_dissipated: float
