@@ -93,7 +93,7 @@ struct pindrive_drive {
 };
 
 struct pindrive_release {
-  pd::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}};
+  pd::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}};
   double displacement{0}, velocity{none}, skin_stretch{none}, duration{infinity};
 };
 
@@ -127,6 +127,7 @@ pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   if (std::strcmp(name, "force") == 0) return &release.force;
+  if (std::strcmp(name, "across_velocity") == 0) return &release.across_velocity;
   return nullptr;
 }
 
@@ -151,7 +152,8 @@ constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
     "finger.stiffness";
 constexpr const char* release_names =
-    "mouse_velocity, plate_load, force, displacement, velocity, skin_stretch, duration";
+    "mouse_velocity, plate_load, force, across_velocity, displacement, velocity, "
+    "skin_stretch, duration";
 
 pindrive_error bad_name(const char* of, const char* name, const char* names) {
   return fail(PINDRIVE_BAD_NAME, "%s has no %.40s, but %s", of, name, names);
@@ -222,6 +224,11 @@ pindrive_error check(const pindrive_drive& drive, const pindrive_release& releas
   if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
   if (!error) error = check_rows("plate_load", release.plate_load, false, true);
   if (!error) error = check_rows("force", release.force, true, true);
+  if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
+  if (!error)
+    error = check("duration", release.duration,
+                  std::isfinite(release.duration) || release.across_velocity.back().second == 0,
+                  "finite where the hand moves across the axis at the end");
   if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
@@ -253,7 +260,8 @@ pindrive_error same_rows(const char* name, const pd::Rows& rows, const pd::Rows&
 pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
   return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
           drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity, release.skin_stretch,   release.force,      release.duration};
+          release.velocity, release.skin_stretch,   release.force,      release.across_velocity,
+          release.duration};
 }
 
 /// What stands for the plate's velocity at the release, with its derivative.
@@ -511,7 +519,8 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!times || !values) return null_pointer("times and values");
   pd::Rows* input = profile(*release, name);
   if (!input)
-    return bad_name("a release", name, "the profiles mouse_velocity, plate_load and force");
+    return bad_name("a release", name,
+                    "the profiles mouse_velocity, plate_load, force and across_velocity");
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
@@ -541,6 +550,7 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
       rate = new pindrive_release{pd::Rows(release->mouse_velocity.size()),
                                   pd::Rows(release->plate_load.size()),
                                   pd::Rows(release->force.size()),
+                                  pd::Rows(release->across_velocity.size()),
                                   0,
                                   0,
                                   0,
@@ -580,6 +590,8 @@ pindrive_error pindrive_differentiate(const pindrive_drive* drive, const pindriv
     error = same_rows("mouse_velocity", release->mouse_velocity, release_rate->mouse_velocity);
   if (!error) error = same_rows("plate_load", release->plate_load, release_rate->plate_load);
   if (!error) error = same_rows("force", release->force, release_rate->force);
+  if (!error)
+    error = same_rows("across_velocity", release->across_velocity, release_rate->across_velocity);
   if (error) return error;
   return guarded([&]() -> pindrive_error {
     auto made = std::make_unique<pindrive_motion>();

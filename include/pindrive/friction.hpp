@@ -8,12 +8,9 @@
 
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
+#include "pindrive/series_oblique.hpp"
 
 namespace pindrive::detail {
-
-/// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
-/// stick at its stick limit, the upper one.
-enum class Bound : signed char { none, lower, upper };
 
 /// The pin at an instant.
 template <class T>
@@ -44,13 +41,14 @@ struct Touch {
   explicit Touch(const Surface& given) : contact(given) {}
 
   const Surface contact;
-  Line<T> surface{}, load{T(1), T(0)};
+  Line<T> surface{}, load{T(1), T(0)}, across{};
   Option does{};
   ContactState before{};       ///< what it did until the last event, …
   Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
   std::array<Option, 3> options{};
   int count{0};
-  T friction{0};  ///< how large its friction is at its sliding speed under a load of 1, N
+  T friction{0};   ///< how large its friction is at its sliding speed under a load of 1, N
+  T direction{0};  ///< of an oblique slip, along the axis: u/√(u² + w²)
 
   static Option slip(T sense, Bound at, int branch = 0) {
     return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
@@ -60,9 +58,10 @@ struct Touch {
   bool sliding() const { return slips(does.state); }
   bool stuck() const { return does.state == ContactState::stick; }
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
+  bool oblique() const { return !Surface::plain && does.state == ContactState::slip_oblique; }
   Branch<T> branch() const { return contact.branch(does.branch); }
   /// Whether nothing but its relative acceleration tells where it goes.
-  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0); }
+  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0) && !oblique(); }
 
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(T v, bool stretched) {
@@ -79,6 +78,8 @@ struct Touch {
     before = does.state;
     count = 1;
     const T u = s.v - surface.value;
+    if constexpr (!Surface::plain)
+      if (asks_across(*this, u)) return;
     if (sliding()) {
       const Branch<T> range = branch();
       const T speed = does.sense * u;
@@ -122,19 +123,21 @@ struct Touch {
 
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const {
-    return elastic() ? -s.skin : -does.sense * friction * load.value;
+    return elastic() ? -s.skin : -(oblique() ? direction : does.sense) * friction * load.value;
   }
   /// … and how fast it changes on a pin of this acceleration, …
   T force_rate(T v, T acceleration) const {
     if (elastic()) return -contact.stiffness * v;
     if (!sliding()) return T(0);
+    if (oblique()) return slides(v, acceleration).force_rate(branch(), load);
     const T slope = branch().slope;
     if (slope == 0) return -does.sense * branch().force * load.rate;
     const T by_speed = -slope * load.value * (acceleration - surface.rate);
     return load.rate == 0 ? by_speed : by_speed - does.sense * friction * load.rate;
   }
   /// … and how fast that changes while the acceleration is constant.
-  T force_bend(T acceleration) const {
+  T force_bend(T v, T acceleration) const {
+    if (oblique()) return slides(v, acceleration).force_bend(branch(), load);
     if (Surface::plain || !sliding() || load.rate == 0) return T(0);
     return -2 * branch().slope * load.rate * (acceleration - surface.rate);
   }
@@ -178,6 +181,10 @@ struct Touch {
   /// relative velocity that is not zero. Without any it stays; but it would not slip.
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (does.at == Bound::none) return true;
+    if (oblique()) {
+      const T faster = slides(s.v, surface.rate + first).closing();
+      return (does.at == Bound::lower ? faster : -faster) >= 0;
+    }
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
       const T inwards = does.sense * (does.at == Bound::lower ? decides : -decides);
@@ -187,6 +194,10 @@ struct Touch {
     if (s.v == 0) return inside * decides >= 0;
     return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
                                        contact.stiffness * inside * decides, s.roundoff);
+  }
+
+  ObliqueSlip<T> slides(T v, T acceleration) const {
+    return {{v - surface.value, acceleration - surface.rate}, across};
   }
 };
 

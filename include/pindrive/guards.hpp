@@ -23,6 +23,14 @@ struct Guard {
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
 
+/// Whether what has come to zero stays there to its roundoff: by what it would fall at the rate that it has
+/// there, and by its value at the end.
+template <class T>
+bool stays_at_bound(T fall, T value, T roundoff) {
+  using std::abs;
+  return fall >= -2 * roundoff && abs(value) <= roundoff;
+}
+
 /// The guards of a mode; at most two of a sliding contact or an elastic stick, and two of a stick force.
 template <class T>
 class Guards {
@@ -42,9 +50,10 @@ class Guards {
     if (path.oscillates() || path.drift < 0 || path.curvature < 0)
       list_[count_++] = {path, bound, plate, side};
   }
-  /// Adds one of which only the zero is needed, s.
-  void add_known(T zero, Bound bound, bool plate, int side) {
+  /// Adds one of which only the zero is needed, s; those of a stick force come first.
+  void add_known(T zero, Bound bound, bool plate, int side, bool stick_force) {
     list_[count_++] = {{}, bound, plate, side, zero};
+    if (stick_force) forces_ = count_;
   }
   /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
   template <class Surface>
@@ -96,27 +105,38 @@ class Guards {
     return limit;
   }
 
-  /// The first zero of a speed after a stick force's; infinite without either.
-  T speed_after_force(T tau) const {
-    T next = std::numeric_limits<T>::infinity();
-    for (int i = forces_; i < count_ && forces_ > 0; ++i)
-      if (list_[i].zero > tau) next = std::min(next, list_[i].zero);
-    return next;
+  /// Of zeros that are known, the earliest, or the limit if none comes before it.
+  T earliest_known(T limit) const {
+    for (const Guard<T>& guard : *this) limit = std::min(limit, guard.zero);
+    return limit;
   }
 
-  /// Whether what comes to zero before τ stays there until then, to rounding.
-  bool stay_until(const Oscillator<T>& oscillator, T tau, T force_roundoff) const {
+  /// The earliest zero, or when it counts: what has come to its bound and stays there to rounding until a
+  /// speed comes to its own after a stick force's, or until the row, does so there: a stick force may turn
+  /// where a speed is zero. stays(guard, τ) says whether one does.
+  template <class Stays>
+  T put_off(T earliest, T row, Stays&& stays) const {
+    T next = row;
+    for (int i = forces_; i < count_ && forces_ > 0; ++i)
+      if (list_[i].zero > earliest) next = std::min(next, list_[i].zero);
+    const bool late =
+        earliest < next && next < std::numeric_limits<T>::infinity() &&
+        std::all_of(
+            begin(), end(),
+            [&](const Guard<T>& guard) { return !(guard.zero < next) || stays(guard, next); });
+    return late ? next : earliest;
+  }
+
+  /// Whether one in closed form stays at its bound from its zero until τ, to rounding.
+  bool stays(const Guard<T>& guard, const Oscillator<T>& oscillator, T tau,
+             T force_roundoff) const {
     using std::abs;
-    return std::all_of(begin(), end(), [&](const Guard<T>& guard) {
-      if (!(guard.zero < tau)) return true;
-      const Path<T>& path = guard.path;
-      const T roundoff = guard.bound == Bound::none
-                             ? force_roundoff
-                             : rounding<T> * (abs(path.start) + abs(path.value));
-      const T rate = path.rates(oscillator, oscillator.after(guard.zero), guard.zero).first;
-      return rate * (tau - guard.zero) >= -2 * roundoff &&
-             abs(path.at(oscillator, tau)) <= roundoff;
-    });
+    const Path<T>& path = guard.path;
+    const T roundoff = guard.bound == Bound::none
+                           ? force_roundoff
+                           : rounding<T> * (abs(path.start) + abs(path.value));
+    const T rate = path.rates(oscillator, oscillator.after(guard.zero), guard.zero).first;
+    return stays_at_bound(rate * (tau - guard.zero), path.at(oscillator, tau), roundoff);
   }
 
  private:

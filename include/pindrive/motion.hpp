@@ -63,7 +63,8 @@ class Motion {
   /// that returns.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
-    if (drive_.plate.branches == 0 || inputs_.plate_load.constant() ||
+    const bool bilinear = drive_.plate.branches > 0 && !inputs_.plate_load.constant();
+    if (!(bilinear || segment.mode.plate == ContactState::slip_oblique) ||
         !(segment.end > segment.begin))
       return visit(ClosedForm<T>(segment));
     const auto lines = InputLines<T>::of(inputs_, segment);

@@ -39,6 +39,13 @@ struct Polynomial {
     for (int n = degree; n-- > 0;) sum = sum * s + c[n];
     return sum;
   }
+  /// A bound of it over the step.
+  T size() const {
+    using std::abs;
+    T sum{0};
+    for (int n = 0; n <= degree; ++n) sum += abs(c[n]);
+    return sum;
+  }
   /// Its rate, per second.
   Polynomial derivative() const {
     Polynomial rate;

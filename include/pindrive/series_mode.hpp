@@ -28,10 +28,17 @@ struct InputLines {
   }
   /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
   static InputLines of(const Inputs<T>& inputs, const Segment<T>& segment) {
-    return {segment.plate_velocity,
-            inputs.plate_load.from(segment.begin),
-            {},
-            inputs.force.from(segment.begin)};
+    return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
+            across_from(inputs.across_velocity, segment.begin), inputs.force.from(segment.begin)};
+  }
+  /// A velocity across from a time on; where it comes to zero within some roundings of that, it is zero: the
+  /// nearer to it, the shorter are the steps of a pin that comes to rest on the plate at once.
+  template <class Input>
+  static Line<T> across_from(const Input& across_velocity, T time) {
+    using std::abs;
+    Line<T> line = across_velocity.from(time);
+    if (abs(line.value) <= 64 * detail::rounding<T> * time * abs(line.rate)) line.value = T(0);
+    return line;
   }
 };
 
@@ -127,16 +134,9 @@ class SeriesMode {
     std::array<Guard, 6> list_;
     int count_{0};
   };
+  /// Those of a stick force come first.
   Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
     Guards found;
-    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
-    if (slips(mode_.finger))
-      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
-              at.finger, false, false);
-    if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
-      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
-    }
     if (mode_.stuck()) {
       Line<T> most{T(0), T(0)};
       if (mode_.plate == ContactState::stick)
@@ -144,6 +144,14 @@ class SeriesMode {
                 drive_.plate.static_limit * inputs_.plate_load.rate};
       if (mode_.finger == ContactState::stick) most.value += drive_.finger.static_limit;
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
+    }
+    if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
+    if (slips(mode_.finger))
+      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
+              at.finger, false, false);
+    if (mode_.finger == ContactState::elastic_stick) {
+      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
+      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
     }
     return found;
   }

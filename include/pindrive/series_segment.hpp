@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
@@ -19,26 +20,39 @@ class SeriesSegment {
   bool used() const { return used_; }
 
   /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
-  /// whether it has none. Its flow says where it begins. `at_limit` is the side on which a stick force is at
-  /// its limit, `span` the time until the next row, s. Its guards come with their zeros.
+  /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
+  /// `at_limit` is the side on which a stick force is at its limit, `span` the time until the next row or the
+  /// end, s. Its guards come with their zeros.
   template <class Side>
   bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Inputs<T>& inputs,
              const Side& plate, const Side& finger, const State<T>& state, T acceleration,
              int at_limit, T span) {
     const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
+    segment.creeps = false;
     used_ = !mode.has_closed_form();
     if (!used_) return false;
-    step_ = SeriesFlow<T>(mode.equation(), {state.x, state.v, state.skin, acceleration}, span);
+    const SeriesEquation<T> equation = mode.equation();
+    const SeriesState<T> start{state.x, state.v, state.skin, acceleration};
+    step_ = series_step(equation, start, span);
+    segment.creeps = step_.creeps;
+    const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit});
     guards.clear();
-    first_ = step_.span();
-    for (const auto& guard : mode.guards(step_, {plate.does.at, finger.does.at, at_limit})) {
-      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side);
-      first_ = std::min(first_, guard.zero);
-    }
+    for (const auto& guard : paths)
+      guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
+                       segment.mode.stuck() && &guard - paths.begin() < 2);
+    const T row = step_.span() < span ? never : span;
+    first_ = guards.earliest_known(step_.span());
+    first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
+      const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
+      const T roundoff = guard.bound == Bound::none ? state.roundoff : rounding<T> * path.size();
+      const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
+      return stays_at_bound(fall, path.at(tau), roundoff);
+    });
     const T stick = step_.stick_force.c[0];
     const T of_plate = plate.stuck() ? stick : plate.force(state);
     const T of_finger = !finger.stuck() ? finger.force(state) : plate.stuck() ? T(0) : stick;
-    segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0)}};
+    const T rate = equation.held ? equation.surface.rate : acceleration;
+    segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
     return true;
@@ -47,7 +61,7 @@ class SeriesSegment {
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
   /// of a time happens there.
   T earliest(T since, T row) const {
-    return row - first_ <= rounding<T> * (since + row) ? row : first_;
+    return row < never && row - first_ <= rounding<T> * (since + row) ? row : first_;
   }
 
   /// Brings the state on by τ, unless the mode has a closed form.
@@ -62,10 +76,37 @@ class SeriesSegment {
   }
 
  private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
   bool used_{false};
   SeriesStep<T> step_;
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
+
+/// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
+template <class T, class Side>
+T set_out_across(T mass, const Side& plate, T pull) {
+  using std::hypot;
+  const T rest = pull - mass * plate.surface.rate;
+  const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
+  return p / hypot(p, plate.across.rate);
+}
+
+/// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
+/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
+template <class T, class Side>
+void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
+  using std::abs;
+  if (!plate.oblique() || plate.across.value != 0) return;
+  const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
+  const T crept = 100 * abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
+                  4 * rounding<T> * time * changes;
+  if (abs(state.v - plate.surface.value) > crept) return;
+  if (on_finger)
+    plate.surface.value = state.v;
+  else
+    state.v = plate.surface.value;
+}
 
 /// Contacts without friction curves have closed forms only.
 struct NoSeries {

@@ -142,7 +142,7 @@ class Simulation {
       drift -= force_.rate;
       size += abs(force_.rate);
     }
-    return {force, T(0), T(0), drift, stiffness * a - other.force_bend(a)};
+    return {force, T(0), T(0), drift, stiffness * a - other.force_bend(state_.v, a)};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -181,7 +181,11 @@ class Simulation {
     using std::abs;
     tangential_ = false;
     guards_.clear();
-    const T plate = plate_.force(state_), finger = finger_.force(state_);
+    const T finger = finger_.force(state_);
+    if constexpr (!Surface::plain)
+      if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
+        plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
+    const T plate = plate_.force(state_);
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
@@ -195,6 +199,7 @@ class Simulation {
     };
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
+      if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
       if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
@@ -261,8 +266,7 @@ class Simulation {
            (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
   }
 
-  /// The time to the earliest event. What happens at the row of an input to rounding happens there; so does
-  /// what a stick force does where a speed comes to a bound: the force may turn there, as the speed is zero.
+  /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_;
     if constexpr (!Surface::plain)
@@ -270,8 +274,9 @@ class Simulation {
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     T end = guards_.earliest(flow.oscillator, time_, limit);
-    const T next = std::min(guards_.speed_after_force(end), limit == row ? row : never);
-    if (next < never && guards_.stay_until(flow.oscillator, next, state_.roundoff)) end = next;
+    end = guards_.put_off(end, limit == row ? row : never, [&](const Guard<T>& guard, T tau) {
+      return guards_.stays(guard, flow.oscillator, tau, state_.roundoff);
+    });
     return row < never && row - end <= rounding<T> * (time_ + row) ? row : end;
   }
 
@@ -294,10 +299,8 @@ class Simulation {
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
-    plate_.surface.value = plate_.surface.at(tau);
-    plate_.load.value = plate_.load.at(tau);
-    if constexpr (!Surface::plain) force_.value = force_.at(tau);
-    if (row) look_ahead();
+    const T across = plate_.across.at(tau);
+    look_ahead();
     segment.end = time_;
     limit_ = 0;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
@@ -306,6 +309,7 @@ class Simulation {
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
+        if (side.oblique()) continue;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
         state_.v = side.surface.value + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
@@ -318,9 +322,12 @@ class Simulation {
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+    if constexpr (!Surface::plain)
+      land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
   }
 
-  /// Takes the inputs from here on. Rows that differ by the rounding of a time are one: the last of them.
+  /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
+  /// Rows that differ by the rounding of a time are one: the last of them.
   void look_ahead() {
     for (;; time_ = row_) {
       plate_.surface = inputs_.mouse_velocity.from(time_);
@@ -328,7 +335,9 @@ class Simulation {
       row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
       if constexpr (!Surface::plain) {
         force_ = inputs_.force.from(time_);
-        row_ = std::min(row_, inputs_.force.next_row(time_));
+        plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_);
+        row_ = std::min(
+            {row_, inputs_.force.next_row(time_), inputs_.across_velocity.next_row(time_)});
       }
       if (row_ - time_ > rounding<T> * time_) return;
     }

@@ -110,6 +110,7 @@ class BySeries {
   Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
   const Polynomial<T>& plate_force() const { return plate_force_; }
   const Polynomial<T>& finger_force() const { return finger_force_; }
+  const Polynomial<T>& sliding_speed() const { return step_.speed; }  ///< on the plate, across too
   Polynomial<T> line(const Line<T>& line) const {
     Polynomial<T> p;
     p.span = step_.span();
@@ -136,12 +137,7 @@ class BySeries {
   bool constant(const Polynomial<T>& p) const {
     return std::all_of(p.c.begin() + 1, p.c.end(), [](T c) { return c == 0; });
   }
-  T terms(const Polynomial<T>& p, T) const {
-    using std::abs;
-    T sum{0};
-    for (const T c : p.c) sum += abs(c);
-    return sum;
-  }
+  T terms(const Polynomial<T>& p, T) const { return p.size(); }
   T hurry_squared() const { return T(1) / (step_.span() * step_.span()); }
 
   int side_after_start(const Polynomial<T>& p) const {
@@ -161,9 +157,13 @@ class BySeries {
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
                               const InputLines<T>& lines) {
     const SeriesMode<T> mode(drive, segment.mode, lines);
-    const SeriesState<T> start{segment.flow.position.start, segment.flow.velocity.start,
-                               -segment.finger_force.start};
-    return SeriesFlow<T>(mode.equation(), start, segment.end - segment.begin, true);
+    const Path<T>& v = segment.flow.velocity;
+    const SeriesState<T> start{segment.flow.position.start, v.start, -segment.finger_force.start,
+                               v.drift};
+    const T span = segment.end - segment.begin;
+    if (segment.creeps)
+      if (const CreepFlow<T> creep(mode.equation(), start, span); creep.holds()) return creep;
+    return SeriesFlow<T>(mode.equation(), start, span, true);
   }
   /// Of a rigid finger, or skin, that slips.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode) const {

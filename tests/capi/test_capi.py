@@ -104,6 +104,7 @@ class Case:
             "mouse_velocity": [(0.0, 0.10)],
             "plate_load": [(0.0, 1.0)],
             "force": [(0.0, 0.0)],
+            "across_velocity": [(0.0, 0.0)],
         }
     )
 
@@ -120,6 +121,7 @@ class Case:
             *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
+            self.inputs["across_velocity"],
             n["duration"],
         )
 
@@ -159,6 +161,9 @@ def drawn(random: np.random.Generator) -> Case:
     if kind == 3 or (kind == 2 and random.integers(2)):
         case.inputs["plate_load"] = [(t, between(0, 2)) for t in times]
         case.inputs["force"] = [(t, between(-0.1, 0.1)) for t in [*times, times[-1]]]
+        if random.integers(2):
+            n["duration"] = between(0.05, 0.3)
+            case.inputs["across_velocity"] = [(t, between(-0.1, 0.1)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)

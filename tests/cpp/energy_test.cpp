@@ -2,6 +2,7 @@
 #include "pindrive/energy.hpp"
 
 #include "check.hpp"
+#include "pindrive/certify.hpp"
 
 namespace pd = pindrive;
 using check::expect;
@@ -38,5 +39,21 @@ int main() {
   const pd::Motion<double> other(drive, inputs, &wrong, 1, outcome);
   const auto open = pd::energy_ledger(other, half);
   expect(std::abs(open.residual()) > 1e-3 * open.scale(), "... and not for a wrong motion");
+
+  // A free pin that the housing takes along from rest for one whole wave: all that goes in comes out again.
+  const pd::Drive<double> free{0.01, 100, 0, {}, {}};
+  const double rate = 1e-5, wave = 2 * o.half_period() * o.omega() / 100;
+  const double rows[2] = {0, wave}, speeds[2] = {0, rate * wave};
+  const pd::Inputs<double> hand{pd::Profile<double>(rows, speeds, 2), 0, 0};
+  segment.flow = pd::Flow<double>::free({0.01, 0, 100}, 0.0, 0.0, rate, -rate / 1e4, 0.0);
+  segment.plate_velocity = {0, rate};
+  const pd::Motion<double> there_and_back(free, hand, &segment, 1, outcome);
+  const auto idle = pd::energy_ledger(there_and_back, wave);
+  const double on_the_way = 100 * (2e-9 * 2e-9) / 2;  // in the spring, where it turns
+  expect(idle.scale() > on_the_way && idle.scale() < 10 * on_the_way,
+         "what is held on the way counts");
+  expect(std::abs(idle.residual()) <= 1e-14 * idle.scale(), "... and what is left is its rounding");
+  const auto certificate = pd::Certifier<double>(there_and_back, wave).certify();
+  expect(certificate.energy <= 1e-14, "... for the certificate too");
   return check::status();
 }

@@ -64,8 +64,30 @@ void limits() {
   expect(count_of(guards) == 1, "what only grows is no guard");
   expect(guards.earliest(o, 0.0, 0.4) == 0.4, "a row of an input before it comes first");
   expect(near(guards.earliest(o, 0.0, never), 0.5, 1e-15), "a line comes to zero");
-  expect(!guards.stay_until(o, 0.6, 1e-12) && guards.stay_until(o, 0.5 + 1e-14, 1e-12),
-         "it stays at zero as long as its fall is rounding");
+  const auto put_off = [&](double row) {
+    return guards.put_off(0.5, row, [&](const auto& guard, double tau) {
+      return guards.stays(guard, o, tau, 1e-12);
+    });
+  };
+  expect(put_off(0.6) == 0.5, "what falls on comes to zero where it does");
+  expect(put_off(0.5 + 1e-14) == 0.5 + 1e-14, "what falls by rounding until a row does so there");
+  expect(put_off(never) == 0.5, "without a row there is nothing to wait for");
+}
+
+void known() {
+  Guards guards;
+  guards.add_known(0.5, Bound::none, true, 1, true);
+  guards.add_known(0.8, Bound::lower, false, 0, false);
+  expect(guards.earliest_known(0.4) == 0.4 && guards.earliest_known(never) == 0.5,
+         "the earliest of known zeros, up to a limit");
+  const auto put_off = [&](bool stays) {
+    return guards.put_off(0.5, never, [&](const auto& guard, double tau) {
+      expect(guard.zero == 0.5 && tau == 0.8, "it is asked of what came to zero alone");
+      return stays;
+    });
+  };
+  expect(put_off(true) == 0.8 && put_off(false) == 0.5,
+         "a stick force that stays at its limit waits for the next speed that comes to zero");
 }
 
 }  // namespace
@@ -73,5 +95,6 @@ void limits() {
 int main() {
   nearest_surface();
   limits();
+  known();
   return check::status();
 }

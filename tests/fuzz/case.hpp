@@ -25,7 +25,8 @@ struct Case {
   std::array<double, 2> limit{};  ///< static friction of plate and finger
   std::array<Rows, 2> curve;      ///< kinetic friction over speed; one row is Coulomb
   double skin{never};             ///< stiffness of the finger
-  Rows mouse_velocity, plate_load, force{{0}, {0}};  ///< over time; one row is a constant
+  Rows mouse_velocity, plate_load, force{{0}, {0}},
+      across{{0}, {0}};  ///< over time; one row is a constant
   double displacement{}, velocity{}, duration{};
 };
 
@@ -45,6 +46,7 @@ inline void write(std::ostream& out, const Case& c) {
   rows("plate_load", c.plate_load);
   out << "start " << c.displacement << ' ' << c.velocity << ' ' << c.duration << '\n';
   if (c.force.at.size() > 1 || c.force.value[0] != 0) rows("force", c.force);
+  if (c.across.at.size() > 1 || c.across.value[0] != 0) rows("across", c.across);
 }
 
 /// False if the text is no such drive.
@@ -66,7 +68,8 @@ inline bool read(std::istream& in, Case& c) {
   rows(c.plate_load);
   in >> name >> c.displacement >> c.velocity >> c.duration;
   if (!in) return false;
-  while (in >> std::ws && in.peek() == 'f') rows(c.force);
+  for (int next; in >> std::ws && ((next = in.peek()) == 'f' || next == 'a');)
+    rows(next == 'f' ? c.force : c.across);
   in.clear();
   return true;
 }

@@ -52,7 +52,8 @@ struct Given {
                c.duration,
                profile(c.plate_load),
                std::numeric_limits<double>::quiet_NaN(),
-               profile(c.force)} {}
+               profile(c.force),
+               profile(c.across)} {}
   Given(const Given&) = delete;
   Given& operator=(const Given&) = delete;
 

@@ -85,6 +85,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
     values["motion.mouse_velocity"] = release.mouse_velocity
     values["motion.plate_load"] = release.plate_load
     values["motion.force"] = release.force
+    values["motion.across_velocity"] = release.across_velocity
     values["motion.skin_stretch"] = release.skin_stretch
     before = device.values()
     changed = {}

@@ -226,9 +226,11 @@ def _constants(
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))
-    if release.force != 0.0:
-        given = "a Profile" if isinstance(release.force, Profile) else f"{release.force!r} N"
-        raise ValueError(refusal("force", "0 N; `simulate` follows one", given))
+    for name in ("force", "across_velocity"):
+        value, unit = getattr(release, name), QUANTITIES[name].unit
+        if value != 0.0:
+            given = "a Profile" if isinstance(value, Profile) else f"{value!r} {unit}"
+            raise ValueError(refusal(name, f"0 {unit}; `simulate` follows one", given))
     has = {
         "mass": drive.mass,
         "stiffness": drive.stiffness,

@@ -173,14 +173,14 @@ def check_times(
             raise ValueError(refusal(named(i), required, given, where))
 
 
-def check_continuous(velocity: Profile) -> None:
-    """Refuse a mouse velocity with a step: it would take an infinite force."""
+def check_continuous(name: str, velocity: Profile) -> None:
+    """Refuse a velocity of the hand with a step: it would take an infinite force."""
     for t in velocity.steps:
         i = bisect_right(velocity.times, t)
         y, z = velocity.values[i - 2 : i]
         required = "without a step (a jump would take an infinite force)"
         given = f"one from {y!r} m/s to {z!r} m/s at {t!r} s"
-        raise ValueError(refusal("mouse_velocity", required, given))
+        raise ValueError(refusal(name, required, given))
 
 
 def check_skin(finger: Contact) -> None:

@@ -426,8 +426,8 @@ class Motion(lazy.NotebookHtml):
         Args:
             parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
-                `plate_load`, `force` (all rows of a profile together), `displacement`, `velocity`,
-                `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
+                `plate_load`, `force`, `across_velocity` (all rows of a profile together), `displacement`,
+                `velocity`, `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
                 `mouse_velocity[2].value`, `plate_load[2].time`.
 
         Returns:

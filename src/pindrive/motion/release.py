@@ -30,6 +30,7 @@ CoreNumbers = tuple[
     float,
     float,
     Rows,
+    Rows,
     float,
 ]
 """In the order of `Numbers` in _core.cpp."""
@@ -48,6 +49,7 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "velocity": (8,),
     "skin_stretch": (9,),
     "force": (10,),
+    "across_velocity": (11,),
 }
 """Where each number, or the rows of an input, stands among them."""
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -56,12 +58,26 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
     "mouse_velocity": (5,),
     "plate_load": (6,),
     "force": (10,),
+    "across_velocity": (11,),
 }
 """Where all rows of a table stand."""
-INPUTS: Final = ("mouse_velocity", "plate_load", "force")
+INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity")
 """What a release has over time: a number or a `Profile` each."""
 
-__all__ = ["INPUTS", "PLACES", "ROWS", "CoreNumbers", "Release", "Rows", "core_numbers", "entry"]
+CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
+"""Those of them that may not have steps."""
+
+__all__ = [
+    "CONTINUOUS",
+    "INPUTS",
+    "PLACES",
+    "ROWS",
+    "CoreNumbers",
+    "Release",
+    "Rows",
+    "core_numbers",
+    "entry",
+]
 
 
 def entry(numbers: Any, place: tuple[int, ...]) -> Any:
@@ -88,6 +104,10 @@ class Release:
             way; None: the stretch of a finger being slid along or, for a pin at rest, none.
         force: external force on the pin, N, up to 1e12 either way, positive the way of x; constant
             or a `Profile`, which may have steps.
+        across_velocity: w, the velocity of the plate across the axis of the pin, m/s, up to 1e12
+            either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
+            its friction opposes the whole sliding velocity. With one that lasts `simulate` needs a
+            duration.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -99,6 +119,7 @@ class Release:
     plate_load: float | Profile
     skin_stretch: float | None
     force: float | Profile
+    across_velocity: float | Profile
 
     def __init__(
         self,
@@ -108,6 +129,7 @@ class Release:
         plate_load: float | str | Profile = default("plate_load"),
         skin_stretch: float | str | None = None,
         force: float | str | Profile = default("force"),
+        across_velocity: float | str | Profile = default("across_velocity"),
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -118,6 +140,7 @@ class Release:
         stretch = None if skin_stretch is None else check("skin_stretch", skin_stretch)
         put(self, "skin_stretch", stretch)
         put(self, "force", _input("force", force))
+        put(self, "across_velocity", _input("across_velocity", across_velocity))
 
     @property
     def initial_velocity(self) -> float:
@@ -137,8 +160,8 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
     if given.unit and given.unit != quantity.unit:
         other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
         raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
-    if name == "mouse_velocity":
-        check_continuous(given)
+    if name in CONTINUOUS:
+        check_continuous(name, given)
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
@@ -163,6 +186,12 @@ def check_fits(drive: Drive, release: Release) -> None:
         check_stretch(release.skin_stretch, drive.finger)
 
 
+def oblique_at_last(release: Release) -> bool:
+    """Whether the hand moves across the axis at the end: then no ending is found."""
+    across = release.across_velocity
+    return (across.values[-1] if isinstance(across, Profile) else across) != 0.0
+
+
 def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:
     """A drive, a release and a duration (s; None: until the ending is seen) as the core has it."""
     plate, finger = drive.plate, drive.finger
@@ -178,6 +207,7 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         release.initial_velocity,
         nan if release.skin_stretch is None else release.skin_stretch,
         _rows(release.force),
+        _rows(release.across_velocity),
         inf if duration is None else duration,
     )
 
