@@ -142,13 +142,14 @@ def main(count: int, seed: int, *, curved: bool) -> None:
 
 
 def main_sundials(count: int, seed: int, *, curved: bool) -> None:
-    """Where SUNDIALS steps over two zeros of a guard, SciPy's DOP853 is asked with the same modes."""
-    from oracle.scan_cycles import distance
+    """Where SUNDIALS steps over two zeros, SciPy's DOP853 is asked with the same modes."""
+    from oracle.scan_cycles import Distance, distance
     from oracle.watched_dop853 import dop853
 
     drawn = (RandomScan.of(s, curved=curved).scan() for s in range(seed, seed + count))
     pins = [pin for pin in drawn if short(pin)]
-    found, others = [], []
+    found: list[Distance] = []
+    others: list[Distance] = []
     for pin in pins:
         first = distance(pin)
         apart = not first.events or first.time > 1e-6

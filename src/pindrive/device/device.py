@@ -61,8 +61,9 @@ class Device:
     def excursion(self, speed: float) -> float:
         """How far a pin can come from its rest at most, either way, m.
 
-        Carried to where the plate's friction ends against the spring, static or at the speeds at which
-        it pulls outwards, it has the plate's velocity left. A hand that speeds up by a adds m a / k.
+        Carried to where the plate's friction ends against the spring, static or at the speeds at
+        which it pulls outwards, it has the plate's velocity left. A hand that speeds up by a adds
+        m a / k.
 
         Args:
             speed: of the hand at most, m/s.

@@ -127,7 +127,7 @@ class HandPath:
         return Profile((self.times - self.times[0]).tolist(), along.tolist())
 
     def across_velocity(self, axis: float = default("axis")) -> Profile | float:
-        """The velocity at which the plate passes across the drive axis, over the time since `begin`.
+        """The velocity of the plate across the drive axis, over the time since `begin`.
 
         Args:
             axis: direction of the drive axis on the page, rad.

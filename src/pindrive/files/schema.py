@@ -36,7 +36,7 @@ from pindrive.motion.drive import (
     check_stretch,
     check_times,
 )
-from pindrive.motion.release import INPUTS, Release
+from pindrive.motion.release import CONTINUOUS, INPUTS, Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
@@ -153,7 +153,7 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
         check_increasing(firsts, across.unit, where=place, label=label)
         check_slopes(rows, "curve.slope", where=place, label=key)
     else:
-        no_step = " (a jump would take an infinite force)" if key in _CONTINUOUS else ""
+        no_step = " (a jump would take an infinite force)" if quantity.name in CONTINUOUS else ""
         check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
         check_slopes(rows, "profile.rate", where=place, label=key)
     return tuple(rows)

@@ -415,10 +415,12 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
     if str not in set(map(type, values)):
         return "", values
     over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
-    for unit in [quantity.unit for quantity in over_time]:
+    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # of each unit
+    units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
+    for unit in units:
         with suppress(UnitError):
             return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
-    usual = " or all like ".join(quoted(quantity.usual) for quantity in over_time)
+    usual = " or all like ".join(quoted(quantity.usual) for quantity in map(first.__getitem__, units))
     texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
     raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
 

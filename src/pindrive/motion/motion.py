@@ -426,9 +426,9 @@ class Motion(lazy.NotebookHtml):
         Args:
             parameters: of `mass`, `stiffness`, `damping`; `plate_kinetic`, `plate_static`,
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; `mouse_velocity`,
-                `plate_load`, `force`, `across_velocity` (all rows of a profile together), `displacement`,
-                `velocity`, `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
-                `mouse_velocity[2].value`, `plate_load[2].time`.
+                `plate_load`, `force`, `across_velocity` (all rows of a profile together),
+                `displacement`, `velocity`, `skin_stretch`; or one row: `plate_curve[1].force`,
+                `plate_curve[1].speed`, `mouse_velocity[2].value`, `plate_load[2].time`.
 
         Returns:
             The derivatives of position, velocity, events and all numbers, with NaN and the reason
