@@ -420,7 +420,7 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
     for unit in units:
         with suppress(UnitError):
             return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
-    usual = " or all like ".join(quoted(quantity.usual) for quantity in map(first.__getitem__, units))
+    usual = " or all like ".join(quoted(first[unit].usual) for unit in units)
     texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
     raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
 
