@@ -29,8 +29,9 @@ class CreepFlow : public SeriesStep<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound;
 
-  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero.
-  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero; or as
+  /// far, where that is known to be within a step.
+  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     using std::abs;
     this->creeps = true;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
@@ -49,12 +50,13 @@ class CreepFlow : public SeriesStep<T> {
       if (round > 1 && abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off))) return;
       before = v;
       expand(e, start, step);
-      const Real part = std::min(this->suggested_part(), farthest / step);
+      const Real left = farthest / step;
+      const Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
       converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
       if (!converged) continue;  // the derivatives of a dual number converge one round later
       this->rescale(part);
-      holds_ = bound(e, plain(e.mass) * change(part)) && starts_from(start);
+      holds_ = within_step || (bound(e, plain(e.mass) * change(part)) && starts_from(start));
       break;
     }
     if (holds_) this->trim();

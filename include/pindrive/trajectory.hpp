@@ -162,7 +162,9 @@ class BySeries {
                                v.drift};
     const T span = segment.end - segment.begin;
     if (segment.creeps)
-      if (const CreepFlow<T> creep(mode.equation(), start, span); creep.holds()) return creep;
+      for (const bool within_step : {true, false})
+        if (const CreepFlow<T> creep(mode.equation(), start, span, within_step); creep.holds())
+          return creep;
     return SeriesFlow<T>(mode.equation(), start, span, true);
   }
   /// Of a rigid finger, or skin, that slips.
