@@ -26,7 +26,9 @@ struct Numbers {
   double mass, stiffness, damping;
   ContactNumbers plate, finger;
   Rows mouse_velocity, plate_load;
-  double displacement, velocity, skin_stretch, duration;
+  double displacement, velocity, skin_stretch;
+  Rows force, across_velocity;
+  double duration;
 };
 
 /// A number of the core from its value and its derivative along a direction.
@@ -87,6 +89,8 @@ class OwnedMotion {
         finger_(at.finger, along.finger),
         mouse_velocity_(at.mouse_velocity, along.mouse_velocity),
         plate_load_(at.plate_load, along.plate_load),
+        force_(at.force, along.force),
+        across_velocity_(at.across_velocity, along.across_velocity),
         drive_{number<T>(at.mass, along.mass), number<T>(at.stiffness, along.stiffness),
                number<T>(at.damping, along.damping), plate_.contact, finger_.contact},
         inputs_{mouse_velocity_.profile(),
@@ -94,7 +98,9 @@ class OwnedMotion {
                 number<T>(at.velocity, along.velocity),
                 number<T>(at.duration, along.duration),
                 plate_load_.profile(),
-                number<T>(at.skin_stretch, along.skin_stretch)},
+                number<T>(at.skin_stretch, along.skin_stretch),
+                force_.profile(),
+                across_velocity_.profile()},
         outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
           segments_.push_back(segment);
           return go_on();
@@ -109,7 +115,7 @@ class OwnedMotion {
 
  private:
   OwnedContact<T> plate_, finger_;
-  OwnedRows<T> mouse_velocity_, plate_load_;
+  OwnedRows<T> mouse_velocity_, plate_load_, force_, across_velocity_;
   Drive<T> drive_;
   Inputs<T> inputs_;
   std::vector<Segment<T>> segments_;

@@ -85,6 +85,8 @@ namespace {
 pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "mouse_velocity") == 0) return &release.mouse_velocity;
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
+  if (std::strcmp(name, "force") == 0) return &release.force;
+  if (std::strcmp(name, "across_velocity") == 0) return &release.across_velocity;
   return nullptr;
 }
 
@@ -125,10 +127,13 @@ pindrive_error pindrive_c::check(const char* name, double value, bool good, cons
 
 namespace {
 
-pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative) {
+/// Two rows at one time are a step, where there may be one.
+pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative, bool steps) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto [first, second] = rows[i];
-    if (!std::isfinite(first) || (i > 0 && !(first > rows[i - 1].first)))
+    const bool steps_here =
+        steps && i > 0 && first == rows[i - 1].first && !(i > 1 && first == rows[i - 2].first);
+    if (!std::isfinite(first) || (i > 0 && !(first > rows[i - 1].first) && !steps_here))
       return fail(PINDRIVE_BAD_VALUE, "row %zu of %s must come after the one before, not at %.17g",
                   i, name, first);
     if (!std::isfinite(second) || (!negative && second < 0))
@@ -155,7 +160,7 @@ pindrive_error check_contact(const char* name, const pd::ContactNumbers& contact
   if (!error && !contact.curve.empty()) {
     error = check(named("curve"), contact.curve[0].first, contact.curve[0].first == 0,
                   "a curve from speed 0 on");
-    if (!error) error = check_rows(of, contact.curve, false);
+    if (!error) error = check_rows(of, contact.curve, false, false);
     if (!error)
       error = check(named("kinetic"), kinetic, kinetic == contact.curve[0].second,
                     "the first force of its curve");
@@ -178,8 +183,14 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
                   "at least 0 and finite");
   if (!error) error = check_contact("plate", drive.plate);
   if (!error) error = check_contact("finger", drive.finger);
-  if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true);
-  if (!error) error = check_rows("plate_load", release.plate_load, false);
+  if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
+  if (!error) error = check_rows("plate_load", release.plate_load, false, true);
+  if (!error) error = check_rows("force", release.force, true, true);
+  if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
+  if (!error)
+    error = check("duration", release.duration,
+                  std::isfinite(release.duration) || release.across_velocity.back().second == 0,
+                  "finite where the hand moves across the axis at the end");
   if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
@@ -220,13 +231,17 @@ pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindri
   if (!error)
     error = same_rows("mouse_velocity", release.mouse_velocity, release_rate.mouse_velocity);
   if (!error) error = same_rows("plate_load", release.plate_load, release_rate.plate_load);
+  if (!error) error = same_rows("force", release.force, release_rate.force);
+  if (!error)
+    error = same_rows("across_velocity", release.across_velocity, release_rate.across_velocity);
   return error;
 }
 
 pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
   return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
           drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity, release.skin_stretch,   release.duration};
+          release.velocity, release.skin_stretch,   release.force,      release.across_velocity,
+          release.duration};
 }
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
@@ -413,7 +428,9 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!name) return null_pointer("name");
   if (!times || !values) return null_pointer("times and values");
   pd::Rows* input = profile(*release, name);
-  if (!input) return bad_name("a release", name, "the profiles mouse_velocity and plate_load");
+  if (!input)
+    return bad_name("a release", name,
+                    "the profiles mouse_velocity, plate_load, force and across_velocity");
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
@@ -442,6 +459,8 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
     guarded([&]() -> pindrive_error {
       rate = new pindrive_release{pd::Rows(release->mouse_velocity.size()),
                                   pd::Rows(release->plate_load.size()),
+                                  pd::Rows(release->force.size()),
+                                  pd::Rows(release->across_velocity.size()),
                                   0,
                                   0,
                                   0,

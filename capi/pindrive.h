@@ -108,6 +108,9 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
 /* Sets a number of a release. Names, units, ranges:
  *   mouse_velocity  m/s  constant velocity of the plate under the mouse
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
+ *   force           N    constant external force on the pin, the way of x; 0 at first
+ *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first. With one that
+ *                        lasts, the duration must be finite
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
@@ -115,8 +118,9 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 
-/* Gives a release "mouse_velocity" or "plate_load" over time: values[i] at times[i] (s, increasing,
- * count >= 1), linear between, constant outside. */
+/* Gives a release "mouse_velocity", "plate_load", "force" or "across_velocity" over time: values[i] at times[i] (s, increasing,
+ * count >= 1), linear between, constant outside. Two rows of a load or a force at one time are a step:
+ * from that time on the later one holds. */
 PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
                                                          const char *name, const double *times,
                                                          const double *values, size_t count);

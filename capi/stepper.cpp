@@ -116,6 +116,11 @@ pindrive_error check_start(const pindrive_release& release, double begin) {
       return fail(PINDRIVE_UNSUPPORTED,
                   "%s of a stepper must have one value, not %zu rows; set it on the way", name,
                   rows->size());
+  for (const auto& [name, rows] :
+       {std::pair<const char*, const pd::Rows*>{"force", &release.force},
+        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity}})
+    if (rows->size() > 1 || rows->front().second != 0)
+      return fail(PINDRIVE_UNSUPPORTED, "%s of a stepper must be 0", name);
   return check("begin", begin, std::isfinite(begin), "finite");
 }
 
@@ -393,8 +398,8 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
                 PINDRIVE_SKIN_STRETCH_RATE, quantity);
   *value = stepper->ask([&](const auto& of) {
     const auto tau = of.tau();
-    const auto friction = [&] { return pd::friction_in(of.drive(), of.segment(), of.load(), tau); };
-    return pd::visit_trajectory(of.drive(), of.segment(), of.load(), [&](const auto& along) {
+    const auto friction = [&] { return pd::friction_in(of.drive(), of.segment(), of.lines(), tau); };
+    return pd::visit_trajectory(of.drive(), of.segment(), of.lines(), [&](const auto& along) {
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });
   });

@@ -2,6 +2,7 @@
 
 python -m random_scans COUNT SEED            the worst of so many, from that seed on
 python -m random_scans COUNT SEED sundials   the same against SUNDIALS, of those it can follow
+python -m random_scans COUNT SEED [sundials] curved   with a friction curve at the plate
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class RandomScan:
     """A time within the path, s."""
 
     @classmethod
-    def of(cls, seed: int) -> RandomScan:
+    def of(cls, seed: int, *, curved: bool = False) -> RandomScan:
         draw = np.random.default_rng(seed)
 
         def between(low: float, high: float) -> float:
@@ -46,11 +47,15 @@ class RandomScan:
             return float(draw.choice(values))
 
         plate, finger = between(0.002, 0.1), between(0.0005, 0.05)
+        rows = np.random.default_rng([seed, 1])  # so that all else is as without a curve
+        speeds = np.cumsum([0.0, *np.exp(rows.uniform(np.log(0.002), np.log(0.2), 2))])
+        forces = plate * np.array([1.0, *rows.uniform(0.3, 1.5, 2)])
+        curve = list(zip(speeds.tolist(), forces.tolist(), strict=True)) if curved else None
         drive = Drive.with_damping_ratio(
             mass=between(0.002, 0.05),
             stiffness=between(20.0, 1000.0),
             damping_ratio=either(0.0, between(0.01, 2.0)),
-            plate=Contact(plate, plate * either(1.0, 1.2, 1.8)),
+            plate=Contact(plate, plate * either(1.0, 1.2, 1.8), curve=curve),
             finger=Contact(
                 finger, finger * either(1.0, 1.5), stiffness=either(inf, between(50.0, 3000.0))
             ),
@@ -123,10 +128,10 @@ def mirrors(pin: PinScan, other: PinScan) -> bool:
     )
 
 
-def main(count: int, seed: int) -> None:
+def main(count: int, seed: int, *, curved: bool) -> None:
     residual = part = 0.0
     events = turned = 0
-    for one in (RandomScan.of(s) for s in range(seed, seed + count)):
+    for one in (RandomScan.of(s, curved=curved) for s in range(seed, seed + count)):
         pin = one.scan()
         residual = max(residual, pin.motion.certificate().worst)
         part = max(part, parting(pin, one.halves()))
@@ -136,20 +141,30 @@ def main(count: int, seed: int) -> None:
     print(f"in two halves {part:.1e} apart, {turned} mirrored to the bit")
 
 
-def main_sundials(count: int, seed: int) -> None:
-    from oracle.scan_cycles import distance
+def main_sundials(count: int, seed: int, *, curved: bool) -> None:
+    """Where SUNDIALS steps over two zeros, SciPy's DOP853 is asked with the same modes."""
+    from oracle.scan_cycles import Distance, distance
+    from oracle.watched_dop853 import dop853
 
-    pins = [pin for s in range(seed, seed + count) if short(pin := RandomScan.of(s).scan())]
-    found = [distance(pin) for pin in pins]
-    print(
-        f"{len(found)} scans, {sum(len(pin.events) for pin in pins)} events: "
-        f"{sum(d.events for d in found)} with the same events, times within "
-        f"{max(d.time for d in found):.1e} s, positions within "
-        f"{max(d.position for d in found):.1e} of the largest, all states within "
-        f"{max(d.state for d in found):.1e}"
-    )
+    drawn = (RandomScan.of(s, curved=curved).scan() for s in range(seed, seed + count))
+    pins = [pin for pin in drawn if short(pin)]
+    found: list[Distance] = []
+    others: list[Distance] = []
+    for pin in pins:
+        first = distance(pin)
+        apart = not first.events or first.time > 1e-6
+        (others if apart else found).append(distance(pin, dop853) if apart else first)
+    print(f"{len(pins)} scans, {sum(len(pin.events) for pin in pins)} events:")
+    for tool, distances in (("SUNDIALS", found), ("DOP853, as SUNDIALS steps over events", others)):
+        if distances:
+            print(
+                f"{sum(d.events for d in distances)} of {len(distances)} with the same events by "
+                f"{tool}, times within {max(d.time for d in distances):.1e} s, positions within "
+                f"{max(d.position for d in distances):.1e} of the largest, all states within "
+                f"{max(d.state for d in distances):.1e}"
+            )
 
 
 if __name__ == "__main__":
     run = main_sundials if "sundials" in sys.argv else main
-    run(int(sys.argv[1]), int(sys.argv[2]))
+    run(int(sys.argv[1]), int(sys.argv[2]), curved="curved" in sys.argv)

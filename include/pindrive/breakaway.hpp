@@ -14,7 +14,7 @@ template <class T>
 struct Beginning {
   T x, v, plate_force, finger_force;
   Line<T> plate_velocity;
-  T load;
+  T load, force;
   bool rests_on_plate, rests_on_finger;
   bool plate_began, finger_began;  ///< to do what they do
 };
@@ -29,7 +29,7 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const bool finger = now.rests_on_finger && slips(mode.finger);
   if (mode.stuck() || !(plate || finger)) return T(0);
   const T at_plate = drive.plate.static_limit * now.load, at_finger = drive.finger.static_limit;
-  const T pull = drive.damping * now.v + drive.stiffness * now.x;
+  const T pull = drive.damping * now.v + drive.stiffness * now.x - now.force;
   const T inertia = drive.mass * now.plate_velocity.rate;
   if (plate && finger && inertia == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
   // Each alone. Where both part, the one that does not stick slips the way in which they part.

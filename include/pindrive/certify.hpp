@@ -117,7 +117,7 @@ class Certifier {
 
     const Segment<T>& segment;
     const Trajectory& along;
-    Line<T> plate_velocity, load;
+    Line<T> plate_velocity, load, force, across;
     T span;
     Quantity x_rate, acceleration, finger_rate;
     std::array<Watch<Guard>, 4> watches;
@@ -146,6 +146,8 @@ class Certifier {
         along,
         motion_.inputs().mouse_velocity.from(segment.begin),
         motion_.inputs().plate_load.from(segment.begin),
+        motion_.inputs().force.from(segment.begin),
+        motion_.inputs().across_velocity.from(segment.begin),
         std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
         along.derivative(along.position()),
         along.acceleration(),
@@ -173,7 +175,16 @@ class Certifier {
       watch(limit + force, &Certificate<T>::force_bound, force_scale_);
       watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
     };
-    slipping(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
+    if (mode.plate != ContactState::slip_oblique) {
+      slipping(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
+    } else if constexpr (std::is_same_v<Trajectory, BySeries<T>>) {
+      const Branch<T> branch = drive_.plate.branch(mode.plate_branch);
+      const auto& speed = along.sliding_speed();
+      if (branch.from > 0)
+        watch(along.above(speed, branch.from), &Certificate<T>::sliding_sign, v_scale_);
+      if (branch.to < never)
+        watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
+    }
     slipping(drive_.finger, mode.finger, mode.finger_branch, {});
     if (mode.both_stuck()) {
       sticking(along.plate_force(), {at_plate.value + at_finger.value, at_plate.rate});
@@ -202,6 +213,22 @@ class Certifier {
       if (speed >= contact.curve[i].from)
         force = contact.curve[i].force + contact.curve[i].slope * (speed - contact.curve[i].from);
     return force;
+  }
+
+  /// How far a force and a sliding velocity are from the law of a plate that slides across too, N: by the
+  /// force at that velocity or, where that turns steeply, by how far the velocity is from those with the
+  /// direction of the force, as a part of the largest.
+  T oblique_error(T u, T across, T force, T load) const {
+    using std::abs;
+    using std::hypot;
+    using std::sqrt;
+    const T speed = hypot(u, across), strength = load * kinetic(drive_.plate, speed);
+    if (!(strength > 0)) return force;
+    const T part = -force / strength, along = std::clamp(part, T(-1), T(1));
+    const T beside = abs(u * sqrt((1 - along) * (1 + along)) - abs(across) * along);
+    const T too_large = strength * abs(part - along);
+    const T by_velocity = beside / v_scale_ * force_scale_ + too_large;
+    return speed > 0 ? std::min(by_velocity, abs(force + strength * u / speed)) : by_velocity;
   }
 
   bool soft() const { return drive_.finger.present() && !drive_.finger.rigid(); }
@@ -234,8 +261,9 @@ class Certifier {
         const Numbers s = state(stage, tau);
         x_scale_ = std::max(
             {x_scale_, abs(s.x), abs(s.v) / omega0, abs(stage.plate_velocity.at(tau)) / omega0});
-        force_scale_ = std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
-                                 abs(s.plate_force), abs(s.finger_force)});
+        force_scale_ =
+            std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
+                      abs(s.plate_force), abs(s.finger_force), abs(stage.force.at(tau))});
       }
     });
     v_scale_ = x_scale_ * omega0;
@@ -369,7 +397,9 @@ class Certifier {
     const auto over = [&](const Path<T>& p, const Path<T>& q) {
       return product_integral(segment.flow.oscillator, p, q, from.tau, to.tau);
     };
-    const Path<T> inertia = Line<T>{drive_.mass * stage.plate_velocity.rate, T(0)};
+    Line<T> push = stage.force;
+    push.value += drive_.mass * stage.plate_velocity.rate;
+    const Path<T> inertia = push;
     Sums sums;
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
@@ -388,9 +418,12 @@ class Certifier {
     if (mode.finger == ContactState::elastic_stick)
       raise(errors.velocity, along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
     raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
-                          drive_.stiffness * s.x - s.plate_force - s.finger_force);
+                          drive_.stiffness * s.x - s.plate_force - s.finger_force -
+                          stage.force.at(s.tau));
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
-      if (slips(does))
+      if (does == ContactState::slip_oblique)
+        raise(errors.friction, oblique_error(u, stage.across.at(s.tau), force, load));
+      else if (slips(does))
         raise(errors.friction, force + sign(does) * load * kinetic(law, abs(u)));
       else if (does == ContactState::stick)
         raise(errors.sticking, u);
@@ -405,10 +438,10 @@ class Certifier {
     // A whole wave may begin and end at nothing, and be summed from what is stored on the way.
     stored_ = std::max(stored_, energy(s));
     const T v_plate = stage.plate_velocity.at(s.tau);
+    const T push = drive_.mass * stage.plate_velocity.rate + stage.force.at(s.tau);
     sums.v += weight * s.v;
     sums.a += weight * s.a;
-    sums.input +=
-        weight * (s.plate_force * v_plate + drive_.mass * stage.plate_velocity.rate * s.v);
+    sums.input += weight * (s.plate_force * v_plate + push * s.v);
     sums.damper += weight * drive_.damping * s.v * s.v;
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
     if (stage.segment.mode.finger != ContactState::elastic_stick)
@@ -459,14 +492,28 @@ class Certifier {
     const bool plate = began(segment.mode.plate, plate_, plate_since_);
     const bool finger = began(segment.mode.finger, finger_, finger_since_);
     if (brief_) return;
-    const Numbers s = state(stage, T(0));
+    Numbers s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
-    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still;
+    // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
+    const bool oblique = segment.mode.plate == ContactState::slip_oblique;
+    const T drags = stage.plate_velocity.rate, turns = std::hypot(drags, stage.across.rate);
+    if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
+        abs(stage.across.value) <= still)
+      s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
+    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still && !oblique;
     const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
-    const Beginning<T> now{
-        s.x,      s.v,       s.plate_force, s.finger_force, stage.plate_velocity, stage.load.value,
-        on_plate, on_finger, plate,         finger};
+    const Beginning<T> now{s.x,
+                           s.v,
+                           s.plate_force,
+                           s.finger_force,
+                           stage.plate_velocity,
+                           stage.load.value,
+                           stage.force.value,
+                           on_plate,
+                           on_finger,
+                           plate,
+                           finger};
     worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "pindrive/extrema.hpp"
 #include "pindrive/motion.hpp"
@@ -16,8 +17,8 @@ template <class T>
 struct ContactUse {
   T reversals{0};      ///< how often its sliding velocity came to zero
   T time_stuck{0};     ///< elastically too, s
-  T distance_slid{0};  ///< by the pin over the surface, m
-  T dissipated{0};     ///< J
+  T distance_slid{0};  ///< by the pin over the surface, across its axis too, m
+  T dissipated{0};     ///< along its axis, J
   T peak_force{0};     ///< largest friction force, N
 };
 
@@ -104,8 +105,12 @@ class ContactMeasurement {
       contact.time_stuck += times * (to - from);
       return;
     }
+    if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
+      if (does == ContactState::slip_oblique)
+        contact.distance_slid +=
+            times * gauss<T>([&](T tau) { return along.at(along.sliding_speed(), tau); }, from, to);
     const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
-    contact.distance_slid += times * slid;
+    if (does != ContactState::slip_oblique) contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
     if (along.constant(force)) {
       contact.dissipated += times * abs(along.start(force)) * slid;

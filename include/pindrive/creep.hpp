@@ -29,9 +29,11 @@ class CreepFlow : public SeriesStep<T> {
   using SeriesStep<T>::x_bound, SeriesStep<T>::v_bound, SeriesStep<T>::skin_bound;
   using SeriesStep<T>::speed_bound;
 
-  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero.
-  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit) {
+  /// Expands it at a state, no farther than the limit (s; may be infinite), nor than where w is zero; or as
+  /// far, where that is known to be within a step.
+  CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     using std::abs;
+    this->creeps = true;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
     if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
@@ -41,14 +43,20 @@ class CreepFlow : public SeriesStep<T> {
     const Real step = std::min(trial_step(e, start), farthest);
     if (!(step > 0)) return;
     this->begin(step);
+    Real before{0};  // the velocity of creep at the start, of the last round
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
+      // What the rounds still change is less than what they changed.
+      const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
+      if (round > 1 && abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off))) return;
+      before = v;
       expand(e, start, step);
-      const Real part = std::min(this->suggested_part(), farthest / step);
+      const Real left = farthest / step;
+      const Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
       converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
       if (!converged) continue;  // the derivatives of a dual number converge one round later
       this->rescale(part);
-      holds_ = bound(e, plain(e.mass) * change(part)) && starts_from(start);
+      holds_ = within_step || (bound(e, plain(e.mass) * change(part)) && starts_from(start));
       break;
     }
     if (holds_) this->trim();
@@ -62,7 +70,7 @@ class CreepFlow : public SeriesStep<T> {
   using typename SeriesStep<T>::Sums;
   static constexpr int most_rounds = 16;
   /// Where the force needed is so near the most that friction gives, the layer is never thin.
-  static constexpr Real steepest = 50;
+  static constexpr Real steepest = 1e4;
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // t, √(1 + t²), t/√(1 + t²)
 
@@ -222,28 +230,14 @@ class CreepFlow : public SeriesStep<T> {
 /// The step to take from a state: of creep where the pin creeps, else the Taylor series.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
-  using std::abs;
-  using std::hypot;
-  using std::pow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
-  const auto u = plain(start.v) - plain(e.plate_velocity.value), w = plain(e.across.value);
-  const auto speed = hypot(u, w);
   SeriesStep<T> step;
-  if (speed > 0) {
-    step = SeriesFlow<T>(e, start, limit);
-    // Its terms tell how much of a fast part is left: at the reach of a series of which only rounding
-    // is, creep is tried.
-    const auto layer = plain(e.mass) * speed * speed * speed /
-                       (plain(e.load.value) * plain(e.plate_force) * w * w);
-    using Real = detail::Real<T>;
-    constexpr Real unit = std::numeric_limits<Real>::epsilon();
-    const Real noise = unit * (1 + (abs(plain(start.v)) + abs(u)) / speed);
-    const Real reach = noise < Real(1e-3) ? 6 * pow(unit / noise, Real(1) / series_order) : Real(0);
-    if (!(step.span() > reach * layer) || !(step.span() < plain(limit))) return step;
-  }
+  const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;
+  if (slides) step = SeriesFlow<T>(e, start, limit);
+  if (slides && !(step.span() < plain(limit))) return step;
   const CreepFlow<T> creep(e, start, limit);
-  if (creep.holds() && !(speed > 0 && creep.span() < step.span())) return creep;
-  return step;
+  if (creep.holds() && !(slides && creep.span() < step.span())) return creep;
+  return slides ? step : SeriesFlow<T>(e, start, limit);
 }
 
 }  // namespace pindrive

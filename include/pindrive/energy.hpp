@@ -21,19 +21,21 @@ struct Ledger {
   T skin_start, skin_end;        ///< in a compliant finger, J
   T plate_work;                  ///< what the moving plate puts in through friction, J
   T inertia_work;                ///< what the housing puts in by accelerating, J
+  T force_work;                  ///< what the force from outside puts in, J
   T damper_dissipated, plate_dissipated, finger_dissipated;  ///< J
   T exchanged;  ///< what the housing puts in or takes back on the way, at most, J
 
   T residual() const {
     return (kinetic_end - kinetic_start) + (spring_end - spring_start) + (skin_end - skin_start) -
-           plate_work - inertia_work + damper_dissipated + plate_dissipated + finger_dissipated;
+           plate_work - inertia_work - force_work + damper_dissipated + plate_dissipated +
+           finger_dissipated;
   }
   /// The largest energy in the ledger, or on the way: what the residual is measured against.
   T scale() const {
     using std::abs;
     return std::max({kinetic_start, kinetic_end, spring_start, spring_end, skin_start, skin_end,
-                     abs(plate_work), abs(inertia_work), damper_dissipated, plate_dissipated,
-                     finger_dissipated, exchanged});
+                     abs(plate_work), abs(inertia_work), abs(force_work), damper_dissipated,
+                     plate_dissipated, finger_dissipated, exchanged});
   }
 };
 
@@ -48,6 +50,7 @@ inline constexpr NamedNumber<T, Ledger<T>> ledger_numbers[] = {
     {"skin_end", [](const Ledger<T>& l) { return l.skin_end; }},
     {"plate_work", [](const Ledger<T>& l) { return l.plate_work; }},
     {"inertia_work", [](const Ledger<T>& l) { return l.inertia_work; }},
+    {"force_work", [](const Ledger<T>& l) { return l.force_work; }},
     {"damper_dissipated", [](const Ledger<T>& l) { return l.damper_dissipated; }},
     {"plate_dissipated", [](const Ledger<T>& l) { return l.plate_dissipated; }},
     {"finger_dissipated", [](const Ledger<T>& l) { return l.finger_dissipated; }},
@@ -62,6 +65,8 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
   using std::sqrt;
   const Drive<T>& drive = motion.drive();
   const bool skin = drive.finger.present() && !drive.finger.rigid();
+  const auto& force = motion.inputs().force;
+  const bool pushed = !force.constant() || force.first() != 0;
   Ledger<T> ledger{};
   const auto state = [&](T t, T& kinetic, T& spring, T& in_skin) {
     const auto [segment, tau] = motion.locate(t, Side::left);
@@ -87,9 +92,15 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
       ledger.damper_dissipated += drive.damping * v_squared;
       ledger.plate_work += plate_work;
       ledger.inertia_work += over(along.line({inertia, T(0)}), along.velocity());
+      T largest = abs(inertia);
+      if (pushed) {
+        const Line<T> force = motion.inputs().force.from(segment.begin);
+        ledger.force_work += over(along.line(force), along.velocity());
+        largest += std::max(abs(force.at(from)), abs(force.at(to)));
+      }
       // What goes in and comes out again within a segment leaves its rounding in their sum: by Schwarz's
       // inequality no part of it is larger.
-      ledger.exchanged += abs(plate_work) + abs(inertia) * sqrt((to - from) * times * v_squared);
+      ledger.exchanged += abs(plate_work) + largest * sqrt((to - from) * times * v_squared);
     });
     return go_on();
   });

@@ -6,6 +6,7 @@
 
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
+#include "pindrive/series_oblique.hpp"
 #include "pindrive/state.hpp"
 
 namespace pindrive::detail {
@@ -24,12 +25,13 @@ struct Touch {
   explicit Touch(const Surface& given) : contact(given) {}
 
   const Surface contact;
-  Line<T> surface{}, load{T(1), T(0)};
+  Line<T> surface{}, load{T(1), T(0)}, across{};
   Option does{};
   ContactState before{};       ///< what it did until the last event, …
   Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
   int count{0};                ///< of its options
-  T friction{0};  ///< how large its friction is at its sliding speed under a load of 1, N
+  T friction{0};   ///< how large its friction is at its sliding speed under a load of 1, N
+  T direction{0};  ///< of an oblique slip, along the axis: u/√(u² + w²)
 
   static Option slip(T sense, Bound at, int branch = 0) {
     return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
@@ -39,9 +41,10 @@ struct Touch {
   bool sliding() const { return slips(does.state); }
   bool stuck() const { return does.state == ContactState::stick; }
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
+  bool oblique() const { return !Surface::plain && does.state == ContactState::slip_oblique; }
   Branch<T> branch() const { return contact.branch(does.branch); }
   /// Whether nothing but its relative acceleration tells where it goes.
-  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0); }
+  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0) && !oblique(); }
 
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(T v, bool stretched) {
@@ -56,13 +59,17 @@ struct Touch {
   /// of it.
   void ask(const State<T>& s) {
     before = does.state;
-    sense_ = does.sense;
-    branch_ = does.branch;
     count = 1;
     at_ = reached;
     reached = Bound::none;
     rest_ = ContactState::absent;
     const T u = s.v - surface.value;
+    bool across_too = false;
+    if constexpr (!Surface::plain) across_too = asks_across(*this, u, at_);
+    goes_on_ = does.state;
+    sense_ = does.sense;
+    branch_ = does.branch;
+    if (across_too) return;
     if (sliding()) {
       const Branch<T> range = branch();
       const T speed = sense_ * u;
@@ -82,7 +89,7 @@ struct Touch {
     at_ = Bound::none;
     parts_ = Bound::lower;
     // A compliant contact sticks with the force that it has.
-    const bool sticks = before == ContactState::stick || (sliding() && contact.rigid());
+    const bool sticks = stuck() || (sliding() && contact.rigid());
     rest_ = sticks ? ContactState::stick : ContactState::elastic_stick;
     if (sticks) {
       count = 3;
@@ -98,9 +105,9 @@ struct Touch {
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
     if (rest_ == ContactState::absent) {
-      if (index == 0) return {before, at_, branch_, sense_};
+      if (index == 0) return {goes_on_, at_, branch_, sense_};
       const bool faster = at_ == Bound::upper;
-      return {before, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
+      return {goes_on_, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
     }
     if (index == 0) return {rest_, at_, 0, T(0)};
     const bool backward = (index == 1) == (sense_ > 0);
@@ -109,7 +116,7 @@ struct Touch {
 
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const {
-    return elastic() ? -s.skin : -does.sense * friction * load.value;
+    return elastic() ? -s.skin : -(oblique() ? direction : does.sense) * friction * load.value;
   }
   /// … how fast it changes on a pin of this acceleration, how large the terms of that rate are, as its slope
   /// is known to rounding only, and how fast the rate changes while the acceleration is constant.
@@ -123,9 +130,13 @@ struct Touch {
     if (!sliding()) return {};
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate, by_load = does.sense * friction * load.rate;
-    const T rate = -range.slope * load.value * faster - by_load;
+    T rate = -range.slope * load.value * faster - by_load, bend = -2 * range.slope * load.rate * faster;
+    if (oblique()) {
+      rate = slides(v, acceleration).force_rate(range, load);
+      bend = slides(v, acceleration).force_bend(range, load);
+    }
     const T unsure = range.rounding * load.value * abs(faster);
-    return {rate, abs(rate) + unsure / rounding<T>, -2 * range.slope * load.rate * faster};
+    return {rate, abs(rate) + unsure / rounding<T>, bend};
   }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
@@ -163,6 +174,10 @@ struct Touch {
   /// relative velocity that is not zero. Without any it stays; but it would not slip.
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (does.at == Bound::none) return true;
+    if (oblique()) {
+      const T faster = slides(s.v, surface.rate + first).closing();
+      return (does.at == Bound::lower ? faster : -faster) >= 0;
+    }
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
       const T inwards = does.sense * (does.at == Bound::lower ? decides : -decides);
@@ -174,10 +189,15 @@ struct Touch {
                                        contact.stiffness * inside * decides, s.roundoff);
   }
 
+  ObliqueSlip<T> slides(T v, T acceleration) const {
+    return {{v - surface.value, acceleration - surface.rate}, across};
+  }
+
  private:
-  T sense_{0};                               ///< in which it slipped until the last event,
-  int branch_{0};                            ///< on which branch,
-  Bound at_{Bound::none};                    ///< and the end of its range that it is at now
+  ContactState goes_on_{ContactState::absent};  ///< what it does unless it comes to an end of its range,
+  T sense_{0};                                  ///< in which direction it slips then,
+  int branch_{0};                               ///< on which branch,
+  Bound at_{Bound::none};                       ///< and the end of its range that it is at now
   ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
   Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
 };

@@ -165,22 +165,29 @@ struct Inputs {
   Input plate_load{T(1)};                          ///< factor on the plate's friction; >= 0
   /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
+  Input force{T(0)};            ///< on the pin from outside, N
+  Input across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
 };
 
 /// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is
-/// absent, or sticks elastically: skin that stretches with the pin.
+/// absent, or sticks elastically: skin that stretches with the pin. A plate that also slides across
+/// slips, whatever the pin does.
 enum class ContactState : signed char {
   slip_backward = -1,
   stick = 0,
   slip_forward = 1,
   absent = 2,
-  elastic_stick = 3
+  elastic_stick = 3,
+  slip_oblique = 4
 };
 
 inline bool slips(ContactState state) {
-  return state == ContactState::slip_backward || state == ContactState::slip_forward;
+  return state == ContactState::slip_backward || state == ContactState::slip_forward ||
+         state == ContactState::slip_oblique;
 }
-inline int sign(ContactState state) { return slips(state) ? static_cast<int>(state) : 0; }
+inline int sign(ContactState state) {
+  return state == ContactState::slip_backward ? -1 : state == ContactState::slip_forward ? 1 : 0;
+}
 inline ContactState opposite(ContactState state) { return static_cast<ContactState>(-sign(state)); }
 /// A value in the direction of slipping.
 template <class T>
@@ -206,7 +213,8 @@ struct Event {
 
 inline Transition change(ContactState before, ContactState after) {
   if (before == after) return Transition::none;
-  if (slips(before) == slips(after)) return Transition::cross;
+  if (slips(before) == slips(after))
+    return sign(before) == -sign(after) ? Transition::cross : Transition::none;
   return slips(before) ? Transition::stick : Transition::slip;
 }
 
@@ -226,6 +234,7 @@ struct Segment {
   Line<T> plate_velocity;             ///< m/s
   Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
                                       ///< is what they carry together
+  bool creeps{false};                 ///< by a series without its fast part (creep.hpp)
 
   /// How its oscillation has moved on after τ.
   Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }

@@ -14,15 +14,15 @@ namespace pindrive {
 /// Which limit is asked for at an event.
 enum class Side : signed char { left, right };
 
-/// Calls visit with the quantities of a segment whose plate load goes on from its begin along a line: a
-/// ClosedForm or, where it has none, BySeries; what that returns.
+/// Calls visit with the quantities of a segment, whose inputs go on from its begin along lines: a ClosedForm
+/// or, where it has none, BySeries; what that returns.
 template <class T, class Visitor>
-auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load,
+auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
                       Visitor&& visit) {
-  const SeriesMode<T> mode(drive, segment.mode, {segment.plate_velocity, load});
-  if (!(segment.end > segment.begin) || mode.has_closed_form())
+  if (!(segment.end > segment.begin) ||
+      SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(ClosedForm<T>(segment));
-  return visit(BySeries<T>(drive, segment, load));
+  return visit(BySeries<T>(drive, segment, lines));
 }
 
 /// Friction of each contact on the pin, N.
@@ -34,13 +34,13 @@ struct Friction {
 /// That of a segment after τ. Two stuck contacts share in proportion to their static friction: how they
 /// really do is not determined.
 template <class T>
-Friction<T> friction_in(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load,
-                        T tau) {
-  const Friction<T> found = visit_trajectory(drive, segment, load, [&](const auto& t) {
+Friction<T> friction_in(const Drive<T>& drive, const Segment<T>& segment,
+                        const InputLines<T>& lines, T tau) {
+  const Friction<T> found = visit_trajectory(drive, segment, lines, [&](const auto& t) {
     return Friction<T>{t.at(t.plate_force(), tau), t.at(t.finger_force(), tau)};
   });
   if (!segment.mode.both_stuck()) return found;
-  const T at_plate = drive.plate.static_limit * load.at(tau);
+  const T at_plate = drive.plate.static_limit * lines.plate_load.at(tau);
   const T part = at_plate > 0 ? at_plate / (at_plate + drive.finger.static_limit) : T(0);
   return {part * found.plate, (1 - part) * found.plate};
 }
@@ -94,13 +94,14 @@ class Motion {
   /// that returns.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
-    if (drive_.plate.branches == 0 || inputs_.plate_load.constant())
+    const bool bilinear = drive_.plate.branches > 0 && !inputs_.plate_load.constant();
+    if (!bilinear && segment.mode.plate != ContactState::slip_oblique)
       return visit(ClosedForm<T>(segment));
-    return visit_trajectory(drive_, segment, inputs_.plate_load.from(segment.begin), visit);
+    return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
   }
 
   Friction<T> friction(const Segment<T>& segment, T tau) const {
-    return friction_in(drive_, segment, inputs_.plate_load.from(segment.begin), tau);
+    return friction_in(drive_, segment, InputLines<T>::of(inputs_, segment), tau);
   }
 
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until

@@ -218,6 +218,15 @@ T lowest(const Polynomial<T>& p, T unseen) {
   return detail::lowest(detail::bernstein(p.c, p.degree), p.degree, unseen, 40);
 }
 
+/// What its size stays below over its span: its values lie among its Bernstein coefficients.
+template <class T>
+T largest_size(const Polynomial<T>& p) {
+  const auto b = detail::bernstein(p.c, p.degree);
+  T most{0};
+  for (int n = 0; n <= p.degree; ++n) most = std::max(most, std::abs(b[n]));
+  return most;
+}
+
 /// The earliest τ in (0, span] at which a guard becomes negative; infinity if there is none. It is
 /// positive just after τ = 0, as the mode has chosen.
 template <class T>

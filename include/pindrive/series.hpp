@@ -58,6 +58,31 @@ struct SeriesEquation {
   }
 };
 
+/// The relative acceleration p with which a pin of mass m sets out from a plate that begins to slide across
+/// with the acceleration w': m p + λF p/√(p² + w'²) = what else pulls, N. It grows with the pull: one root.
+template <class T>
+T setting_out(T mass, T friction, T across_rate, T pull) {
+  using std::abs;
+  using std::sqrt;
+  const T w = abs(across_rate);
+  // In t = p/w', from above in size: there the left side bends away from its tangent.
+  T t = pull / (mass * w);
+  bool converged = false;  // the derivative of a dual number does so one round later
+  for (int tries = 0; tries < 200; ++tries) {
+    const T root = sqrt(1 + t * t);
+    const T missed = mass * w * t + friction * t / root - pull;
+    const T move = -missed / (mass * w + friction / (root * root * root));
+    const T next = t + move;
+    // What falls beyond zero has overshot.
+    const T kept = next * t < 0 ? t / 64 : next;
+    const bool done = converged;
+    converged = abs(kept - t) <= 2 * std::numeric_limits<detail::Real<T>>::epsilon() * abs(t);
+    t = kept;
+    if (done) break;
+  }
+  return t * w;
+}
+
 /// One step of such a mode, for as long as its series holds to rounding.
 template <class T>
 class SeriesStep {
@@ -70,6 +95,7 @@ class SeriesStep {
   Polynomial<T> speed;        ///< of sliding on the plate, across too: s u or √(u² + w²), m/s
   /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
   Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
+  bool creeps{false};  ///< without its fast part: see creep.hpp
 
   Real span() const { return velocity.span; }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
@@ -187,7 +213,7 @@ class SeriesFlow : public SeriesStep<T> {
       this->trim();
       return;
     }
-    step = std::min({this->suggested_part(), longest / (rate * step), farthest / step});
+    step = std::min({this->suggested_part(), longest / (rate * step), farthest / step, farther});
     for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
       this->rescale(step);
       if (bound(equation)) break;
@@ -201,7 +227,11 @@ class SeriesFlow : public SeriesStep<T> {
   /// So many times the time of the fastest rate at most, even where nothing changes: what rounding puts into
   /// the start is then followed too, and remains rounding. And so often a step is made shorter.
   static constexpr Real longest = 8;
+  static constexpr Real farther =
+      1024;  // than the step that was tried, whose powers must be numbers
   static constexpr int most_tries = 200;
+
+  int begins_{0};  // the order at which u and w begin
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
 
@@ -224,11 +254,20 @@ class SeriesFlow : public SeriesStep<T> {
                       abs(plain(e.damping) * plain(s.v)) +
                       abs(plain(e.skin_factor) * plain(s.skin)) +
                       load * (abs(plain(e.plate_slope) * u) + abs(plain(e.plate_force)));
-    return (pull / m + abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate))) / hypot(u, w);
+    const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
+    const Real rates = e.held ? turns : pull / m + turns;
+    return sets_out(e, s) ? rates / turns * linear_rate(e) : rates / hypot(u, w);
+  }
+
+  /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
+  static bool sets_out(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+    return e.side == 0 && e.across.value == 0 &&
+           plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
   }
 
   /// The recurrences, in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    if (sets_out(e, start)) return expand_from_rest(e, start, step);
     using std::isnan;
     using std::sqrt;
     this->begin(step);
@@ -261,12 +300,73 @@ class SeriesFlow : public SeriesStep<T> {
       before = friction;
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
-      if (n == N) return;
       const T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
                        e.skin_factor * y[n] + (n < 2 ? force[n] : T(0));
+      if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
+      if (n == N) return;
       v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
-      if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
+      y[n + 1] = part * (e.skin_gain * v[n] - e.skin_decay * y[n]);
+    }
+  }
+
+  /// The same where u and w begin at 0: the direction is that of u/σ and w/σ, so that its order n needs the
+  /// velocity of the order n + 1, in which the equation is linear.
+  void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+    using std::sqrt;
+    this->begin(step);
+    begins_ = 1;
+    auto &x = position.c, &v = velocity.c, &y = skin.c, &r = speed.c;
+    auto &d = inner(0).c, &u = inner(1).c;
+    x[0] = start.x;
+    v[0] = e.plate_velocity.value;
+    y[0] = start.skin;
+    const T w = e.across.rate * step, load_rate = e.load.rate * step;
+    const T strength = e.load.value * e.plate_force;
+    T slope{0}, before{0};  // of the direction by u/σ; F d + S u, of the order before
+    for (int n = 0;; ++n) {
+      const T part = T(step) / T(n + 1);
+      x[n + 1] = part * v[n];
+      // All forces of this order but the plate's.
+      const T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor * y[n] +
+                       (n == 0   ? e.force.value
+                        : n == 1 ? e.force.rate * step
+                                 : T(0));
+      T product{0}, square{0};  // what d and ρ of this order are without u of the next
+      for (int i = 1; i < n; ++i) {
+        product -= r[i + 1] * d[n - i];
+        square -= r[i + 1] * r[n - i + 1];
+      }
+      for (int i = 1; i < n; ++i) square += u[i + 1] * u[n - i + 1];
+      const T known = e.plate_slope * u[n];
+      if (n == 0) {
+        const T rest = others - e.mass * e.plate_velocity.rate;
+        const T out = e.held ? e.surface.rate - e.plate_velocity.rate
+                             : setting_out(e.mass, strength, e.across.rate, rest);
+        u[1] = out * step;
+        r[1] = sqrt(u[1] * u[1] + w * w);
+        d[0] = u[1] / r[1];
+        slope = w * w / (r[1] * r[1] * r[1]);
+        v[1] = u[1] + e.plate_velocity.rate * step;
+      } else {
+        // d = slope û + …: with û 0 first, then what it adds.
+        r[n + 1] = square / (2 * r[1]);
+        d[n] = (product - r[n + 1] * d[0]) / r[1];
+        const T friction = e.plate_force * d[n] + known;
+        const T forces = others - e.load.value * friction - load_rate * before;
+        if (!e.held && n < N) {
+          u[n + 1] = forces / (e.mass / part + strength * slope);
+          r[n + 1] += d[0] * u[n + 1];
+          d[n] += slope * u[n + 1];
+          v[n + 1] = u[n + 1];
+        }
+      }
+      const T friction = e.plate_force * d[n] + known;
+      plate_force.c[n] = -(e.load.value * friction + load_rate * before);
+      before = friction;
+      if (e.held)
+        stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - others - plate_force.c[n];
+      if (n == N) return;
       y[n + 1] = part * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }
   }
@@ -285,16 +385,23 @@ class SeriesFlow : public SeriesStep<T> {
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real most_load = max(abs(load), abs(load + load_change));
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
-    const Sums r = sums_of(speed.c), d = sums_of(inner(0).c), u = sums_of(inner(1).c);
+    const auto from_rest = [&](std::array<T, N + 2> c) {  // of p/σ, where p begins at 0
+      if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
+      return sums_of(c);
+    };
+    const Sums r = from_rest(speed.c), d = sums_of(inner(0).c), u = sums_of(inner(1).c);
+    const Sums p = from_rest(inner(1).c);
 
     Real root{0},
         direction{0};  // what the truncated r and d differ from √(u² + w²) and u/√(u² + w²)
     if (e.side == 0) {
-      const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
+      const Real w_rate = plain(e.across.rate) * h,
+                 w = begins_ > 0 ? w_rate : plain(e.across.value);
+      const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
       const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
-      const Real least = max({w_least, r[0] - 2 * r[1], u[0] - 2 * u[1]});
+      const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
       if (!(least > 0)) return false;
-      root = (beyond(r, r) + beyond(u, u)) / least;
+      root = (beyond(r, r) + beyond(p, p)) / least;
       direction = (beyond(r, d) + d[0] * root) / least;
     }
     // What is left of the equation: the terms from the order N on.
@@ -316,7 +423,8 @@ class SeriesFlow : public SeriesStep<T> {
     const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
     return v_bound <= rounding_of(sums_of(velocity.c)) &&
            (ratio == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
-           speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c));
+           speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c)) &&
+           !(e.held && direction > 64 * unit);
   }
 };
 

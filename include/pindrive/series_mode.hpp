@@ -19,11 +19,27 @@ struct InputLines {
   Line<T> plate_velocity;          ///< v_p, m/s
   Line<T> plate_load{T(1), T(0)};  ///< >= 0
   Line<T> across_velocity{};       ///< w, m/s
+  Line<T> force{};                 ///< on the pin from outside, N
 
   bool oblique() const { return across_velocity.value != 0 || across_velocity.rate != 0; }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
-    return {later(plate_velocity), later(plate_load), later(across_velocity)};
+    return {later(plate_velocity), later(plate_load), later(across_velocity), later(force)};
+  }
+  /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
+  template <class Input>
+  static InputLines of(const Inputs<T, Input>& inputs, const Segment<T>& segment) {
+    return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
+            across_from(inputs.across_velocity, segment.begin), inputs.force.from(segment.begin)};
+  }
+  /// A velocity across from a time on; where it comes to zero within some roundings of that, it is zero: the
+  /// nearer to it, the shorter are the steps of a pin that comes to rest on the plate at once.
+  template <class Input>
+  static Line<T> across_from(const Input& across_velocity, T time) {
+    using std::abs;
+    Line<T> line = across_velocity.from(time);
+    if (abs(line.value) <= 64 * detail::rounding<T> * time * abs(line.rate)) line.value = T(0);
+    return line;
   }
 };
 
@@ -46,7 +62,8 @@ class SeriesMode {
   /// a sloped branch of its curve.
   SeriesEquation<T> equation() const {
     SeriesEquation<T> e{drive_.mass, drive_.damping, drive_.stiffness};
-    e.force.value = drive_.mass * inputs_.plate_velocity.rate;
+    e.force = inputs_.force;
+    e.force.value += drive_.mass * inputs_.plate_velocity.rate;
     e.plate_velocity = inputs_.plate_velocity;
     e.load = inputs_.plate_load;
     if (slips(mode_.plate)) {

@@ -23,14 +23,19 @@ class SeriesSegment {
   /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
   /// `at_limit` is the side on which a stick force is at its limit, `span` the time until the next row or the
   /// end, s. Its guards come with their zeros.
-  template <class Side>
-  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
-             const Side& finger, const State<T>& state, T acceleration, int at_limit, T span) {
-    const SeriesMode<T> mode(drive, segment.mode, {plate.surface, plate.load});
+  template <class Side, class Input>
+  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
+             const Inputs<T, Input>& inputs,
+             const Side& plate, const Side& finger, const State<T>& state, T acceleration,
+             int at_limit, T span) {
+    const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
+    segment.creeps = false;
     used_ = !mode.has_closed_form();
     if (!used_) return false;
     const SeriesEquation<T> equation = mode.equation();
-    step_ = SeriesFlow<T>(equation, {state.x, state.v, state.skin, acceleration}, span);
+    const SeriesState<T> start{state.x, state.v, state.skin, acceleration};
+    step_ = series_step(equation, start, span);
+    segment.creeps = step_.creeps;
     const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit});
     guards.clear();
     for (const auto& guard : paths)
@@ -57,7 +62,6 @@ class SeriesSegment {
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
   /// of a time happens there.
   T earliest(T since, T row) const {
-    constexpr T never = std::numeric_limits<T>::infinity();
     return row < never && row - first_ <= rounding<T> * (since + row) ? row : first_;
   }
 
@@ -79,6 +83,31 @@ class SeriesSegment {
   SeriesStep<T> step_;
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
+
+/// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
+template <class T, class Side>
+T set_out_across(T mass, const Side& plate, T pull) {
+  using std::hypot;
+  const T rest = pull - mass * plate.surface.rate;
+  const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
+  return p / hypot(p, plate.across.rate);
+}
+
+/// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
+/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
+template <class T, class Side>
+void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
+  using std::abs;
+  if (!plate.oblique() || plate.across.value != 0) return;
+  const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
+  const T crept = 100 * abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
+                  4 * rounding<T> * time * changes;
+  if (abs(state.v - plate.surface.value) > crept) return;
+  if (on_finger)
+    plate.surface.value = state.v;
+  else
+    state.v = plate.surface.value;
+}
 
 /// Contacts without friction curves have closed forms only.
 struct NoSeries {

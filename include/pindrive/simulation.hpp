@@ -102,6 +102,7 @@ class Simulation {
     plate_.ask(state_);
     finger_.ask(state_);
     inertia_ = drive_.mass * plate_.surface.rate;
+    if constexpr (!Surface::plain) inertia_ += force_.value;
     pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
     const T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
     state_.roundoff =
@@ -146,7 +147,12 @@ class Simulation {
     const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
     const auto rate = other.force_rate(state_.v, a);
     size = abs(spring) + abs(damper) + rate.size;
-    return {force, T(0), T(0), spring + damper - rate.value, drive_.stiffness * a - rate.bend};
+    T drift = spring + damper - rate.value;
+    if constexpr (!Surface::plain) {
+      drift -= force_.rate;
+      size += abs(force_.rate);
+    }
+    return {force, T(0), T(0), drift, drive_.stiffness * a - rate.bend};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -185,7 +191,11 @@ class Simulation {
     using std::abs;
     tangential_ = false;
     guards_.clear();
-    const T plate = plate_.force(state_), finger = finger_.force(state_);
+    const T finger = finger_.force(state_);
+    if constexpr (!Surface::plain)
+      if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
+        plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
+    const T plate = plate_.force(state_);
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
@@ -199,6 +209,7 @@ class Simulation {
     };
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
     const auto leaves = [&](const Side& side, const Side& other, T force) {
+      if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
       if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
@@ -226,7 +237,7 @@ class Simulation {
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
     if constexpr (!Surface::plain)
-      if (series_.begin(segment, guards_, drive_, plate_, finger_, state_, acceleration_,
+      if (series_.begin(segment, guards_, drive_, inputs_, plate_, finger_, state_, acceleration_,
                         continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
         return;
     segment.flow = flow(plate, finger);
@@ -248,7 +259,8 @@ class Simulation {
     T damping = drive_.damping + plate.drag + finger.drag;
     const T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
     const T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
-    const T rate = plate.constant.rate + finger.constant.rate;
+    T rate = plate.constant.rate + finger.constant.rate;
+    if constexpr (!Surface::plain) rate += force_.rate;
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
@@ -295,6 +307,7 @@ class Simulation {
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
+    const T across = plate_.across.at(tau);
     look_ahead();
     segment.end = time_;
     limit_ = 0;
@@ -304,6 +317,7 @@ class Simulation {
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
+        if (side.oblique()) continue;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
         state_.v = side.surface.value + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
@@ -316,6 +330,8 @@ class Simulation {
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
+    if constexpr (!Surface::plain)
+      land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
   }
 
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
@@ -325,6 +341,12 @@ class Simulation {
       plate_.surface = inputs_.mouse_velocity.from(time_);
       plate_.load = inputs_.plate_load.from(time_);
       row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
+      if constexpr (!Surface::plain) {
+        force_ = inputs_.force.from(time_);
+        plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_);
+        row_ = std::min(
+            {row_, inputs_.force.next_row(time_), inputs_.across_velocity.next_row(time_)});
+      }
       if (row_ - time_ > rounding<T> * time_) return;
     }
   }
@@ -339,7 +361,8 @@ class Simulation {
   State<T> state_;
   Side plate_, finger_;   ///< in the mode that was selected
   int limit_{0};          ///< the side of a stick force that has just come to its limit
-  T inertia_{}, pull_{};  ///< m v_p'; k x + b v, N
+  Line<T> force_{};       ///< from outside, N
+  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v, N
 
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
   bool tangential_{false};

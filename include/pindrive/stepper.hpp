@@ -137,10 +137,12 @@ class Stepper {
   Line<T> mouse_velocity() const { return inputs_.mouse_velocity.from(now_); }
   Line<T> plate_load() const { return inputs_.plate_load.from(now_); }
 
-  /// The segment that goes on from now, how long it has lasted, and the plate load from its begin on.
+  /// The segment that goes on from now, how long it has lasted, and its inputs from its begin on.
   const Segment<T>& segment() const { return segment_; }
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
-  const Line<T>& load() const { return simulation_.plate_.load; }
+  InputLines<T> lines() const {
+    return {segment_.plate_velocity, simulation_.plate_.load, {}, simulation_.force_};
+  }
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();

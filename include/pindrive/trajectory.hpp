@@ -91,8 +91,8 @@ template <class T>
 class BySeries {
  public:
   /// Expands it anew from where it begins: nothing but its beginning is stored.
-  BySeries(const Drive<T>& drive, const Segment<T>& segment, const Line<T>& load)
-      : step_(expand(drive, segment, load)) {
+  BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
+      : step_(expand(drive, segment, lines)) {
     const bool held = segment.mode.stuck();
     plate_force_ = step_.plate_force;
     if (segment.mode.plate == ContactState::stick) plate_force_ = step_.stick_force;
@@ -110,6 +110,7 @@ class BySeries {
   Polynomial<T> acceleration() const { return step_.velocity.derivative(); }
   const Polynomial<T>& plate_force() const { return plate_force_; }
   const Polynomial<T>& finger_force() const { return finger_force_; }
+  const Polynomial<T>& sliding_speed() const { return step_.speed; }  ///< on the plate, across too
   Polynomial<T> line(const Line<T>& line) const {
     Polynomial<T> p;
     p.span = step_.span();
@@ -154,12 +155,17 @@ class BySeries {
 
  private:
   static SeriesStep<T> expand(const Drive<T>& drive, const Segment<T>& segment,
-                              const Line<T>& load) {
-    const SeriesMode<T> mode(drive, segment.mode, {segment.plate_velocity, load});
+                              const InputLines<T>& lines) {
+    const SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
     const SeriesState<T> start{segment.flow.position.start, v.start, -segment.finger_force.start,
                                v.drift};
-    return SeriesFlow<T>(mode.equation(), start, segment.end - segment.begin, true);
+    const T span = segment.end - segment.begin;
+    if (segment.creeps)
+      for (const bool within_step : {true, false})
+        if (const CreepFlow<T> creep(mode.equation(), start, span, within_step); creep.holds())
+          return creep;
+    return SeriesFlow<T>(mode.equation(), start, span, true);
   }
   /// Of a rigid finger, or skin, that slips.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode) const {

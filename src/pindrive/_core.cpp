@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <tuple>
 #include <type_traits>
@@ -48,9 +49,10 @@ using Dual = pd::Dual<double>;
 /// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
 using ContactNumbers = std::tuple<double, double, double, Rows>;
 /// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
-/// row for a constant; displacement, velocity, skin stretch, duration.
+/// row for a constant; displacement, velocity, skin stretch; rows of the force and of the
+/// velocity across; duration.
 using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
-                           double, double, double, double>;
+                           double, double, double, Rows, Rows, double>;
 
 /// A tuple of Python's as the struct with the same fields.
 template <class Struct, class Tuple>
@@ -164,6 +166,18 @@ nb::dict segments(const CoreMotion<T>& motion) {
   return table;
 }
 
+/// Of each segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+Array<double> acceleration_bounds(const CoreMotion<double>& motion) {
+  return column<double>(motion, [view = motion.view()](const pd::Segment<double>& segment) {
+    return view.along(segment, [](const auto& along) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(along)>, pd::BySeries<double>>)
+        return pd::largest_size(along.acceleration());
+      else
+        return std::numeric_limits<double>::quiet_NaN();
+    });
+  });
+}
+
 /// The numbers of a result by their names.
 template <class T, class Result, std::size_t count>
 nb::dict named(const pd::NamedNumber<T, Result> (&numbers)[count], const Result& of) {
@@ -275,6 +289,8 @@ NB_MODULE(_core, m) {
       .def("extrema", &extrema, "quantity"_a, "until"_a, "most"_a, "Times and values.")
       .def("events", &events, "begin"_a, "end"_a, "most"_a,
            "Times and the segments that the events end, cycles expanded.")
+      .def("acceleration_bounds", &acceleration_bounds,
+           "Of each segment without a closed form, what |x''| stays below, m/s²; else NaN.")
       .def_prop_ro("known_until", [](const Motion& c) { return c.view().known_until(); })
       .def_prop_ro("status", [](const Motion& c) { return static_cast<int>(c.outcome().status); })
       .def_prop_ro("end", [](const Motion& c) { return static_cast<int>(c.outcome().end); })
@@ -287,13 +303,16 @@ NB_MODULE(_core, m) {
       "simulate",
       [](double mass, double stiffness, double damping, const ContactNumbers& plate,
          const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
-         double displacement, double velocity, double skin_stretch, double duration) {
+         double displacement, double velocity, double skin_stretch, const Rows& force,
+         const Rows& across_velocity, double duration) {
         const Numbers numbers(mass, stiffness, damping, plate, finger, mouse_velocity, plate_load,
-                              displacement, velocity, skin_stretch, duration);
+                              displacement, velocity, skin_stretch, force, across_velocity,
+                              duration);
         return run<double>(numbers, numbers);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
-      "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "duration"_a,
+      "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
+      "across_velocity"_a, "duration"_a,
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
       "(time, value), one row for a constant.");

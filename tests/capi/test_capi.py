@@ -105,7 +105,12 @@ class Case:
     )
     curves: dict[str, Rows] = field(default_factory=lambda: {"plate": [], "finger": []})
     inputs: dict[str, Rows] = field(
-        default_factory=lambda: {"mouse_velocity": [(0.0, 0.10)], "plate_load": [(0.0, 1.0)]}
+        default_factory=lambda: {
+            "mouse_velocity": [(0.0, 0.10)],
+            "plate_load": [(0.0, 1.0)],
+            "force": [(0.0, 0.0)],
+            "across_velocity": [(0.0, 0.0)],
+        }
     )
 
     def as_core(self) -> tuple[Any, ...]:
@@ -120,7 +125,9 @@ class Case:
             *(n["mass"], n["stiffness"], n["damping"]),
             *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
-            *(n["displacement"], n["velocity"], n["skin_stretch"], n["duration"]),
+            *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
+            self.inputs["across_velocity"],
+            n["duration"],
         )
 
     def core(self) -> _core.Motion:
@@ -158,6 +165,10 @@ def drawn(random: np.random.Generator) -> Case:
         case.inputs["mouse_velocity"] = [(t, between(-0.3, 0.3)) for t in times]
     if kind == 3 or (kind == 2 and random.integers(2)):
         case.inputs["plate_load"] = [(t, between(0, 2)) for t in times]
+        case.inputs["force"] = [(t, between(-0.1, 0.1)) for t in [*times, times[-1]]]
+        if random.integers(2):
+            n["duration"] = between(0.05, 0.3)
+            case.inputs["across_velocity"] = [(t, between(-0.1, 0.1)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)

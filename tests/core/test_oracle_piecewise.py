@@ -88,6 +88,8 @@ def release(case: Case) -> Motion:
             velocity=pin["velocity"],
             plate_load=profile(pin["load"]),
             skin_stretch=pin["skin_stretch"],
+            force=profile(pin.get("force", [[0.0, 0.0]])),
+            across_velocity=profile(pin.get("across", [[0.0, 0.0]])),
         ),
         duration=case["duration"],
     )

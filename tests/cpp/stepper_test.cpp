@@ -85,15 +85,15 @@ struct Values {
   double x, v, plate, finger;
 };
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
-                 const pd::Line<double>& load, double tau) {
-  const auto friction = pd::friction_in(drive, segment, load, tau);
-  return pd::visit_trajectory(drive, segment, load, [&](const auto& t) {
+                 const pd::InputLines<double>& lines, double tau) {
+  const auto friction = pd::friction_in(drive, segment, lines, tau);
+  return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
     return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
                   friction.finger};
   });
 }
 Values values_of(const pd::Stepper<double>& stepper) {
-  return values_in(stepper.drive(), stepper.segment(), stepper.load(), stepper.tau());
+  return values_in(stepper.drive(), stepper.segment(), stepper.lines(), stepper.tau());
 }
 
 pd::Inputs<double, pd::Held<double>> start_of(const Case& c) {
@@ -137,7 +137,7 @@ void compare(const Case& c, Random& random, Worst& worst) {
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
       const Values found = values_of(*stepper);
       const Values expected =
-          values_in(c.drive, *segment, whole.inputs.plate_load.from(segment->begin), tau);
+          values_in(c.drive, *segment, pd::InputLines<double>::of(whole.inputs, *segment), tau);
       worst.position = std::max(worst.position, std::abs(found.x - expected.x) / size);
       worst.velocity = std::max(worst.velocity, std::abs(found.v - expected.v) / speed);
       ++worst.checked;

@@ -11,9 +11,11 @@ SHORT = (1, 2, 5, 9, 12, 15)
 """Seeds of scans that a general integrator gets through in a second."""
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_random_scans(seed: int) -> None:
-    one = RandomScan.of(seed)
+@pytest.mark.parametrize(
+    ("seed", "curved"), [*((s, False) for s in range(40)), (0, True), (1, True)]
+)
+def test_random_scans(seed: int, curved: bool) -> None:
+    one = RandomScan.of(seed, curved=curved)
     pin = one.scan()
     assert pin.motion.certificate().worst < 1e-9
     assert parting(pin, one.halves()) < 1e-10

@@ -93,6 +93,8 @@ def test_the_template_shows_every_key() -> None:
         'coefficient_curve = [["0 mm/s", 0.5], ["50 mm/s", 0.4]]',
         'mouse_velocity = [["0 ms", "60 mm/s"], ["100 ms", "0 mm/s"]]',
         'plate_load = [["0 ms", 5], ["5 ms", 1]]',
+        'force = [["0 ms", "10 mN"], ["20 ms", "0 mN"]]',
+        'across_velocity = [["0 ms", "10 mm/s"], ["100 ms", "0 mm/s"]]',
     ]
 
 

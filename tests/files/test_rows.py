@@ -126,7 +126,7 @@ def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Pa
 
 UNITS = {"preload": "N", "mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N",
          "kinetic": "N", "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
-         "settling_band": ""}  # fmt: skip
+         "force": "N", "settling_band": ""}  # fmt: skip
 
 
 def _toml(key: str, value: object) -> str:

@@ -22,10 +22,11 @@ struct Rows {
 /// A drive and its inputs, owned.
 struct Case {
   double mass{}, stiffness{}, damping{};
-  std::array<double, 2> limit{};    ///< static friction of plate and finger
-  std::array<Rows, 2> curve;        ///< kinetic friction over speed; one row is Coulomb
-  double skin{never};               ///< stiffness of the finger
-  Rows mouse_velocity, plate_load;  ///< over time; one row is a constant
+  std::array<double, 2> limit{};  ///< static friction of plate and finger
+  std::array<Rows, 2> curve;      ///< kinetic friction over speed; one row is Coulomb
+  double skin{never};             ///< stiffness of the finger
+  Rows mouse_velocity, plate_load, force{{0}, {0}},
+      across{{0}, {0}};  ///< over time; one row is a constant
   double displacement{}, velocity{}, duration{};
 };
 
@@ -44,6 +45,8 @@ inline void write(std::ostream& out, const Case& c) {
   rows("mouse_velocity", c.mouse_velocity);
   rows("plate_load", c.plate_load);
   out << "start " << c.displacement << ' ' << c.velocity << ' ' << c.duration << '\n';
+  if (c.force.at.size() > 1 || c.force.value[0] != 0) rows("force", c.force);
+  if (c.across.at.size() > 1 || c.across.value[0] != 0) rows("across", c.across);
 }
 
 /// False if the text is no such drive.
@@ -64,7 +67,11 @@ inline bool read(std::istream& in, Case& c) {
   rows(c.mouse_velocity);
   rows(c.plate_load);
   in >> name >> c.displacement >> c.velocity >> c.duration;
-  return static_cast<bool>(in);
+  if (!in) return false;
+  for (int next; in >> std::ws && ((next = in.peek()) == 'f' || next == 'a');)
+    rows(next == 'f' ? c.force : c.across);
+  in.clear();
+  return true;
 }
 
 }  // namespace fuzz

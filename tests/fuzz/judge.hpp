@@ -46,8 +46,14 @@ struct Given {
             {c.curve[0].value[0], c.limit[0], never, plate.data(), static_cast<int>(plate.size())},
             {c.curve[1].value[0], c.limit[1], c.skin, finger.data(),
              static_cast<int>(finger.size())}},
-        inputs{profile(c.mouse_velocity), c.displacement, c.velocity, c.duration,
-               profile(c.plate_load)} {}
+        inputs{profile(c.mouse_velocity),
+               c.displacement,
+               c.velocity,
+               c.duration,
+               profile(c.plate_load),
+               std::numeric_limits<double>::quiet_NaN(),
+               profile(c.force),
+               profile(c.across)} {}
   Given(const Given&) = delete;
   Given& operator=(const Given&) = delete;
 

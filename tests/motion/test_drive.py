@@ -161,8 +161,8 @@ def test_a_curve_alone_says_the_kinetic_friction() -> None:
         (lambda: Profile([0, 1], [0, math.inf]), "values[1] must be finite, got inf"),
         (
             lambda: Profile([0, 1], ["60 mm/s", "5 N"]),
-            'values must be numbers in SI, or text all like "60 mm/s" or all like "1", '
-            'got "60 mm/s", "5 N"',
+            'values must be numbers in SI, or text all like "60 mm/s" or all like "1" or all like '
+            '"10 mN", got "60 mm/s", "5 N"',
         ),
         (lambda: Profile([0, 1], ["60 mm/s", "1"]), "values must be numbers in SI, or text all"),
         (lambda: Profile([0, 1], ["1e13 m/s", 0]), "values[0] must be finite and at least -1e12"),

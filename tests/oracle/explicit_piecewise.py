@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import copysign, inf, sqrt
+from math import copysign, hypot, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -72,6 +72,9 @@ class ExplicitModes:
         self.plate, self.finger = Law(inputs["plate"]), Law(inputs["finger"])
         self.soft = not self.finger.absent and self.finger.stiffness < inf
         self.mouse, self.load = (np.array(inputs[n], float).T for n in ("mouse_velocity", "load"))
+        self.push = np.array(inputs.get("force", [[0.0, 0.0]]), float).T
+        self.across = np.array(inputs.get("across", [[0.0, 0.0]]), float).T
+        self.oblique = bool(self.across[1].any())  # then it never is 0
         self.samples, self.tool = list(samples), tool
         self.t = 0.0
         self.enter_knot()
@@ -90,18 +93,24 @@ class ExplicitModes:
             "finger": self.finger.piece(abs(v)),
         }
         self.left: set[str] = set()
-        at_plate = not self.plate.absent and v == self.vp
+        at_plate = not self.plate.absent and v == self.vp and not self.oblique
+        if self.oblique:
+            self.p, self.pieces["plate"] = 1.0, self.plate.piece(self.sliding(0.0, v))
         at_finger = not self.finger.absent and not self.soft and v == 0
         self.decide(at_plate, at_finger)
 
     def enter_knot(self) -> None:
         """The lines of mouse velocity and load from the knot t on."""
-        later = [u for u in (*self.mouse[0], *self.load[0]) if u > self.t]
+        later = [
+            u for u in (*self.mouse[0], *self.load[0], *self.push[0], *self.across[0]) if u > self.t
+        ]
         self.t0, self.t1 = self.t, min(later, default=inf)
         self.vp, self.lam = np.interp(self.t, *self.mouse), np.interp(self.t, *self.load)
+        self.pushed = np.interp(self.t, *self.push)
         width = self.t1 - self.t0
         moving = width < inf
         self.w = (np.interp(self.t1, *self.mouse) - self.vp) / width if moving else 0.0
+        self.harder = (before(self.t1, *self.push) - self.pushed) / width if moving else 0.0
         self.rise = (before(self.t1, *self.load) - self.lam) / width if moving else 0.0
 
     def mouse_at(self, t: float) -> float:
@@ -112,9 +121,18 @@ class ExplicitModes:
 
     # -- forces on the pin ---------------------------------------------------------------------
 
+    def sliding(self, t: float, v: float) -> float:
+        """The speed of sliding on the plate."""
+        u = v - self.mouse_at(t)
+        return float(hypot(u, np.interp(t, *self.across)) if self.oblique else self.p * u)
+
     def sliding_plate(self, t: float, v: float) -> float:
         if self.plate.absent:
             return 0.0
+        if self.oblique:
+            speed = self.sliding(t, v)
+            friction = self.load_at(t) * self.plate(self.pieces["plate"], speed)
+            return -friction * (v - self.mouse_at(t)) / speed
         return (
             -self.p
             * self.load_at(t)
@@ -131,7 +149,8 @@ class ExplicitModes:
 
     def free(self, t: float, x: float, v: float) -> float:
         """All but friction."""
-        return float(self.m * self.w - self.b * v - self.k * x)
+        pushed = self.pushed + self.harder * (t - self.t0)
+        return float(self.m * self.w + pushed - self.b * v - self.k * x)
 
     def plate_needed(self, t: float, y: State) -> float:
         v = self.mouse_at(t)
@@ -172,7 +191,9 @@ class ExplicitModes:
         for watch in found:
             watch.scale = force
         if self.p and not self.on_plate:
-            found += self.band("plate", self.plate, lambda t, y: self.p * (y[1] - self.mouse_at(t)))
+            found += self.band("plate", self.plate, lambda t, y: self.sliding(t, y[1]))
+            if self.oblique:
+                found = [w for w in found if (w.contact, w.kind) != ("plate", "level")]
         if self.f and not self.on_finger and not self.grips:
             found += self.band("finger", self.finger, lambda t, y: self.f * y[1])
         for watch in found:
@@ -287,7 +308,7 @@ class ExplicitModes:
         return np.array([self.x, self.v, self.s])
 
     def stopped(self) -> bool:
-        return bool(self.vp == 0 and self.w == 0)
+        return bool(self.vp == 0 and self.w == 0) and not self.oblique
 
     def note(self, contact: str, kind: str) -> None:
         self.run.events.append((self.t, contact, kind, self.x, self.v))
@@ -362,7 +383,7 @@ class ExplicitModes:
         was_rest, load = self.stopped(), self.load_at(self.t)
         self.enter_knot()
         less = self.lam < load * (1 - 1e-12)  # a step down
-        if self.soft or self.plate.absent or self.finger.absent or self.vp != 0:
+        if self.oblique or self.soft or self.plate.absent or self.finger.absent or self.vp != 0:
             needed = abs(self.plate_needed(self.t, self.y)) if self.on_plate and less else 0.0
             if needed > self.plate_static(self.t):
                 self.break_loose("plate")

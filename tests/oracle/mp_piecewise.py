@@ -10,7 +10,7 @@ leading coefficients of its guards are positive.
 Inputs are a mapping of SI values: mass, stiffness, damping, displacement, velocity (None: that of
 the plate), skin_stretch (None: as the start asks), mouse_velocity and load as rows (time, value),
 plate and finger as mappings with curve (rows of speed and force), static, and stiffness (None:
-rigid).
+rigid); and force, rows of an external force, unless there is none.
 """
 
 from __future__ import annotations
@@ -129,9 +129,10 @@ class _Simulation:
         self.duration, self.most_events = duration, most_events
         self.m, self.k, self.b = (mpf(inputs[n]) for n in ("mass", "stiffness", "damping"))
         self.mouse, self.load = Profile(inputs["mouse_velocity"]), Profile(inputs["load"])
+        self.push = Profile(inputs.get("force", [[0.0, 0.0]]))
         self.law = {c: law for c in CONTACTS if (law := Friction.read(inputs[c]))}
         self.rigid = [c for c, law in self.law.items() if isinf(law.stiffness)]
-        knots = {t for profile in (self.mouse, self.load) for t, _ in profile.rows}
+        knots = {t for profile in (self.mouse, self.load, self.push) for t, _ in profile.rows}
         self.knots = sorted(t for t in knots | {duration} if 0 < t <= duration)
         self.t, self.x = mpf(0), mpf(inputs["displacement"])
         given = inputs["velocity"]
@@ -220,6 +221,11 @@ class _Simulation:
             [self.load(self.t), self.load.slope(self.t) * h],
         )
 
+    def pushed(self, h: mpf) -> Poly:
+        """What pushes the pin beside friction: inertia, and the external force."""
+        inertia = self.m * self.mouse.slope(self.t)
+        return [inertia + self.push(self.t), self.push.slope(self.t) * h]
+
     def series(self, h: mpf) -> Poly:
         """Taylor series of x through the present state in the present mode."""
         mouse, load = self.lines(h)
@@ -227,7 +233,7 @@ class _Simulation:
             return [self.x, mouse[0] * h, mouse[1] * h / 2]
         if self.side.get("finger") == 0 and "finger" in self.rigid:
             return [self.x]
-        push = [self.m * mouse[1] / h, mpf(0)]
+        push = self.pushed(h)
         damping, stiffness, growing = self.b, self.k, mpf(0)
         if plate := self.law.get("plate"):
             band = self.band["plate"]
@@ -267,7 +273,7 @@ class _Simulation:
                 found[contact] = times(-law.stiffness, plus([self.stretch - self.x], x))
         held = [c for c in self.law if c not in found]
         if held:
-            inertia = plus(times(self.m / h, derivative(v)), [-self.m * mouse[1] / h])
+            inertia = plus(times(self.m / h, derivative(v)), times(mpf(-1), self.pushed(h)))
             demand = plus(inertia, times(self.b, v), times(self.k, x))
             rest = [times(mpf(-1), force) for force in found.values()]
             found[held[0] if len(held) == 1 else "both"] = plus(demand, *rest)

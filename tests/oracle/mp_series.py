@@ -46,7 +46,7 @@ class Profile:
         self.rows = [(mpf(t), mpf(y)) for t, y in rows]
 
     def __call__(self, t: mpf) -> mpf:
-        if t <= self.rows[0][0]:
+        if t < self.rows[0][0]:
             return self.rows[0][1]
         for (t0, y0), (t1, y1) in pairwise(self.rows):
             if t < t1:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from oracle import sundials_modes
+from oracle import explicit_piecewise, sundials_modes
+from oracle.watched_dop853 import Integrator
 from pindrive import Contact, Profile
 from pindrive.device import PinScan
 
@@ -35,11 +36,11 @@ class Distance:
         return max(self.position, self.velocity, self.force, self.stretch)
 
 
-def distance(pin: PinScan) -> Distance:
+def distance(pin: PinScan, tool: Integrator = sundials_modes.cvode) -> Distance:
     """Integrate it anew, and compare."""
     last = JUST_BEFORE * pin.end
     samples = np.linspace(0.0, last, SAMPLES)
-    run = sundials_modes.solve(_inputs(pin), pin.end, samples.tolist())
+    run = explicit_piecewise.solve(_inputs(pin), pin.end, samples.tolist(), tool)
     mine = [(e.contact, e.kind, e.time) for e in pin.events if e.time < last]
     theirs = [(contact, kind, time) for time, contact, kind, _, _ in run.events if time < last]
     same = [row[:2] for row in mine] == [row[:2] for row in theirs]
@@ -75,5 +76,5 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
 
 def _contact(surface: Contact) -> dict[str, Any]:
     stiffness = None if surface.rigid else surface.stiffness
-    curve = [(0.0, surface.kinetic)]
+    curve = surface.curve or [(0.0, surface.kinetic)]
     return {"curve": curve, "static": surface.static_friction, "stiffness": stiffness}

@@ -31,8 +31,7 @@ class Device:
         array: where the pins are.
 
     Raises:
-        ValueError: a plate without friction, by which no magnet could hold, or with a friction
-            curve, under which a changing pull is not piecewise linear.
+        ValueError: a plate without friction, by which no magnet could hold.
     """
 
     drive: Drive
@@ -42,7 +41,7 @@ class Device:
 
     def __post_init__(self) -> None:
         """Validate what fits together."""
-        check_plate(self.drive.plate)
+        check_holds(self.drive.plate)
 
     @property
     def magnet_neighbours(self) -> tuple[Neighbours, ...]:
@@ -64,13 +63,14 @@ class Device:
     def excursion(self, speed: float) -> float:
         """How far a pin can come from its rest at most, either way, m.
 
-        Carried to where the plate's static friction ends against the spring, it has the plate's
-        velocity left. A hand that speeds up by a adds m a / k.
+        Carried to where the plate's friction ends against the spring, static or at the speeds at
+        which it pulls outwards, it has the plate's velocity left. A hand that speeds up by a adds
+        m a / k.
 
         Args:
             speed: of the hand at most, m/s.
         """
-        held = self.drive.plate.static_friction * self.load(self.magnet.hold_force)
+        held = self.drive.plate.largest(speed) * self.load(self.magnet.hold_force)
         return held / self.drive.stiffness + speed / self.drive.natural_frequency
 
     @property
@@ -90,11 +90,8 @@ class Device:
         return 1.0 + pull / self.drive.normal_force
 
 
-def check_plate(plate: Contact) -> None:
+def check_holds(plate: Contact) -> None:
     """Refuse a plate that no magnet can hold by."""
-    if plate.curved:
-        required = "without a friction curve where a magnet changes its load"
-        raise ValueError(refusal("plate", required, f"a curve of {len(plate.curve or ())} rows"))
     if plate.kinetic == 0.0:
         required = "greater than 0 N where a magnet holds by friction"
         raise ValueError(refusal("plate.kinetic", required, "0.0 N"))

@@ -2,14 +2,16 @@
 
 The gap of two pins is their clearance at rest less how far one runs into the other,
 x(ahead) - x(behind): x is counted against the drive axis. Between the events of both pins and the
-rows of their inputs each x is one closed form, whose acceleration y obeys
+rows of their inputs each x is, as a rule, one closed form, whose acceleration y obeys
 
     m y'' + c y' + κ y = 0,    so that    |y|, as long as that lasts, <= sqrt(y² + (y'/ω)²) now
 
-with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). With |y|
-of both together below A, a gap is nowhere in a time h more than A h²/8 below both its ends. Times
-in which it might become smaller than what was found so far are cut into pieces until there are
-none: no smaller gap is missed by more than `CLOSE`.
+with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). Where c
+changes within a piece, as that of a friction curve under a changing load, the piece is a step of a
+power series, and |y| stays below the largest of the Bernstein coefficients of its acceleration
+(docs/theory.md, section 11). With |y| of both together below A, a gap is nowhere in a time h more
+than A h²/8 below both its ends. Times in which it might become smaller than what was found so far
+are cut into pieces until there are none: no smaller gap is missed by more than `CLOSE`.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+
+from pindrive.motion.drive import Profile
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,7 +100,7 @@ def _closest(behind: _Pieces, ahead: _Pieces) -> tuple[float, float]:
 
 
 class _Pieces:
-    """A motion by the pieces in each of which it is one closed form."""
+    """A motion by the pieces in each of which it is one closed form, or a step of a series."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion = motion
@@ -116,7 +120,10 @@ class _Pieces:
 
     @cached_property
     def _coefficients(self) -> dict[str, NDArray[Any]]:
-        """Of each piece c and κ over m, the slope g of its force over m, whether it is stuck."""
+        """Of each piece c and κ over m, the slope g of its force over m, whether it is stuck.
+
+        And what |x''| stays below, NaN where these say it.
+        """
         motion, drive = self.motion, self.motion.drive
         begin, end = self.knots[:-1], self.knots[1:]
         middle = 0.5 * (begin + end)
@@ -132,33 +139,52 @@ class _Pieces:
         finger = np.array([segment.finger == 0 for segment in segments])[which]
         rigid = drive.finger.rigid
         stiffness = drive.stiffness + np.where(finger & (not rigid), drive.finger.stiffness, 0.0)
-        damping = drive.damping + _slope(drive.finger.curve, np.abs(motion.velocity(middle)))
+        velocity = motion.velocity(middle)
+        damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
+        if drive.plate.curved:  # under a load that stays: else there is a bound
+            load = motion.release.plate_load
+            factor = load(middle) if isinstance(load, Profile) else load
+            speed = np.abs(velocity - motion.plate_velocity(middle))
+            damping = damping + factor * _slope(drive.plate.curve, speed)
         c, k = damping / drive.mass, stiffness / drive.mass
         changes = [
             of(end, "left") - of(begin)
             for of in (motion.acceleration, motion.velocity, motion.position)
         ]
         slope = (changes[0] + c * changes[1] + k * changes[2]) / (end - begin)
-        return {"c": c, "k": k, "g": slope, "stuck": plate | (finger & rigid)}
+        return {
+            "c": c,
+            "k": k,
+            "g": slope,
+            "stuck": plate | (finger & rigid),
+            "bound": motion.acceleration_bounds[which],
+        }
 
     def largest_acceleration(
         self, t: NDArray[np.float64], lasts: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """A bound on |x''| from `t` on for as long as `lasts`, s, within a piece, m/s²."""
         i = np.searchsorted(self.knots, t, "right") - 1
-        c, k, g, stuck = (self._coefficients[name][i] for name in ("c", "k", "g", "stuck"))
+        c, k, g, stuck, bound = (
+            self._coefficients[name][i] for name in ("c", "k", "g", "stuck", "bound")
+        )
         now = self.motion.acceleration(t)
         jerk = g - c * now - k * self.motion.velocity(t)
         growth = np.exp(np.maximum(-c, 0.0) * lasts)
-        return np.where(stuck, np.abs(now), np.hypot(now, jerk / np.sqrt(k)) * growth)
+        closed = np.where(stuck, np.abs(now), np.hypot(now, jerk / np.sqrt(k)) * growth)
+        return np.where(np.isnan(bound), closed, bound)
 
 
 def _slope(
     curve: Sequence[tuple[float, float]] | None, speed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """How friction rises with sliding speed (m/s), N·s/m; beyond the last row as before it."""
+    """How friction rises with sliding speed (m/s), N·s/m; beyond the last row as before it.
+
+    Where it has fallen to zero it stays there.
+    """
     if curve is None or len(curve) < 2:
         return np.zeros_like(speed)
     speeds, forces = np.array(curve).T
     i = np.clip(np.searchsorted(speeds, speed, "right") - 1, 0, len(speeds) - 2)
-    return np.asarray((np.diff(forces) / np.diff(speeds))[i])
+    slope = (np.diff(forces) / np.diff(speeds))[i]
+    return np.where(forces[i] + slope * (speed - speeds[i]) < 0.0, 0.0, slope)

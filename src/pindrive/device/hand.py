@@ -127,6 +127,22 @@ class HandPath:
         along = self.vx * cos(axis) + self.vy * sin(axis)
         return Profile((self.times - self.times[0]).tolist(), along.tolist())
 
+    def across_velocity(self, axis: float = default("axis")) -> Profile | float:
+        """The velocity of the plate across the drive axis, over the time since `begin`.
+
+        Args:
+            axis: direction of the drive axis on the page, rad.
+
+        Returns:
+            The hand's velocity a right angle from that axis, towards the left; 0 for a hand that
+            moves along the axis, to the rounding of its speed.
+        """
+        across = self.vy * cos(axis) - self.vx * sin(axis)
+        speed = float(np.hypot(self.vx, self.vy).max())
+        if np.abs(across).max() <= 4.0 * np.finfo(np.float64).eps * speed:
+            return 0.0
+        return Profile((self.times - self.times[0]).tolist(), across.tolist())
+
     def angles(self, axis: float = default("axis")) -> tuple[float, float]:
         """The angle between motion and drive axis, rad: the largest, and the mean over the way.
 

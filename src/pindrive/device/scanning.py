@@ -451,6 +451,7 @@ def prepare(
     check_work(device, scene, path)
     looks = device.control.looks(path.begin, path.end)
     plate_velocity = path.plate_velocity(device.array.axis)
+    across_velocity = path.across_velocity(device.array.axis)
     states = [PinState()] * len(device.array) if start is None else start
     prepared: list[PinScan] = []
     rows = switchings = 0
@@ -475,7 +476,12 @@ def prepare(
                 commands=commands,
                 current=current,
                 release=Release(
-                    plate_velocity, state.position, state.velocity, load, state.skin_stretch
+                    plate_velocity,
+                    state.position,
+                    state.velocity,
+                    load,
+                    state.skin_stretch,
+                    across_velocity=across_velocity,
                 ),
                 coil=coil,
                 decision=decision,

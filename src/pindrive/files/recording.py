@@ -10,6 +10,7 @@ from pindrive.files.schema import Tables, number
 from pindrive.files.template import NUMBERS, usual
 from pindrive.motion.contact import check_slopes
 from pindrive.motion.drive import check_times
+from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.table import QUANTITIES, default, refusal
@@ -116,7 +117,7 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
     times = table.column("t", "profile.time", "s", "t [s]")
     values = table.column(name, name, quantity.unit, example.partition(", ")[2])
     table.check_rows(f"a CSV of {name}", 1)
-    why = " (a jump would take an infinite force)" if key == SPEED else ""
+    why = " (a jump would take an infinite force)" if name in CONTINUOUS else ""
     check_times(
         times,
         where=table.file,

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil
 from pindrive.device.controller import ControlBlock, check_band
-from pindrive.device.device import Criteria, Device, check_plate
+from pindrive.device.device import Criteria, Device, check_holds
 from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
@@ -42,7 +42,7 @@ from pindrive.motion.friction import (
     friction_force,
     normal_force,
 )
-from pindrive.motion.release import Release
+from pindrive.motion.release import CONTINUOUS, INPUTS, Release
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
@@ -163,7 +163,7 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
         check_increasing(firsts, across.unit, where=place, label=label)
         check_slopes(rows, SLOPES[quantity.rows_of], where=place, label=key)
     else:
-        no_step = " (a jump would take an infinite force)" if key == "motion.mouse_velocity" else ""
+        no_step = " (a jump would take an infinite force)" if quantity.name in CONTINUOUS else ""
         check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
         check_slopes(rows, "profile.rate", where=place, label=key)
     return tuple(rows)
@@ -216,7 +216,7 @@ def release_of(values: Mapping[str, Value]) -> Release:
     """The initial state and the inputs that [motion] describes."""
     given = table_of(values, "motion")
     del given["duration"], given["settling_band"]
-    for name in ("mouse_velocity", "plate_load"):
+    for name in INPUTS:
         given[name] = over_time(given[name])
     return Release(**given)
 
@@ -323,7 +323,7 @@ class Whole:
         """What does not fit together; `given` is the file's tables."""
         values, problems = self.values, Problems(place)
         plate_keys = ("plate", "plate.curve", "plate.kinetic")
-        problems.check(check_plate, contact_of(values, "plate"), keys=plate_keys)
+        problems.check(check_holds, contact_of(values, "plate"), keys=plate_keys)
         magnet_keys = tuple(f"magnet.{name}" for name in given["magnet"]) or ("magnet",)
         problems.check(self._check_magnet, set(given["magnet"]), keys=magnet_keys)
         band = values["control.threshold"], values["control.hysteresis"]

@@ -60,6 +60,8 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
     values["motion.velocity"] = release.velocity
     values["motion.mouse_velocity"] = release.mouse_velocity
     values["motion.plate_load"] = release.plate_load
+    values["motion.force"] = release.force
+    values["motion.across_velocity"] = release.across_velocity
     values["motion.skin_stretch"] = release.skin_stretch
     before = {k: v for k, v in device.values().items() if k not in device.derived}
     changed = {}

@@ -283,6 +283,8 @@ def _releases(given: Sequence[Recording], release: Release | Sequence[Release]) 
             each.velocity,
             each.plate_load if recording.plate_load is None else recording.plate_load,
             each.skin_stretch,
+            each.force,
+            each.across_velocity,
         )
         for recording, each in zip(given, listed, strict=True)
     ]

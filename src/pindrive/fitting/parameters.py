@@ -308,7 +308,7 @@ class Assembly:
 
     def release(self, theta: Any, r: int) -> Release:
         """The release of a recording with these parameters."""
-        *_, plate_velocity, load, x, v, stretch, _ = self.numbers(theta, r)
+        *_, plate_velocity, load, x, v, stretch, force, across, _ = self.numbers(theta, r)
         carried = self._carried[r] and "velocity" not in self._own[r]
         return Release(
             _made_input(plate_velocity),
@@ -316,6 +316,8 @@ class Assembly:
             None if carried else float(v),
             _made_input(load),
             None if isnan(stretch) else float(stretch),
+            _made_input(force),
+            _made_input(across),
         )
 
     def along(self, theta: Sequence[float], i: int, r: int) -> CoreNumbers:
@@ -348,7 +350,7 @@ def _made_input(rows: Any) -> float | Profile:
 
 
 def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: float) -> Any:
-    mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, _ = base
+    mass, stiffness, damping, plate, finger, plate_velocity, load, x, v, stretch, *others, _ = base
     mass = values.get("mass", mass)
     stiffness = values.get("stiffness", stiffness)
     damping = values.get("damping", damping)
@@ -369,7 +371,7 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
         stretch = stretch / (finger[1] / finger[2]) * (contacts[1][1] / contacts[1][2])
     return (
         *(mass, stiffness, damping, *contacts, plate_velocity, load),
-        *(x, v, stretch, duration),
+        *(x, v, stretch, *others, duration),
     )
 
 

@@ -236,6 +236,11 @@ def _constants(
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))
+    for name in ("force", "across_velocity"):
+        value, unit = getattr(release, name), QUANTITIES[name].unit
+        if value != 0.0:
+            given = "a Profile" if isinstance(value, Profile) else f"{value!r} {unit}"
+            raise ValueError(refusal(name, f"0 {unit}; `simulate` follows one", given))
     has = {
         "mass": drive.mass,
         "stiffness": drive.stiffness,

@@ -116,6 +116,17 @@ class Contact:
         """Whether friction depends on the sliding speed."""
         return self.curve is not None and len(self.curve) > 1
 
+    def largest(self, speed: float) -> float:
+        """Largest friction force at sliding speeds up to `speed` (m/s) and without sliding, N."""
+        rows = self.curve or ()
+        if len(rows) < 2:
+            return self.static_friction
+        forces = [force for u, force in rows if u <= speed]
+        i = min(len(forces), len(rows) - 1)
+        (u0, f0), (u1, f1) = rows[i - 1 : i + 1]
+        forces.append(f0 + (f1 - f0) / (u1 - u0) * (speed - u0))
+        return max([self.static_friction, *forces])
+
     @property
     def rigid(self) -> bool:
         """Whether the surface gives way by sliding alone."""

@@ -51,14 +51,14 @@ def check_times(
             raise ValueError(refusal(named(i), required, given, where))
 
 
-def check_continuous(velocity: Profile) -> None:
-    """Refuse a mouse velocity with a step: it would take an infinite force."""
+def check_continuous(name: str, velocity: Profile) -> None:
+    """Refuse a velocity of the hand with a step: it would take an infinite force."""
     for t in velocity.steps:
         i = bisect_right(velocity.times, t)
         y, z = velocity.values[i - 2 : i]
         required = "without a step (a jump would take an infinite force)"
         given = f"one from {y!r} m/s to {z!r} m/s at {t!r} s"
-        raise ValueError(refusal("mouse_velocity", required, given))
+        raise ValueError(refusal(name, required, given))
 
 
 def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
@@ -295,10 +295,12 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
     if str not in set(map(type, values)):
         return "", values
     over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
-    for unit in [quantity.unit for quantity in over_time]:
+    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # of each unit
+    units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
+    for unit in units:
         with suppress(UnitError):
             return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
-    usual = " or all like ".join(quoted(quantity.usual) for quantity in over_time)
+    usual = " or all like ".join(quoted(first[unit].usual) for unit in units)
     texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
     raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
 

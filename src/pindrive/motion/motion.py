@@ -14,7 +14,7 @@ from pindrive import _core, lazy
 from pindrive.lazy import xr
 from pindrive.motion.drive import Profile
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
-from pindrive.motion.release import core_numbers
+from pindrive.motion.release import INPUTS, core_numbers
 from pindrive.motion.results import (
     Certificate,
     ContactName,
@@ -288,6 +288,14 @@ class Motion(lazy.NotebookHtml):
         """The modes in order, each one closed form; of a stick-slip cycle, one round of it."""
         return segments_of(self._table)
 
+    @cached_property
+    def acceleration_bounds(self) -> NDArray[np.float64]:
+        """Of each segment without a closed form, what |x''| stays below, m/s², shape (segments,).
+
+        NaN of one in closed form, whose swing says so.
+        """
+        return self._core.acceleration_bounds()
+
     @property
     def status(self) -> Status:
         """Whether the motion was followed to its end; `Status.explanation` says why not."""
@@ -409,7 +417,7 @@ class Motion(lazy.NotebookHtml):
                 values |= {n: getattr(drive, n) for n in PRESSED_BY[name] if n != "mass"}
         if not drive.finger.rigid:
             values["finger.stiffness"] = drive.finger.stiffness
-        for name in ("mouse_velocity", "plate_load"):
+        for name in INPUTS:
             given = getattr(self.release, name)
             values[name] = given.rows if isinstance(given, Profile) else given
         values["displacement"] = self.release.displacement
@@ -429,9 +437,9 @@ class Motion(lazy.NotebookHtml):
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; of a contact given by a
                 coefficient `plate_coefficient`, `plate_static_coefficient`, `preload`,
                 `finger_coefficient`, `finger_static_coefficient`, `touch_force`; `mouse_velocity`,
-                `plate_load` (all rows of a profile together), `displacement`, `velocity`,
-                `skin_stretch`; or one row: `plate_curve[1].force`, `plate_curve[1].speed`,
-                `mouse_velocity[2].value`, `plate_load[2].time`.
+                `plate_load`, `force`, `across_velocity` (all rows of a profile together),
+                `displacement`, `velocity`, `skin_stretch`; or one row: `plate_curve[1].force`,
+                `plate_curve[1].speed`, `mouse_velocity[2].value`, `plate_load[2].time`.
 
         Returns:
             The derivatives of position, velocity, events and all numbers, with NaN and the reason

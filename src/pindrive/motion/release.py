@@ -19,7 +19,19 @@ from pindrive.quantities.table import QUANTITIES, check, default, refusal
 Rows = Sequence[tuple[float, float]]
 ContactNumbers = tuple[float, float, float, Rows]
 CoreNumbers = tuple[
-    float, float, float, ContactNumbers, ContactNumbers, Rows, Rows, float, float, float, float
+    float,
+    float,
+    float,
+    ContactNumbers,
+    ContactNumbers,
+    Rows,
+    Rows,
+    float,
+    float,
+    float,
+    Rows,
+    Rows,
+    float,
 ]
 """In the order of `Numbers` in _core.cpp."""
 PLACES: Final[dict[str, tuple[int, ...]]] = {
@@ -36,6 +48,8 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "displacement": (7,),
     "velocity": (8,),
     "skin_stretch": (9,),
+    "force": (10,),
+    "across_velocity": (11,),
 }
 """Where each number, or the rows of an input, stands among them."""
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -43,10 +57,27 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
     "finger_curve": (4, 3),
     "mouse_velocity": (5,),
     "plate_load": (6,),
+    "force": (10,),
+    "across_velocity": (11,),
 }
 """Where all rows of a table stand."""
+INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity")
+"""What a release has over time: a number or a `Profile` each."""
 
-__all__ = ["PLACES", "ROWS", "CoreNumbers", "Release", "Rows", "core_numbers", "entry"]
+CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
+"""Those of them that may not have steps."""
+
+__all__ = [
+    "CONTINUOUS",
+    "INPUTS",
+    "PLACES",
+    "ROWS",
+    "CoreNumbers",
+    "Release",
+    "Rows",
+    "core_numbers",
+    "entry",
+]
 
 
 def entry(numbers: Any, place: tuple[int, ...]) -> Any:
@@ -71,6 +102,12 @@ class Release:
         plate_load: factor on the plate's friction, from 0 to 1e12; constant or a `Profile`.
         skin_stretch: stretch of a compliant finger that grips at the start, m, up to 1e12 either
             way; None: the stretch of a finger being slid along or, for a pin at rest, none.
+        force: external force on the pin, N, up to 1e12 either way, positive the way of x; constant
+            or a `Profile`, which may have steps.
+        across_velocity: w, the velocity of the plate across the axis of the pin, m/s, up to 1e12
+            either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
+            its friction opposes the whole sliding velocity. With one that lasts `simulate` needs a
+            duration.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -81,6 +118,8 @@ class Release:
     velocity: float | None
     plate_load: float | Profile
     skin_stretch: float | None
+    force: float | Profile
+    across_velocity: float | Profile
 
     def __init__(
         self,
@@ -89,6 +128,8 @@ class Release:
         velocity: float | str | None = None,
         plate_load: float | str | Profile = default("plate_load"),
         skin_stretch: float | str | None = None,
+        force: float | str | Profile = default("force"),
+        across_velocity: float | str | Profile = default("across_velocity"),
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -98,6 +139,8 @@ class Release:
         put(self, "plate_load", _input("plate_load", plate_load))
         stretch = None if skin_stretch is None else check("skin_stretch", skin_stretch)
         put(self, "skin_stretch", stretch)
+        put(self, "force", _input("force", force))
+        put(self, "across_velocity", _input("across_velocity", across_velocity))
 
     @property
     def initial_velocity(self) -> float:
@@ -117,8 +160,8 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
     if given.unit and given.unit != quantity.unit:
         other = "plain numbers" if given.unit == "1" else f"values in {given.unit}"
         raise ValueError(refusal(name, f"a Profile of {quantity.kinds}", other))
-    if name == "mouse_velocity":
-        check_continuous(given)
+    if name in CONTINUOUS:
+        check_continuous(name, given)
     if not all(end in bounds and end in limits for end in (min(given.values), max(given.values))):
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
@@ -143,6 +186,12 @@ def check_fits(drive: Drive, release: Release) -> None:
         check_stretch(release.skin_stretch, drive.finger)
 
 
+def oblique_at_last(release: Release) -> bool:
+    """Whether the hand moves across the axis at the end: then no ending is found."""
+    across = release.across_velocity
+    return (across.values[-1] if isinstance(across, Profile) else across) != 0.0
+
+
 def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:
     """A drive, a release and a duration (s; None: until the ending is seen) as the core has it."""
     plate, finger = drive.plate, drive.finger
@@ -157,6 +206,8 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         release.displacement,
         release.initial_velocity,
         nan if release.skin_stretch is None else release.skin_stretch,
+        _rows(release.force),
+        _rows(release.across_velocity),
         inf if duration is None else duration,
     )
 

@@ -42,7 +42,7 @@ Table = dict[str, "NDArray[Any]"]
 _KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
 _EACH: tuple[Cause, ...] = ("plate", "finger")
 _BOTH: tuple[Cause, ...] = ("both",)
-_SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0}
+_SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0, 4: 2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +73,10 @@ class Segment:
     mode: ModeName
     """`slip`; `carried` (stuck to the moving plate); `resting` (stuck to what does not move)."""
     plate: int | None
-    """Sign of the sliding velocity, 0 while stuck, None for a frictionless contact."""
+    """Sign of the sliding velocity, 0 while stuck, 2 while the plate slides across too, None for a
+    frictionless contact."""
     finger: int | None
-    """The same; 0 also while compliant skin grips."""
+    """The same of the finger; 0 also while compliant skin grips."""
 
 
 class Extrema(NamedTuple):
@@ -264,6 +265,7 @@ class Ledger:
     skin_end: float
     plate_work: float
     inertia_work: float
+    force_work: float
     damper_dissipated: float
     plate_dissipated: float
     finger_dissipated: float

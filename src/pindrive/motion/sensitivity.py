@@ -48,7 +48,7 @@ _COEFFICIENTS = (
 """Parameters that the core knows by the forces that follow from them."""
 _ROW = re.compile(
     r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
-    r"|(mouse_velocity|plate_load)\[(\d+)\]\.(time|value))"
+    r"|(mouse_velocity|plate_load|force|across_velocity)\[(\d+)\]\.(time|value))"
 )
 
 
@@ -406,11 +406,11 @@ def _natural_size(motion: Simulated, place: Place) -> float:
     match place:
         case (0 | 1 | 2,):
             return drive.mass * omega
-        case (5, _, 1) | (8,) | (3 | 4, 3, _, 0):
+        case (5 | 11, _, 1) | (8,) | (3 | 4, 3, _, 0):
             return length * omega
         case (6, _, 1):
             return 1.0
-        case (5 | 6, _, 0):
+        case (5 | 6 | 10 | 11, _, 0):
             return 1.0 / omega
         case (7 | 9,):
             return length
@@ -423,7 +423,9 @@ def _in_range(numbers: CoreNumbers) -> bool:
     def increase(rows: Rows) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
 
-    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_, stretch, _ = numbers
+    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_, stretch, force, across, _ = (
+        numbers
+    )
     contacts = all(
         static >= kinetic >= 0.0
         and give > 0.0
@@ -436,7 +438,8 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and stiffness > 0.0
         and contacts
         and increase(mouse_velocity)
-        and all(before[0] <= after[0] for before, after in pairwise(plate_load))
+        and increase(across)
+        and all(a[0] <= b[0] for rows in (plate_load, force) for a, b in pairwise(rows))
         and all(load >= 0.0 for _, load in plate_load)
         and not abs(stretch) * finger[2] > finger[1]
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pindrive import _core
 from pindrive.motion.motion import Motion
-from pindrive.motion.release import check_fits
+from pindrive.motion.release import check_fits, oblique_at_last
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
@@ -73,6 +73,9 @@ def simulated(
 ) -> Motion:
     """What `simulate` does, without its warnings: for numbers that no person has written."""
     check_fits(drive, release)
+    if duration is None and oblique_at_last(release):
+        required = "given where the hand moves across the axis at the end"
+        raise ValueError(refusal("duration", required, "None"))
     end = None if duration is None else check("duration", duration)
     if end is not None:
         check_phase(end, drive.natural_frequency)
@@ -90,7 +93,9 @@ def check_phase(duration: float, natural_frequency: float) -> None:
 
 def _plausible(numbers: CoreNumbers) -> bool:
     """Whether `warn_of` has nothing to say, quickly: a motion takes microseconds."""
-    mass, stiffness, damping, plate, finger, v_plate, load, x, v, _, duration = numbers
+    mass, stiffness, damping, plate, finger, v_plate, load, x, v, _, force, across, duration = (
+        numbers
+    )
     m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
     return (
         m0 <= mass <= m1
@@ -100,7 +105,8 @@ def _plausible(numbers: CoreNumbers) -> bool:
         and finger[1] <= finger1
         and (skin0 <= finger[2] <= skin1 or finger[2] == inf)
         and not (plate[3] or finger[3])
-        and len(v_plate) == len(load) == 1
+        and len(v_plate) == len(load) == len(force) == len(across) == 1
+        and force[0][1] == across[0][1] == 0.0
         and abs(v_plate[0][1]) <= speed1
         and load[0][1] <= load1
         and abs(x) <= x1

@@ -399,6 +399,11 @@ def parameters(motion: Motion) -> str:
         words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
     if isinstance(motion.release.plate_load, Profile) or motion.release.plate_load != 1.0:
         words.append(f"$λ$ = {_course('plate_load', _values(motion.release.plate_load))}")
+    if motion.release.across_velocity != 0.0:
+        across = _values(motion.release.across_velocity)
+        words.append(f"$w$ = {_course('across_velocity', across)}")
+    if motion.release.force != 0.0:
+        words.append(rf"$F_\mathrm{{e}}$ = {_course('force', _values(motion.release.force))}")
     words.append(rf"$v_\mathrm{{p}}$ = {_course('mouse_velocity', _values(v_plate))}")
     words.append(f"$x_0$ = {short('displacement', motion.release.displacement)}")
     if motion.release.initial_velocity != float(motion.plate_velocity(0.0)):

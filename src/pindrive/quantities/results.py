@@ -105,6 +105,7 @@ ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.skin_end", "E_f", "J", "energy in a compliant finger at the end"),
     Quantity("energy.plate_work", "W_in", "J", "work that the moving plate puts in"),
     Quantity("energy.inertia_work", "W_a", "J", "work of the accelerating housing"),
+    Quantity("energy.force_work", "W_e", "J", "work of the external force"),
     Quantity("energy.damper_dissipated", "W_b", "J", "energy turned into heat in the damper"),
     Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
     Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),

@@ -17,7 +17,7 @@ from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive, Profile
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
 from pindrive.motion.motion import Motion
-from pindrive.motion.release import Release
+from pindrive.motion.release import INPUTS, Release
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.status import End, SimulationError, Status
@@ -106,6 +106,8 @@ _WHOLE: Final = {
 }
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
 """What is asked of a motion, beside its drive and its release."""
+_FOLLOWED: Final = ("motion.skin_stretch", "motion.force", "motion.across_velocity")
+"""Which points `simulate_batch` does not take."""
 _RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
 """Arrays of one length by the names of their variables."""
@@ -189,15 +191,16 @@ def follow(plan: Plan, at: Mapping[str, float]) -> Motion:
 def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     """Whether the points of a device must be simulated one by one."""
     changes = {
-        "motion.mouse_velocity": isinstance(device.release.mouse_velocity, Profile),
-        "motion.plate_load": isinstance(device.release.plate_load, Profile),
+        f"motion.{name}": isinstance(getattr(device.release, name), Profile) for name in INPUTS
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
         or device.drive.plate.curved
         or device.drive.finger.curved
         or device.release.skin_stretch is not None
-        or "motion.skin_stretch" in swept
+        or device.release.force != 0.0
+        or device.release.across_velocity != 0.0
+        or not swept.keys().isdisjoint(_FOLLOWED)
     )
 
 

@@ -1,0 +1,83 @@
+/// The friction of a plate that also slides across, along the axis, at an instant: how it changes from there.
+#pragma once
+
+#include <cmath>
+
+#include "pindrive/flow.hpp"
+#include "pindrive/model.hpp"
+#include "pindrive/state.hpp"
+
+namespace pindrive::detail {
+
+/// The sliding velocity along the axis and across, both lines from here on. With the branch F + S ρ,
+/// ρ = √(u² + w²), the force is −λ (F d + S u), d = u/ρ; u' w − u w' does not change.
+template <class T>
+struct ObliqueSlip {
+  Line<T> u, w;  ///< m/s
+
+  /// ρ ρ': positive where the plate slides ever faster.
+  T closing() const { return u.value * u.rate + w.value * w.rate; }
+  T force_rate(const Branch<T>& branch, const Line<T>& load) const {
+    const T strength = at_rest(branch);
+    return -load.rate * (strength * along() + branch.slope * u.value) -
+           load.value * (strength * turning() + branch.slope * u.rate);
+  }
+  T force_bend(const Branch<T>& branch, const Line<T>& load) const {
+    const T strength = at_rest(branch);
+    return -2 * load.rate * (strength * turning() + branch.slope * u.rate) -
+           load.value * strength * turning_rate();
+  }
+
+ private:
+  static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
+  T speed() const {
+    using std::hypot;
+    return hypot(u.value, w.value);
+  }
+  T along() const {
+    using std::hypot;
+    return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate);
+  }
+  T turn() const { return u.rate * w.value - u.value * w.rate; }
+  /// d' and d''; none while it sets out from no speed.
+  T turning() const {
+    const T r = speed();
+    return r > 0 ? turn() * w.value / (r * r * r) : T(0);
+  }
+  T turning_rate() const {
+    const T r = speed();
+    return r > 0 ? turn() * (w.rate - 3 * w.value * closing() / (r * r)) / (r * r * r) : T(0);
+  }
+};
+
+/// Whether a contact of relative velocity u slides across too; then it slips on the branch of its speed, and
+/// `at` is the end of that which it is at, the one it has just come to or none. Where it no longer slides across,
+/// it slips along the axis, or is asked whether it sticks.
+template <class Side, class T>
+bool asks_across(Side& side, T u, Bound& at) {
+  using std::hypot;
+  const auto& contact = side.contact;
+  if (side.across.value == 0 && side.across.rate == 0) {
+    if (!side.oblique()) return false;
+    side.does = {ContactState::stick, Bound::none, 0, T(0)};
+    if (u != 0)
+      side.does = Side::slip(u < 0 ? T(-1) : T(1), Bound::none, contact.branch_of(u < 0 ? -u : u));
+    return false;
+  }
+  if (!contact.present()) return false;
+  const T speed = hypot(u, side.across.value);
+  if (!side.oblique())
+    side.does = {ContactState::slip_oblique, Bound::none, contact.branch_of(speed), T(0)};
+  const Branch<T> range = side.branch();
+  if (at == Bound::none && speed >= range.to) at = Bound::upper;
+  if (at == Bound::none && !(speed > range.from || side.does.branch == 0)) at = Bound::lower;
+  side.friction = range.at(speed);
+  const T rate = side.surface.rate;
+  side.direction = speed > 0 ? u / speed : -rate / hypot(rate, side.across.rate);
+  if (at == Bound::none) return true;
+  side.count = 2;
+  side.friction = contact.branch(at == Bound::upper ? side.does.branch + 1 : side.does.branch).force;
+  return true;
+}
+
+}  // namespace pindrive::detail
