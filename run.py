@@ -398,7 +398,7 @@ def fmu_binaries(platforms: list[str]) -> int:
         target, suffix = FMU_PLATFORMS[name]
         library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
         library.parent.mkdir(parents=True, exist_ok=True)
-        part = library.with_name("part")
+        part = library.with_name(f"part.{suffix}")
         command = [str(BIN / "python"), "-m", "ziglang", "c++", "-target", target, *options]
         if suffix != "dll":
             command.append("-fvisibility=hidden")
