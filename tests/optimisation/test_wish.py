@@ -186,12 +186,13 @@ def test_a_device_file_is_no_wish() -> None:
 def test_a_catalogue_sets_several_keys_of_a_part(tmp_path: Path) -> None:
     """Rows stay together, in the order of the first key."""
     file = tmp_path / "springs.csv"
-    file.write_text("part;drive.stiffness [N/mm];mass [g]\nstiff;0.2;12\nsoft;0.1;11\n")
+    file.write_text("part;drive.stiffness [N/mm];mass [g];price\nstiff;0.2;12;3\nsoft;0.1;11;2\n")
     wish = wish_of(
         pd.load_device(MOUSE),
         {"catalogues": {"spring": str(file)}, "goals": {"minimise": "settling_time"}},
     )
     (spring,) = wish.variables
     assert spring.catalogue is not None and spring.catalogue.parts == ("soft", "stiff")
+    assert spring.catalogue.prices == (2.0, 3.0)
     found = {key: values.tolist() for key, values in spring.columns(np.array([0.2, 0.9])).items()}
     assert found == {"drive.stiffness": [100.0, 200.0], "drive.mass": [0.011, 0.012]}

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from pindrive.files.device import DeviceFile
+    from pindrive.study.outputs import Demand
 
 _OWN: Final = ("name", *STUDY_KEYS)
 _SAMPLE: Final = ("method", "count", "seed")
@@ -116,7 +117,7 @@ def plan_of(
         device=device,
         dimensions=reader.dimensions,
         links=reader.links,
-        outputs=tuple(dict.fromkeys((*reader.outputs(), *(d.name for d in demanded)))),
+        outputs=_with_demanded(reader.outputs(), demanded),
         chunk=reader.chunk(),
         tolerances=reader.tolerances,
         tolerance_links=reader.tolerance_links,
@@ -128,6 +129,13 @@ def plan_of(
     if problems:
         raise ConfigError(list(dict.fromkeys(problems)))
     return plan
+
+
+def _with_demanded(outputs: Sequence[str], demanded: Iterable[Demand]) -> tuple[str, ...]:
+    """The variables to keep, and those that the specification limits."""
+    added = dict.fromkeys(demand.name for demand in demanded if demand.name not in outputs)
+    kept = [name for name in outputs if name != "status"]
+    return (*kept, *added, "status") if added else tuple(outputs)
 
 
 def _too_much(plan: Plan) -> Iterator[str]:
