@@ -79,7 +79,8 @@ constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
     "finger.stiffness";
 constexpr const char* release_names =
-    "mouse_velocity, plate_load, force, across_velocity, displacement, velocity, skin_stretch, duration";
+    "mouse_velocity, plate_load, force, across_velocity, displacement, velocity, skin_stretch, "
+    "duration";
 
 pindrive_error check_band(double band);
 /// What the core can follow, and what fits the direction of a derivative.

@@ -398,7 +398,9 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
                 PINDRIVE_SKIN_STRETCH_RATE, quantity);
   *value = stepper->ask([&](const auto& of) {
     const auto tau = of.tau();
-    const auto friction = [&] { return pd::friction_in(of.drive(), of.segment(), of.lines(), tau); };
+    const auto friction = [&] {
+      return pd::friction_in(of.drive(), of.segment(), of.lines(), tau);
+    };
     return pd::visit_trajectory(of.drive(), of.segment(), of.lines(), [&](const auto& along) {
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });

@@ -65,17 +65,17 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
   using std::sqrt;
   const Drive<T>& drive = motion.drive();
   const bool skin = drive.finger.present() && !drive.finger.rigid();
-  const auto& force = motion.inputs().force;
-  const bool pushed = !force.constant() || force.first() != 0;
+  const auto& pushes = motion.inputs().force;
+  const bool pushed = !pushes.constant() || pushes.first() != 0;
   Ledger<T> ledger{};
   const auto state = [&](T t, T& kinetic, T& spring, T& in_skin) {
     const auto [segment, tau] = motion.locate(t, Side::left);
     motion.along(*segment, [&, tau = tau](const auto& along) {
       const T x = along.at(along.position(), tau), v = along.at(along.velocity(), tau);
-      const T force = along.at(along.finger_force(), tau);
+      const T stretched = along.at(along.finger_force(), tau);
       kinetic = drive.mass * v * v / 2;
       spring = drive.stiffness * x * x / 2;
-      in_skin = skin ? force * force / (2 * drive.finger.stiffness) : T(0);
+      in_skin = skin ? stretched * stretched / (2 * drive.finger.stiffness) : T(0);
     });
   };
   state(T(0), ledger.kinetic_start, ledger.spring_start, ledger.skin_start);
@@ -94,9 +94,9 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
       ledger.inertia_work += over(along.line({inertia, T(0)}), along.velocity());
       T largest = abs(inertia);
       if (pushed) {
-        const Line<T> force = motion.inputs().force.from(segment.begin);
-        ledger.force_work += over(along.line(force), along.velocity());
-        largest += std::max(abs(force.at(from)), abs(force.at(to)));
+        const Line<T> push = pushes.from(segment.begin);
+        ledger.force_work += over(along.line(push), along.velocity());
+        largest += std::max(abs(push.at(from)), abs(push.at(to)));
       }
       // What goes in and comes out again within a segment leaves its rounding in their sum: by Schwarz's
       // inequality no part of it is larger.

@@ -130,7 +130,8 @@ struct Touch {
     if (!sliding()) return {};
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate, by_load = does.sense * friction * load.rate;
-    T rate = -range.slope * load.value * faster - by_load, bend = -2 * range.slope * load.rate * faster;
+    T rate = -range.slope * load.value * faster - by_load,
+      bend = -2 * range.slope * load.rate * faster;
     if (oblique()) {
       rate = slides(v, acceleration).force_rate(range, load);
       bend = slides(v, acceleration).force_bend(range, load);
@@ -194,10 +195,11 @@ struct Touch {
   }
 
  private:
-  ContactState goes_on_{ContactState::absent};  ///< what it does unless it comes to an end of its range,
-  T sense_{0};                                  ///< in which direction it slips then,
-  int branch_{0};                               ///< on which branch,
-  Bound at_{Bound::none};                       ///< and the end of its range that it is at now
+  ContactState goes_on_{
+      ContactState::absent};  ///< what it does unless it comes to an end of its range,
+  T sense_{0};                ///< in which direction it slips then,
+  int branch_{0};             ///< on which branch,
+  Bound at_{Bound::none};     ///< and the end of its range that it is at now
   ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
   Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
 };

@@ -76,7 +76,8 @@ bool asks_across(Side& side, T u, Bound& at) {
   side.direction = speed > 0 ? u / speed : -rate / hypot(rate, side.across.rate);
   if (at == Bound::none) return true;
   side.count = 2;
-  side.friction = contact.branch(at == Bound::upper ? side.does.branch + 1 : side.does.branch).force;
+  side.friction =
+      contact.branch(at == Bound::upper ? side.does.branch + 1 : side.does.branch).force;
   return true;
 }
 

@@ -25,9 +25,8 @@ class SeriesSegment {
   /// end, s. Its guards come with their zeros.
   template <class Side, class Input>
   bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
-             const Inputs<T, Input>& inputs,
-             const Side& plate, const Side& finger, const State<T>& state, T acceleration,
-             int at_limit, T span) {
+             const Inputs<T, Input>& inputs, const Side& plate, const Side& finger,
+             const State<T>& state, T acceleration, int at_limit, T span) {
     const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
     segment.creeps = false;
     used_ = !mode.has_closed_form();

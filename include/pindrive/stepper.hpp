@@ -20,7 +20,7 @@ namespace pindrive {
 template <class T>
 struct Held {
   T since{0};                                  ///< s
-  Line<T> line;                                ///< from then on
+  Line<T> line{};                              ///< from then on
   T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
 
   Line<T> from(T t) const {
