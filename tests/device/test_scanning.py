@@ -88,6 +88,22 @@ def test_whole_cycles_against_sundials(
     assert pin.motion.certificate().worst < 1e-12
 
 
+def test_a_drive_at_an_angle_to_the_hand() -> None:
+    """The plate slides across while the hand moves: it never sticks, and carries the pin less."""
+    scene = grating(0.004)
+    carried = []
+    for axis in (0.0, 0.2):
+        device = Device(
+            drive=drive(), magnet=weak(1e-2), array=PinArray.grid(1, 1, 0.004, axis=axis)
+        )
+        (pin,) = scan(device, scene, across(scene)).pins
+        assert pin.motion.certificate().worst < 1e-11
+        kinds = {(e.contact, e.kind) for e in pin.events if 0.05 < e.time < pin.end - 0.05}
+        assert (("plate", "stick") in kinds) == (axis == 0.0)
+        carried.append(np.abs(pin.position(np.linspace(0.0, pin.end, 2000))).max())
+    assert carried[1] < carried[0]
+
+
 def test_a_cycle_has_all_its_parts() -> None:
     """The case above does what the issue asks for: drag, slip, release, capture in mid-swing."""
     scene = grating(0.002, 0.012)

@@ -67,16 +67,6 @@ class Draw {
                                : speed_ * uniform(-2, 2);
     if (chance(0.15))
       c.force = profile([&] { return chance(0.3) ? 0 : tidy(force_ * uniform(-1, 1)); }, last, 0.3);
-    if (chance(0.1)) {  // as a hand that moves at an angle, or by itself
-      const double angle = decade(-5, 0.3);
-      if (chance(0.5)) {
-        c.across = c.mouse_velocity;
-        for (double& w : c.across.value) w *= angle;
-      } else {
-        c.across =
-            profile([&] { return chance(0.3) ? 0 : tidy(speed_ * angle * uniform(-1, 1)); }, last);
-      }
-    }
     c.duration = last + period_ * uniform(0.3, long_ ? 12 : 2);
     return c;
   }
