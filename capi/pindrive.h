@@ -109,12 +109,12 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   mouse_velocity  m/s  constant velocity of the plate under the mouse
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
  *   force           N    constant external force on the pin, the way of x; 0 at first
- *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first. With one that
- *                        lasts, the duration must be finite
+ *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
- *   duration        s    > 0; infinite: until the ending is known, as it is at first */
+ *   duration        s    > 0; infinite: until the ending is known, as it is at first
+ * A velocity across that lasts needs a finite duration. */
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 

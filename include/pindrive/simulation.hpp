@@ -102,9 +102,12 @@ class Simulation {
     plate_.ask(state_);
     finger_.ask(state_);
     inertia_ = drive_.mass * plate_.surface.rate;
-    if constexpr (!Surface::plain) inertia_ += force_.value;
     pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
-    const T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
+    T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
+    if constexpr (!Surface::plain) {
+      inertia_ += force_.value;
+      size += abs(force_.rate) * time_;  // known to the rounding of the time
+    }
     state_.roundoff =
         rounding<T> * (size + 2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
     const bool finger_first =

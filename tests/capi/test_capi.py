@@ -414,6 +414,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         case = drawn(random)
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
         rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
+        case.inputs |= {"force": [(0.0, 0.0)], "across_velocity": [(0.0, 0.0)]}
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
         case.numbers["duration"] = changes[-1] + 0.2
         core = case.core()

@@ -9,12 +9,12 @@ from pindrive import Contact, Drive, Release, simulate
 from pindrive._core import settling_band
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.quantity import Bounds, Quantity, significant
-from pindrive.quantities.results import CERTIFICATE, FINAL, OUTPUTS, RATE
+from pindrive.quantities.results import CERTIFICATE, DESIGNED, FINAL, OUTPUTS, RATE
 from pindrive.quantities.table import DEVICE, QUANTITIES, check
 
 
 def test_names_are_unique() -> None:
-    assert len(QUANTITIES) == len((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE))
+    assert len(QUANTITIES) == len((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=lambda q: q.name)
