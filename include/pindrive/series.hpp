@@ -1,196 +1,21 @@
 /// The power series of the modes that have no closed form: a friction curve under a changing load, a
 /// friction curve on a compliant finger, a plate that also slides across the axis.
 ///
-/// Each mode is one differential equation, whose Taylor coefficients follow from recurrences. Order and
-/// length of a step follow from the series itself, with a proven bound of what it leaves out.
+/// The Taylor coefficients of such a mode follow from its equation by recurrences. Order and length of a
+/// step follow from the series itself, with a proven bound of what it leaves out.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "pindrive/polynomial.hpp"
+#include "pindrive/series_equation.hpp"
+#include "pindrive/series_step.hpp"
 
 namespace pindrive {
 
-/// The pin, and what is known of its skin: see SeriesEquation.
-template <class T>
-struct SeriesState {
-  T x, v;     ///< m, m/s
-  T skin{0};  ///< N, or m/s
-  /// Of a pin that is not held, where it is known, so that a tangential departure is one exactly; m/s².
-  T acceleration{std::numeric_limits<T>::quiet_NaN()};
-};
-
-/// A mode without a closed form:
-///
-///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   y' = g x' − h y,
-///
-/// where d is the sign of u or, with a velocity w across, u / √(u² + w²); u and w are then never both 0.
-/// y is the state of a compliant finger of stiffness K: its force (f = 1, g = K, h = 0) while it sticks
-/// elastically; while it slips on a sloped branch, kinetic friction F_c + S_c (|y| − from), its sliding
-/// velocity (f = S_c, g = h = K/S_c), and its constant part is in `force`. A pin that is held moves as the
-/// surface that holds it, and a stick force makes up for what is missing.
-template <class T>
-struct SeriesEquation {
-  T mass, damping, stiffness;          ///< the damping may be negative
-  Line<T> force{T(0), T(0)};           ///< inertia and all that is given over time, N
-  Line<T> plate_velocity{T(0), T(0)};  ///< v_p, m/s
-  Line<T> load{T(1), T(0)};            ///< λ >= 0
-  T plate_force{0};                    ///< F: the branch's friction force, continued to no speed, N
-  T plate_slope{0};                    ///< S, N s/m
-  int side{0};                         ///< the sign of u; 0: the plate slides across too
-  Line<T> across{T(0), T(0)};          ///< w, m/s
-  T skin_factor{0};                    ///< f: 1, or N s/m
-  T skin_gain{0}, skin_decay{0};       ///< g: N/m, or 1/s; h: 1/s
-  bool held{false};                    ///< by a surface of this velocity, m/s
-  Line<T> surface{T(0), T(0)};
-
-  /// The same with time counted from τ on.
-  SeriesEquation from(T tau) const {
-    SeriesEquation later = *this;
-    for (Line<T> SeriesEquation::* line :
-         {&SeriesEquation::force, &SeriesEquation::plate_velocity, &SeriesEquation::load,
-          &SeriesEquation::across, &SeriesEquation::surface})
-      (later.*line).value = (this->*line).at(tau);
-    return later;
-  }
-};
-
-/// The relative acceleration p with which a pin of mass m sets out from a plate that begins to slide across
-/// with the acceleration w': m p + λF p/√(p² + w'²) = what else pulls, N. It grows with the pull: one root.
-template <class T>
-T setting_out(T mass, T friction, T across_rate, T pull) {
-  using std::abs;
-  using std::sqrt;
-  const T w = abs(across_rate);
-  // In t = p/w', from above in size: there the left side bends away from its tangent.
-  T t = pull / (mass * w);
-  bool converged = false;  // the derivative of a dual number does so one round later
-  for (int tries = 0; tries < 200; ++tries) {
-    const T root = sqrt(1 + t * t);
-    const T missed = mass * w * t + friction * t / root - pull;
-    const T move = -missed / (mass * w + friction / (root * root * root));
-    const T next = t + move;
-    // What falls beyond zero has overshot.
-    const T kept = next * t < 0 ? t / 64 : next;
-    const bool done = converged;
-    converged = abs(kept - t) <= 2 * std::numeric_limits<detail::Real<T>>::epsilon() * abs(t);
-    t = kept;
-    if (done) break;
-  }
-  return t * w;
-}
-
-/// One step of such a mode, for as long as its series holds to rounding.
-template <class T>
-class SeriesStep {
- public:
-  using Real = detail::Real<T>;
-
-  Polynomial<T> position, velocity, skin;
-  Polynomial<T> plate_force;  ///< R, N
-  Polynomial<T> stick_force;  ///< of the surface that holds the pin, N; else 0
-  Polynomial<T> speed;        ///< of sliding on the plate, across too: s u or √(u² + w²), m/s
-  /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
-  Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
-  bool creeps{false};  ///< without its fast part: see creep.hpp
-
-  Real span() const { return velocity.span; }
-  SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }
-
- protected:
-  static constexpr int N = series_order;
-  static constexpr Real unit = std::numeric_limits<Real>::epsilon();
-
-  /// Makes them series of the order N over a length of time.
-  void begin(Real step) {
-    each([&](Polynomial<T>& p) {
-      p.span = step;
-      p.degree = N;
-    });
-    position.degree = N + 1;
-  }
-
-  /// The part of the step at which the last terms are rounding of the first ones.
-  Real suggested_part() const {
-    using std::abs;
-    using std::pow;
-    Real least = std::numeric_limits<Real>::infinity();
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
-      const auto size = [&](int n) { return abs(plain(p->c[n])); };
-      const Real largest = std::max({size(0), size(1), size(2)});
-      for (int n = N - 2; n <= N; ++n)
-        if (size(n) > 0 && largest > 0)
-          least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
-    }
-    return least;
-  }
-
-  void rescale(Real part) {
-    each([&](Polynomial<T>& p) {
-      p.span *= part;
-      Real factor{1};
-      for (int n = 0; n <= p.degree; ++n, factor *= part) p.c[n] *= factor;
-    });
-  }
-
-  /// Sums of the sizes of coefficients, from each on to the last.
-  using Sums = std::array<Real, N + 2>;
-  static Sums sums_of(const std::array<T, N + 2>& c) {
-    Sums sums{};
-    for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
-    return sums;
-  }
-  /// The most that a product of two series comes to beyond its order N.
-  static Real beyond(const Sums& p, const Sums& q) {
-    Real sum{0};
-    for (int i = 1; i <= N; ++i) sum += (p[i] - p[i + 1]) * q[N + 1 - i];
-    return sum;
-  }
-
-  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer.
-  void trim() {
-    using std::abs;
-    int needed = 1;
-    Real dropped{0};
-    for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {
-      const auto size = [&](int n) { return abs(plain(p->c[n])); };
-      Real total{0}, tail{0};
-      for (int n = 0; n <= N; ++n) total += size(n);
-      int n = N;
-      while (n > needed && tail + size(n) <= unit / 8 * total) tail += size(n--);
-      needed = std::max(needed, n);
-    }
-    const auto drop = [&](Polynomial<T>& p, int degree, Real& bound) {
-      for (dropped = 0; p.degree > degree; --p.degree) {
-        dropped += abs(plain(p.c[p.degree]));
-        p.c[p.degree] = T(0);
-      }
-      bound += dropped;
-    };
-    Real unused{0};
-    drop(position, needed + 1, x_bound);
-    drop(velocity, needed, v_bound);
-    drop(skin, needed, skin_bound);
-    drop(speed, needed, speed_bound);
-    drop(plate_force, needed, unused);
-    drop(stick_force, needed, unused);
-  }
-
-  std::array<Polynomial<T>, 3> inner_;  // what the recurrences need beside these
-
- private:
-  template <class Visitor>
-  void each(Visitor&& visit) {
-    for (Polynomial<T>* p : {&position, &velocity, &skin, &plate_force, &stick_force, &speed})
-      visit(*p);
-    for (Polynomial<T>& p : inner_) visit(p);
-  }
-};
-
-/// Its Taylor series at a state.
+/// The Taylor series of a mode at a state.
 template <class T>
 class SeriesFlow : public SeriesStep<T> {
  public:

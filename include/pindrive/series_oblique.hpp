@@ -1,10 +1,13 @@
-/// The friction of a plate that also slides across, along the axis, at an instant: how it changes from there.
+/// The friction of a plate that also slides across, along the axis, at an instant: how it changes from there,
+/// and how a pin sets out from the plate and comes to rest on it.
 #pragma once
 
 #include <cmath>
 
 #include "pindrive/flow.hpp"
+#include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
+#include "pindrive/series_equation.hpp"
 #include "pindrive/state.hpp"
 
 namespace pindrive::detail {
@@ -79,6 +82,31 @@ bool asks_across(Side& side, T u, Bound& at) {
   side.friction =
       contact.branch(at == Bound::upper ? side.does.branch + 1 : side.does.branch).force;
   return true;
+}
+
+/// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
+template <class T, class Side>
+T set_out_across(T mass, const Side& plate, T pull) {
+  using std::hypot;
+  const T rest = pull - mass * plate.surface.rate;
+  const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
+  return p / hypot(p, plate.across.rate);
+}
+
+/// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
+/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
+template <class T, class Side>
+void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
+  using std::abs;
+  if (!plate.oblique() || plate.across.value != 0) return;
+  const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
+  const T crept = 100 * abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
+                  4 * rounding<T> * time * changes;
+  if (abs(state.v - plate.surface.value) > crept) return;
+  if (on_finger)
+    plate.surface.value = state.v;
+  else
+    state.v = plate.surface.value;
 }
 
 }  // namespace pindrive::detail

@@ -83,31 +83,6 @@ class SeriesSegment {
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
 
-/// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
-template <class T, class Side>
-T set_out_across(T mass, const Side& plate, T pull) {
-  using std::hypot;
-  const T rest = pull - mass * plate.surface.rate;
-  const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
-  return p / hypot(p, plate.across.rate);
-}
-
-/// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
-/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
-template <class T, class Side>
-void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
-  using std::abs;
-  if (!plate.oblique() || plate.across.value != 0) return;
-  const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
-  const T crept = 100 * abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
-                  4 * rounding<T> * time * changes;
-  if (abs(state.v - plate.surface.value) > crept) return;
-  if (on_finger)
-    plate.surface.value = state.v;
-  else
-    state.v = plate.surface.value;
-}
-
 /// Contacts without friction curves have closed forms only.
 struct NoSeries {
   static constexpr bool used() { return false; }

@@ -1,4 +1,4 @@
-/// The event loop: mode → closed form → earliest event → next mode. No step, no tolerance.
+/// The event loop: mode → closed form or series → earliest event → next mode. No step, no tolerance.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,11 @@
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
+#include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/return.hpp"
+#include "pindrive/selection.hpp"
+#include "pindrive/series_oblique.hpp"
 #include "pindrive/series_segment.hpp"
 
 namespace pindrive {
@@ -23,7 +26,7 @@ namespace pindrive::detail {
 /// Follows one pin from its release and hands each segment to the sink, in order of time; a sink may
 /// return false to stop.
 template <class T, class Surface = Contact<T>, class Input = Profile<T>>
-class Simulation {
+class Simulation : private Selection<T, Surface> {
  public:
   Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
       : Simulation(drive, inputs, T(0)) {
@@ -70,22 +73,21 @@ class Simulation {
  private:
   friend class pindrive::Stepper<T>;
   static constexpr T never = std::numeric_limits<T>::infinity();
-  using Side = Touch<T, Surface>;
+  using Selected = Selection<T, Surface>;
+  using Selected::drive_, Selected::state_, Selected::plate_, Selected::finger_, Selected::limit_;
+  using Selected::stick_force_, Selected::guards_, Selected::mode, Selected::continues;
+  using Selected::time_, Selected::force_, Selected::inertia_, Selected::acceleration_,
+      Selected::tangential_;
+  using typename Selected::Side;
 
   /// A release at a time, of which the first mode is still to be selected.
   Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs, T begin)
-      : drive_(drive),
+      : Selected(drive, begin, inputs.displacement, inputs.velocity),
         inputs_(inputs),
         plain_(drive.mass, drive.damping, drive.stiffness),
         half_period_(plain_.zeros(T(0), T(1)).first),
-        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}),
-        time_(begin),
-        state_{inputs.displacement, inputs.velocity, T(0), T(0), T(0)},
-        plate_(drive.plate),
-        finger_(drive.finger) {
-    using std::abs;
+        half_turn_(plain_.oscillates() ? plain_.half_turn() : Propagator<T>{}) {
     using std::isnan;
-    state_.x_size = abs(state_.x);
     look_ahead();
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
@@ -93,141 +95,9 @@ class Simulation {
     finger_.begin(state_.v, given);
   }
 
-  /// Selects the mode that follows: of the candidates, the first that is consistent, which is to say
-  /// that each guard that is zero has a first derivative that is not zero and is positive. Preferred
-  /// is what sticks; of two contacts that cannot both, the one that held until now, or the plate.
   /// Flat, as calls would cost a plain release a tenth of its time.
   [[gnu::flatten]] void select() {
-    using std::abs;
-    plate_.ask(state_);
-    finger_.ask(state_);
-    inertia_ = drive_.mass * plate_.surface.rate;
-    pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
-    T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
-    if constexpr (!Surface::plain) {
-      inertia_ += force_.value;
-      size += abs(force_.rate) * time_;  // known to the rounding of the time
-    }
-    state_.roundoff =
-        rounding<T> * (size + 2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
-    const bool finger_first =
-        finger_.before == ContactState::stick && plate_.before != ContactState::stick;
-    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
-    const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
-    if (i == 1 && sticks(first, second, 0)) return;
-    if (j == 1 && sticks(second, first, i)) return;
-    for (int k = i; k < first.count; ++k)
-      for (int l = j; l < second.count; ++l) {
-        first.does = first.option(k);
-        second.does = second.option(l);
-        if (sets_out()) return;
-      }
-    outcome_.status = Status::inconsistent;
-  }
-
-  /// Whether a contact sticks while the other one does one of its options.
-  bool sticks(Side& on, Side& other, int option) {
-    on.does = on.option(0);
-    for (; option < other.count; ++option) {
-      other.does = other.option(option);
-      if (holds(on, other)) return true;
-    }
-    return false;
-  }
-
-  /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
-  bool continues() const {
-    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_);
-  }
-
-  /// The force that would keep the pin on a contact's surface, beside what the other does, N, …
-  T stick_force(const Side& on, T of_other) const {
-    return pull_ - (inertia_ - drive_.mass * on.surface.rate) - of_other;
-  }
-  /// … and how it changes; `size` is that of the terms of its slope.
-  Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
-    using std::abs;
-    const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
-    const auto rate = other.force_rate(state_.v, a);
-    size = abs(spring) + abs(damper) + rate.size;
-    T drift = spring + damper - rate.value;
-    if constexpr (!Surface::plain) {
-      drift -= force_.rate;
-      size += abs(force_.rate);
-    }
-    return {force, T(0), T(0), drift, drive_.stiffness * a - rate.bend};
-  }
-
-  /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
-  bool holds(const Side& on, const Side& other) {
-    using std::abs;
-    const T apart = on.surface.rate - other.surface.rate;
-    if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
-    const T of_on = on.contact.static_limit;
-    const T of_other = other.stuck() ? other.contact.static_limit : T(0);
-    const Line<T> most{of_on * on.load.value + of_other * other.load.value,
-                       of_on * on.load.rate + of_other * other.load.rate};
-    const T force = stick_force(on, other.force(state_));
-    const int at_limit = continues() ? limit_ : 0;
-    if (most.value - abs(force) < -state_.roundoff && (force < 0 ? -1 : 1) != at_limit)
-      return false;
-    T size;
-    stick_force_ = stick_force_from(force, on, other, size);
-    guards_.clear();
-    for (const int side : {1, -1}) {
-      Path<T> left = Path<T>(most) + T(-side) * stick_force_;
-      if (!(left.start > state_.roundoff) || side == at_limit) {
-        left.start = T(0);
-        if (abs(left.drift) <= rounding<T> * (size + abs(most.rate)) ||
-            touches(left.drift, left.curvature, state_.roundoff))
-          left.drift = T(0);
-        if ((left.drift != 0 ? left.drift : left.curvature) < 0) return false;
-      }
-      guards_.add_force(left, plate_.stuck(), side);
-    }
-    return true;
-  }
-
-  /// Whether the pin can set out with no contact that sticks. A relative acceleration that is zero is
-  /// exactly zero: it sets out along with that surface.
-  bool sets_out() {
-    using std::abs;
-    tangential_ = false;
-    guards_.clear();
-    const T finger = finger_.force(state_);
-    if constexpr (!Surface::plain)
-      if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
-        plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
-    const T plate = plate_.force(state_);
-    acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
-    const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
-      if (!side.rests(state_.v)) return acceleration_;
-      const T force = own - stick_force(side, of_other);
-      const bool releases = side.before == ContactState::stick && continues();
-      if (!tangential_ && (abs(force) <= state_.roundoff || releases)) {
-        tangential_ = true;
-        acceleration_ = side.surface.rate;
-      }
-      return force;
-    };
-    const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
-    const auto leaves = [&](const Side& side, const Side& other, T force) {
-      if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
-      if (!tangential_) return side.goes_inside(state_, force);
-      const T apart = acceleration_ - side.surface.rate;
-      if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
-        return side.goes_inside(state_, apart);
-      T size;
-      const Path<T> needed = stick_force_from(T(0), side, other, size);
-      const T own = side.force_rate(state_.v, acceleration_).value, jerk = own - needed.drift;
-      const bool none = abs(jerk) <= rounding<T> * (size + abs(own));
-      return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
-    };
-    return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
-  }
-
-  Mode mode() const {
-    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+    if (!Selected::select()) outcome_.status = Status::inconsistent;
   }
 
   /// The segment of the mode that was selected, and its guards.
@@ -354,23 +224,12 @@ class Simulation {
     }
   }
 
-  const Drive<T, Surface>& drive_;
   const Inputs<T, Input>& inputs_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
   Propagator<T> half_turn_;  ///< and how it has moved on there
 
-  T time_, row_{never};  ///< now, and of the next row of an input, s
-  State<T> state_;
-  Side plate_, finger_;   ///< in the mode that was selected
-  int limit_{0};          ///< the side of a stick force that has just come to its limit
-  Line<T> force_{};       ///< from outside, N
-  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v, N
-
-  T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
-  bool tangential_{false};
-  Path<T> stick_force_{};  ///< … or what carries it
-  Guards<T> guards_;
+  T row_{never};  ///< time of the next row of an input, s
   std::conditional_t<Surface::plain, NoSeries, SeriesSegment<T>> series_;
 
   Return<T> returns_;
