@@ -6,7 +6,6 @@
 
 namespace pd = pindrive;
 using check::expect;
-using check::near;
 
 namespace {
 
