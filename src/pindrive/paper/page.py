@@ -49,10 +49,14 @@ td:nth-child(3) { min-width: 9rem; }
 td em { display: block; color: var(--soft); font-size: .82rem; font-style: normal; }
 td strong { font-weight: 600; }
 .holds { color: var(--good); } .part { color: var(--part); } .not { color: var(--bad); }
+.done { color: var(--link); } .open { color: var(--soft); }
 @media print { nav { display: none; }
   h2, h3 { break-after: avoid; } figure { break-inside: avoid; } }
 """
-_KINDS: Final = {"holds": "holds", "holds when": "part", "does not": "not"}
+_KINDS: Final = {
+    **{"holds when": "part", "holds": "holds", "does not hold": "not"},
+    **{"done here": "done", "not done here": "not", "not judged": "open"},
+}
 """The class of a verdict by how it begins."""
 
 
@@ -76,7 +80,7 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
         body,
     )
     body = re.sub(
-        r"<strong>(holds when|holds|does not)",
+        rf"<strong>({'|'.join(_KINDS)})",
         lambda found: f'<strong class="{_KINDS[found[1]]}">{found[1]}',
         body,
     )

@@ -15,7 +15,9 @@ import numpy as np
 import xarray as xr
 
 from pindrive.paper import analysis, baseline, equations, maps, motions, population, sensitivity
+from pindrive.paper.baseline import FACTORS
 from pindrive.paper.claims import claims
+from pindrive.paper.equations import GOOD
 from pindrive.paper.exhibit import at_most, listed, markdown
 from pindrive.paper.page import anchor, page
 from pindrive.paper.population import Claim, Facts
@@ -66,14 +68,17 @@ class Report:
         """The result in a paragraph."""
         count = Counter(claim.verdict.split(" when ")[0] for claim in self.claims)
         whole = sum(c.verdict == "holds" for c in self.claims)
+        judged = count["holds"] + count["does not hold"]
         wrong = [row.number for row in self.rows if row.right]
         return (
-            f"Of {len(self.claims)} sentences of its analysis, results and conclusions, {whole} "
-            f"hold, {count['holds'] - whole} hold under a condition that they do not name, and "
-            f"{count['does not hold']} do not hold. Of its equations, ({'), ('.join(wrong)}) need "
-            "correction; corrected, all agree with the exact simulator to rounding, until friction "
-            "first reverses. When that is, which the paper calls impossible to say analytically, "
-            "is the exact root of (21)."
+            f"Of {judged} statements about the drive, {whole} hold, {count['holds'] - whole} hold "
+            f"under a condition that they do not name, and {count['does not hold']} do not hold; "
+            f"{count['done here']} say what its authors did and are done here, "
+            f"{count['not judged']} are of scope and not judged. Of its equations, "
+            f"({'), ('.join(wrong)}) need correction; corrected, all agree with the exact "
+            "simulator to rounding, until friction first reverses. When that is has no elementary "
+            "closed form, as the paper says; it is a root of (21) that can be isolated and is "
+            "found to rounding."
         )
 
     @property
@@ -88,37 +93,49 @@ class Report:
 
     def equation_cells(self) -> list[tuple[str, ...]]:
         """The table of equations: headings, and a row each; formulas as TeX between dollars."""
-        headings = ("", "as printed\nright form", "compared", "printed off by", "right off by")
+        headings = (
+            *("", "as printed\nright form", "compared", "printed off by, at worst"),
+            *(f"for ζ ≤ {max(FACTORS):g}", f"by at most {GOOD:g}", "right off by"),
+        )
         table: list[tuple[str, ...]] = [headings]
         for row in self.rows:
             forms = f"${row.printed}$\n" + (f"${row.right}$" if row.right else "as printed")
-            off = f"{row.off_printed:.2g}" if row.right else ""
-            table.append(
-                (f"({row.number})", forms, row.against, off, f"${at_most(row.off_right)}$")
-            )
+            off = [
+                f"{x:.2g}" if row.right else "" for x in (row.off_printed, row.off_lightly_damped)
+            ]
+            right = f"${at_most(row.off_right)}$"
+            table.append((f"({row.number})", forms, row.against, *off, row.good, right))
         return table
 
     def slips(self) -> str:
         """What else is wrong with the text around the equations."""
         return (
-            "Beside these: (1) gives F_1 to the plate and F_2 to the finger, the analysis then "
-            "says F_1 = 0 and keeps the plate's friction as F_2; (22) is said to follow from (17) "
-            "and follows from (21); v_p is defined twice."
+            "Beside these: one clash of labels, (1) gives F_1 to the plate and F_2 to the finger, "
+            "the analysis then says F_1 = 0 and keeps the plate's friction as F_2; (22) is said to "
+            "follow from (17) and follows from (21); v_p is defined twice."
         )
 
     def trials(self) -> xr.Dataset:
         """The table of equations and the verdicts as data."""
+        judged = [claim for claim in self.claims if claim.true is not None]
+        trials = [np.asarray(claim.true) for claim in judged]
         return xr.Dataset(
             {
                 "off_printed": ("equation", [row.off_printed for row in self.rows], {"units": "1"}),
+                "off_lightly_damped": (
+                    "equation",
+                    [row.off_lightly_damped for row in self.rows],
+                    {"units": "1"},
+                ),
+                "good": ("equation", [row.good for row in self.rows]),
                 "off_right": ("equation", [row.off_right for row in self.rows], {"units": "1"}),
-                "trials": ("sentence", [claim.true.size for claim in self.claims]),
-                "true": ("sentence", [int(np.sum(claim.true)) for claim in self.claims]),
-                "verdict": ("sentence", [claim.verdict for claim in self.claims]),
+                "trials": ("sentence", [true.size for true in trials]),
+                "true": ("sentence", [int(true.sum()) for true in trials]),
+                "verdict": ("sentence", [claim.verdict for claim in judged]),
             },
             coords={
                 "equation": [row.number for row in self.rows],
-                "sentence": [claim.sentence for claim in self.claims],
+                "sentence": [claim.sentence for claim in judged],
             },
             attrs={
                 "title": "Largest deviation of each equation, and verdicts",
@@ -228,7 +245,7 @@ def text(report: Report, about: str = _DOCS) -> str:
                     (
                         f"“{claim.sentence}” *{claim.place}*",
                         f"**{claim.verdict}**",
-                        f"{claim.finding} {_link(report, claim.shown_by)}",
+                        f"{claim.finding} {_link(report, claim.shown_by)}".strip(),
                     )
                     for claim in report.claims
                 ),
@@ -267,7 +284,9 @@ def files(report: Report, step: Callable[[str], None] = lambda _: None) -> dict[
 
 
 def _link(report: Report, name: str) -> str:
-    """To an exhibit's heading."""
+    """To an exhibit's heading, where there is one."""
+    if not name:
+        return ""
     titles = {exhibit.name: exhibit.title for exhibit in report.exhibits}
     title = markdown(titles.get(name, _EQUATIONS))
     return f"[→ {name.replace('-', ' ')}](#{anchor(title)})"
