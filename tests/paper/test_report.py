@@ -17,7 +17,7 @@ import xarray as xr
 from PIL import Image
 from typer.testing import CliRunner
 
-from pindrive import Contact, Drive, Release, simulate
+from pindrive import Contact, Drive, Profile, Release, simulate
 from pindrive.cli.app import app
 from pindrive.paper import as_printed, formulas, maps, population, report
 from pindrive.paper.claims_of_analysis import has_closed_form
@@ -337,7 +337,7 @@ def test_the_releases_are_those_stated() -> None:
 
 
 def test_the_curves_are_the_simulations(made: Report) -> None:
-    """At random places of each of the six, against `simulate` alone."""
+    """At random places of each of the eight, against `simulate` alone."""
     draw = np.random.default_rng(4)
     time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
     base = {"mass": 0.01, "stiffness": 100.0, "damping": 0.32, "plate_kinetic": 0.022,
@@ -348,6 +348,8 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
             at = {"parameter": parameter.argument}
             value = float(time.value.sel(at).isel(point=point))
             p = base | {parameter.argument: value}
+            p["finger_kinetic"] = 0.5 * p.get("touch_force", 0.01)
+            fall = p.get("fall_time", 0.0)
             drive = Drive(
                 mass=p["mass"],
                 stiffness=p["stiffness"],
@@ -356,11 +358,41 @@ def test_the_curves_are_the_simulations(made: Report) -> None:
                 finger=Contact(p["finger_kinetic"]),
             )
             v, x = p["mouse_velocity"], p["displacement"]
-            found = simulate(drive, Release(v, x))
+            load = Profile([0.0, fall], [12.0, 1.0])
+            found = simulate(drive, Release(v, x, plate_load=load))
             shown = time.settling_time.sel(at).isel(point=point)
             assert float(shown) == pytest.approx(found.transient.settling_time, rel=1e-9), where
             peak = way.peak_displacement.sel(at).isel(point=point)
             assert float(peak) == pytest.approx(found.transient.peak_displacement, rel=1e-12)
+    for point in draw.integers(0, time.sizes["point"], 5):
+        mass = float(time.value.sel(parameter="mass")[point])
+        heavy = Drive(
+            mass=mass,
+            stiffness=100.0,
+            damping=0.32,
+            plate=Contact(0.022 * mass / 0.01),
+            finger=Contact(0.005),
+        )
+        numbers = simulate(heavy, Release(0.06, 2e-3)).transient
+        shown = float(time.settling_time_by_weight[point])
+        assert shown == pytest.approx(numbers.settling_time, rel=1e-9)
+        shown = float(way.peak_displacement_by_weight[point])
+        assert shown == pytest.approx(numbers.peak_displacement, rel=1e-9)
+
+
+def test_load_and_fall_of_the_pull(made: Report) -> None:
+    """A heavier finger ends it sooner; a slower fall releases later and farther out."""
+    time, way = (exhibit(made, f"influence-on-{name}").data for name in ("time", "displacement"))
+    touch, fall = ({"parameter": name} for name in ("touch_force", "fall_time"))
+    assert trend(time.settling_time.sel(touch)).startswith("falls on the whole")
+    assert trend(way.peak_displacement.sel(touch)) == "falls throughout"
+    assert trend(time.settling_time.sel(fall)) == trend(way.peak_displacement.sel(fall))
+    late = way.peak_displacement.sel(fall)
+    carried = 0.06 * 0.03  # how far the plate moves while the pull falls
+    assert 0.0 < float(late[-1] - late[0]) < carried
+    for e in ("time", "displacement"):
+        rows = [row[0] for row in exhibit(made, f"influence-on-{e}").table]
+        assert "mass, friction follows the weight" in rows
 
 
 def test_the_maps_are_the_simulations(made: Report) -> None:

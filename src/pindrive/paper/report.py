@@ -207,7 +207,9 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
             Section(
                 "The question that the paper poses",
                 "How do the time of the transitional period and the maximum displacement depend on "
-                f"{listed(names)}? The paper sets this as its problem and answers in words.",
+                f"{listed(names)}? The paper sets this as its problem and answers in words. Touch "
+                "force is its system load, stiffness its rigidity; mass and the fall time of the "
+                "magnet's pull are not in its list.",
                 (sensitivity.settling(curves), sensitivity.displacement(curves), *of_maps),
             ),
             Section(
