@@ -10,6 +10,7 @@ from pindrive.paper import as_printed, formulas, population
 from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis
 from pindrive.paper.exhibit import at_most, share
 from pindrive.paper.population import TINY, Claim, finger_friction, swing
+from pindrive.paper.scope import statements
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -135,6 +136,7 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
 def claims(facts: Facts, equations: list[Row]) -> list[Claim]:
     """Every sentence in the order of the paper."""
     return [
+        *statements(),
         *of_the_analysis(facts),
         *_of_the_simulation(facts, equations),
         *steady_state(),

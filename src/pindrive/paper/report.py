@@ -14,7 +14,16 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import numpy as np
 import xarray as xr
 
-from pindrive.paper import analysis, baseline, equations, maps, motions, population, sensitivity
+from pindrive.paper import (
+    analysis,
+    baseline,
+    device,
+    equations,
+    maps,
+    motions,
+    population,
+    sensitivity,
+)
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.claims import claims
 from pindrive.paper.equations import GOOD
@@ -37,7 +46,7 @@ TITLE: Final = "“Dynamics of tactile device drive”: reproduced, corrected an
 PAGE: Final = "paper.html"
 """The name of the page."""
 
-STEPS, FIGURES = 11, 11
+STEPS, FIGURES = 12, 12
 """How often `make` tells its progress, and how many exhibits it makes."""
 
 
@@ -185,6 +194,7 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
     facts = Facts(population.damped())
     rows = doing("trying the equations", lambda: equations.rows(facts))
     found = doing("trying the sentences", lambda: claims(facts, rows))
+    figure_1 = doing("Figure 1", device.device)
     figure_4 = doing("Figure 4", motions.displacement)
     figure_2 = doing("Figure 2", motions.velocity)
     figure_3 = doing("Figure 3", motions.model)
@@ -200,9 +210,10 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
         found,
         (
             Section(
-                "The paper's figures",
-                "Figure 1 is a sketch of the device and no result.",
-                (figure_2, figure_3, figure_4),
+                "The device, its frame and the symbols",
+                "The paper studies a computer mouse with a pin that, moving sideways under the "
+                "fingertip, tells where a line or a letter is.",
+                (figure_1,),
             ),
             Section(
                 "The question that the paper poses",
@@ -211,6 +222,11 @@ def make(step: Callable[[str], None] = lambda _: None) -> Report:
                 "force is its system load, stiffness its rigidity; mass and the fall time of the "
                 "magnet's pull are not in its list.",
                 (sensitivity.settling(curves), sensitivity.displacement(curves), *of_maps),
+            ),
+            Section(
+                "The paper's figures",
+                "Figure 1, the device, stands above.",
+                (figure_2, figure_3, figure_4),
             ),
             Section(
                 "The analysis, drawn",
@@ -239,6 +255,11 @@ def text(report: Report, about: str = _DOCS) -> str:
         "<!-- Made by `pindrive paper --docs docs`; do not edit. -->",
         markdown(report.summary),
         about,
+    ]
+    *before, analysis = report.sections
+    for section in before:
+        lines += _section(section)
+    lines += [
         "## Its sentences, judged",
         _markdown_table(
             [
@@ -257,23 +278,25 @@ def text(report: Report, about: str = _DOCS) -> str:
         markdown(report.method),
         _markdown_table(report.equation_cells()),
         markdown(report.slips()),
-    ]
-    for section in report.sections:
-        lines += [f"## {section.title}", markdown(section.text)]
-        for exhibit in section.exhibits:
-            lines += [
-                f"### {markdown(exhibit.title)}",
-                f"![{exhibit.title}]({IMAGES}/{exhibit.name}.png)",
-                markdown(exhibit.caption),
-            ]
-            lines += ["\n".join(f"- {markdown(sentence)}" for sentence in exhibit.readings)]
-            lines += [_markdown_table(exhibit.table)] if exhibit.table else []
-    lines += [
+        *_section(analysis),
         "## What was assumed",
         "The paper gives three damping factors and no other value. Unless a figure says otherwise:",
         _markdown_table([("", "value", "meaning", "source"), *baseline.SOURCES]),
     ]
     return "\n\n".join(line for line in lines if line) + "\n"
+
+
+def _section(section: Section) -> list[str]:
+    lines = [f"## {section.title}", markdown(section.text)]
+    for exhibit in section.exhibits:
+        lines += [
+            f"### {markdown(exhibit.title)}",
+            f"![{exhibit.title}]({IMAGES}/{exhibit.name}.png)",
+            markdown(exhibit.caption),
+            "\n".join(f"- {markdown(sentence)}" for sentence in exhibit.readings),
+        ]
+        lines += [_markdown_table(exhibit.table)] if exhibit.table else []
+    return lines
 
 
 def files(report: Report, step: Callable[[str], None] = lambda _: None) -> dict[str, bytes]:
