@@ -14,15 +14,16 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyBboxPatch
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
+from scipy.interpolate import RegularGridInterpolator
 
 from figure_reading import Array, collisions, data, legend_of, lines, patch_spans, points
-from pindrive.paper import analysis, maps, motions, sensitivity
+from pindrive.paper import analysis, device, maps, motions, sensitivity
 from pindrive.paper.exhibit import Exhibit
 from pindrive.plot.style import STYLE
 from pindrive.quantities.units import to_si
 
-SI = {"mN": "N", "N·s/m": "N*s/m", "N/m": "N/m", "g": "kg", "mm/s": "m/s", "mm": "m"}
+SI = {"mN": "N", "N·s/m": "N*s/m", "N/m": "N/m", "g": "kg", "mm/s": "m/s", "mm": "m", "ms": "s"}
 
 
 @cache
@@ -36,6 +37,7 @@ def of_maps() -> tuple[Exhibit, Exhibit]:
 
 
 EXHIBITS: dict[str, Callable[[], Exhibit]] = {
+    "figure-1-device": device.device,
     "figure-2-velocity": motions.velocity,
     "figure-3-model": motions.model,
     "figure-4-displacement": motions.displacement,
@@ -81,6 +83,25 @@ def shaded(axes: Axes, name: str) -> list[tuple[float, float]]:
 @pytest.mark.parametrize("name", EXHIBITS)
 def test_no_text_covers_another(name: str) -> None:
     assert collisions(drawn(name)[1]) == []
+
+
+# ---- the device ----------------------------------------------------------------------------------
+
+
+def test_the_device_is_labelled() -> None:
+    found, figure = drawn("figure-1-device")
+    (axes,) = figure.axes
+    named = {t.get_text(): t.get_position() for t in axes.texts if t.get_gid() == "part"}
+    wanted = ["1 electromagnet", "2 spring", "3 mouse", "4 steel plate", "5 pin"]
+    assert list(named) == [*wanted, "damper", "fingertip", "control block"]
+    same(list(named.values()), np.column_stack([found.across, found.up]))
+    arrows = {p.get_gid(): p for p in axes.patches if isinstance(p, FancyArrowPatch)}
+    ways = {}
+    for words, arrow in arrows.items():
+        (begin, _), (end, _) = arrow._posA_posB  # type: ignore[attr-defined]
+        ways[words] = end > begin
+    right = {name: True for name in ("$x$", "$v_p$", "$F_p$", "$F_f$")}  # the pin returns, ẋ < 0
+    assert ways == {**right, "the hand's motion": False}
 
 
 # ---- motions -------------------------------------------------------------------------------------
@@ -138,18 +159,20 @@ def test_tints_are_explained(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["influence-on-time", "influence-on-displacement"])
-def test_the_six_curves(name: str) -> None:
+def test_the_curves_of_one_parameter(name: str) -> None:
     found, figure = drawn(name)
     panels = [axes for axes in figure.axes if axes.get_xlabel()]
     asked = [
         ("mN", "F_p"),
+        ("mN", "N_f"),
         ("N·s/m", "b"),
         ("N/m", "k"),
         ("g", "m"),
         ("mm/s", "v_p"),
         ("mm", "x_0"),
+        ("ms", "t_f"),
     ]
-    base = [22.0, 0.32, 100.0, 10.0, 60.0, 2.0]
+    base = [22.0, 10.0, 0.32, 100.0, 10.0, 60.0, 2.0, 0.0]
     for i, (axes, (unit, symbol)) in enumerate(zip(panels, asked, strict=True)):
         assert axes.get_xlabel().endswith(f" ${symbol}$ ({unit})")
         of = found.isel(parameter=i)
@@ -168,10 +191,14 @@ def test_the_six_curves(name: str) -> None:
         assert dot == pytest.approx(base[i])
         first = next(iter(shown.values()))
         assert height == pytest.approx(np.interp(dot, x, 1e3 * of[first].values))
+        assert bool(lines(axes, "by weight")) == (symbol == "m")
+        if symbol == "m":
+            same(data(axes, "by weight"), (x, 1e3 * of[f"{first}_by_weight"].values))
+            assert "friction follows the weight" in legend_of(figure)
         if not time:
             same(data(axes, "start"), (x, x if symbol == "x_0" else np.full_like(x, 2.0)))
     label = "time (ms)" if name == "influence-on-time" else "$x_{m,a}$ (mm)"
-    assert [axes.get_ylabel() for axes in panels] == [label, "", "", label, "", ""]
+    assert [axes.get_ylabel() for axes in panels] == [label, "", "", "", label, "", "", ""]
 
 
 def test_settled_is_told_from_at_rest() -> None:
@@ -211,6 +238,16 @@ def test_the_maps(name: str) -> None:
         assert (axes.get_xlabel(), axes.get_ylabel()) == (AXES[across], AXES[up])
         same(np.ravel(data(axes, "baseline")), (AT[across], AT[up]))
         assert isinstance(mesh.norm, LogNorm) == time
+        at = RegularGridInterpolator((y, x), values)
+        drawn_levels = set()
+        for lines_of in (c for c in axes.collections if c.get_gid() == "contour"):
+            level = float(str(lines_of.get_label()))
+            for path in lines_of.get_paths():
+                corners = np.asarray(path.vertices)
+                inside = np.clip(corners[:, ::-1], (y[0], x[0]), (y[-1], x[-1]))
+                assert at(inside) == pytest.approx(np.full(len(corners), level))
+                drawn_levels.add(level)
+        assert len(drawn_levels) >= 2
         assert mesh.get_clim() == ((0.25, 8.0) if time else (1.0, 2.4))
     if time:
         labels = [text.get_text() for text in bar.get_yticklabels()]

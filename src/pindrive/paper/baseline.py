@@ -6,6 +6,7 @@ from math import sqrt
 from typing import Final
 
 from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.friction import GRAVITY
 from pindrive.motion.release import Release
 from pindrive.quantities.table import QUANTITIES
 
@@ -37,6 +38,21 @@ DRIVE: Final = Drive.with_damping_ratio(
     finger=Contact(VALUES["finger.kinetic"]),
 )
 """Static = kinetic friction, as in (1)."""
+FINGER_COEFFICIENT: Final = 0.5
+"""Of the finger's friction, by which the touch force follows from the assumed force."""
+TOUCH_FORCE: Final = VALUES["finger.kinetic"] / FINGER_COEFFICIENT
+"""N: the paper's system load."""
+PRESSED: Final = Drive(
+    mass=MASS,
+    stiffness=STIFFNESS,
+    damping=DRIVE.damping,
+    plate=Contact(coefficient=VALUES["plate.kinetic"] / (MASS * GRAVITY)),
+    finger=Contact(coefficient=FINGER_COEFFICIENT),
+    touch_force=TOUCH_FORCE,
+)
+"""The same drive, whose friction follows the weight and the touch force."""
+HOLD: Final = 12.0
+"""The magnet's pull while it holds, as a factor on the plate's friction."""
 RELEASE: Final = Release(VALUES["mouse_velocity"], VALUES["displacement"])
 
 SOURCES: Final = tuple(
@@ -63,6 +79,7 @@ def stated(*leave_out: str) -> str:
 
 
 def value(argument: str) -> float:
-    """The assumed value (SI) of an argument of `simulate_batch`."""
+    """The assumed value (SI) of an argument of `simulate_batch`, or of the fall time."""
     by_argument = {name.replace(".", "_"): assumed for name, assumed in VALUES.items()}
-    return DRIVE.damping if argument == "damping" else by_argument[argument]
+    derived = {"damping": DRIVE.damping, "touch_force": TOUCH_FORCE, "fall_time": 0.0}
+    return (by_argument | derived)[argument]

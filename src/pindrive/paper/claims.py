@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper import as_printed, formulas, population
+from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis
 from pindrive.paper.exhibit import at_most, share
 from pindrive.paper.population import TINY, Claim, finger_friction, swing
+from pindrive.paper.scope import statements
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -110,23 +112,13 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "The dynamics of tactile device pin drive has been investigated in the transient process, "
         "which takes place when information signal disappears and the pin moves along the "
         "fingertip due to the spring elastic forces.",
-        leaves,
+        None,
         "figure-2-velocity",
-        f"The pin leaves the plate as the magnet releases it in {share(leaves)} releases from "
-        f"anywhere in 0–3 mm, in {share(leaves[~held])} that meet the condition, in "
-        f"{share(leaves[held])} of the others: there the plate alone carries it on.",
-        "k x_0 + b v_p + F_f > F_p",
-        ~held,
+        "Says what the paper is about. The pin leaves the plate as the magnet releases it where "
+        f"k x_0 + b v_p + F_f > F_p: in {share(leaves[~held])} such releases from anywhere in "
+        f"0–3 mm, and in {share(leaves[held])} of the others, where the plate alone carries it on.",
     )
-    yield Claim(
-        place,
-        "It was defined that the law of motion of the pin can not be obtained analytically in "
-        "general case when damping is taken into account.",
-        np.array([False]),
-        "first-reversal",
-        "Between two reversals it is (4) to (11), in every damping regime; each reversal is a root "
-        "that is found with certainty. `simulate` does just that, without steps or tolerances.",
-    )
+    yield from no_closed_form(facts)
     solved = r.batch(finger_kinetic=finger)["status"].to_numpy() == 0
     yield Claim(
         place,
@@ -135,86 +127,21 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
         "parameters on the motion of the pin of tactile device.",
         solved,
         "maps-of-time",
-        f"Done here with an exact one: {share(solved)} random drives simulated to their end, and "
-        "the curves and maps of this report.",
+        f"With an exact one: {share(solved)} random drives simulated to their end, and the curves "
+        "and maps of this report.",
+        done=True,
     )
 
 
 def claims(facts: Facts, equations: list[Row]) -> list[Claim]:
     """Every sentence in the order of the paper."""
     return [
-        *_of_the_analysis(facts),
+        *statements(),
+        *of_the_analysis(facts),
         *_of_the_simulation(facts, equations),
         *steady_state(),
         *conclusions(facts),
     ]
-
-
-# ---- Mathematical analysis -----------------------------------------------------------------------
-
-
-def _of_the_analysis(facts: Facts) -> Iterator[Claim]:
-    place = "Mathematical analysis"
-    r = facts.r
-    back, start = np.abs(facts.number("return_velocity")), r.mouse_velocity
-    t_1 = facts.number("first_reversal_time")
-    reverses = np.isfinite(t_1)
-    yield Claim(
-        place,
-        "The absolutely largest pin velocity value (negative, v_m,b) will be obtained at the "
-        "acceleration being equal to zero.",
-        back >= start,
-        "printed-forms",
-        f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
-        f"releases; of those whose friction reverses, in {share((back >= start)[reverses])}. "
-        "Heavily damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
-        "friction reverses afterwards",
-        reverses,
-    )
-    angle = (formulas.damped_frequency(r) * t_1)[reverses]
-    phase, lag = formulas.initial_phase(r)[reverses], formulas.velocity_phase(r)[reverses]
-    above, right = angle > np.pi + 2 * phase, angle >= np.pi + 2 * (phase - lag) - TINY
-    yield Claim(
-        place,
-        "The first friction force direction change will be at oscillation phase angle ωt value "
-        "which is larger, than π + 2φ_0.",
-        above,
-        "first-reversal",
-        f"True of {share(above)} releases that reverse: not of slow mice. ωt_1 ≥ π + 2(φ_0 − φ′_0) "
-        f"is true of {share(right)}.",
-    )
-    exact = np.abs(formulas.velocity(t_1, r) - r.mouse_velocity)[reverses]
-    worst = float((exact / (formulas.natural_frequency(r) * formulas.amplitude(r))[reverses]).max())
-    yield Claim(
-        place,
-        "Becomes clear that the analytical solution is impossible because nor pin acceleration "
-        "neither its displacement at t_1 or at phase angle ωt_1 are known.",
-        np.array([False]),
-        "first-reversal",
-        f"t_1 is a root that can be isolated and found to rounding: {int(reverses.sum())} of them "
-        f"satisfy (21) to ${at_most(worst)}$ of ω_0 X_m,0. Displacement and acceleration there "
-        "follow.",
-    )
-    limit = population.limit_cases()
-    found = {}
-    for name, factor in (("damping", 1.001), ("mouse_velocity", 1.001)):
-        more, less = (
-            limit.replace(**{name: getattr(limit, name) * x}) for x in (factor, 2 - factor)
-        )
-        never = np.isnan(formulas.first_reversal_time(more))
-        found[name] = never & np.isfinite(formulas.first_reversal_time(less))
-    both = found["damping"] & found["mouse_velocity"]
-    yield Claim(
-        place,
-        "It is available only in the limit case when the system damping or the mouse velocity v_p "
-        "are large and the second largest value of the pin velocity at t_1 do not exceed v_p, and "
-        "thus dry friction force do not change its direction.",
-        both,
-        "first-reversal",
-        f"Of {both.size} limit cases, 0.1 % more damping ends the reversal and 0.1 % less does not "
-        f"in {share(found['damping'])}; the same of mouse velocity in "
-        f"{share(found['mouse_velocity'])}. The time is (26), corrected.",
-    )
 
 
 # ---- Simulation ----------------------------------------------------------------------------------
@@ -235,9 +162,10 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "process.",
         np.array([c.kinematics < TINY and c.motion_law < TINY for c in residuals]),
         "figure-3-model",
-        f"Drawn and simulated. In {len(residuals)} motions with a finger, velocity and "
-        "acceleration are the derivatives of the displacement to "
+        f"The diagram is drawn and what it means is simulated. In {len(residuals)} motions with "
+        "a finger, velocity and acceleration are the derivatives of the displacement to "
         f"${at_most(worst)}$, checked without the solver.",
+        done=True,
     )
 
     more_damped = facts.r.replace(damping=1.5 * r.damping)
@@ -252,6 +180,7 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         "Recomputed in both readings of the damping factor; no other parameter is given. That "
         "damping takes from the swing, as the figure is to show, is true of "
         f"{share(depth <= deeper * (1 + TINY))} releases with half as much again.",
+        done=True,
     )
 
     faster = r.replace(mouse_velocity=1.01 * r.mouse_velocity)

@@ -30,8 +30,6 @@ READINGS: Final = {"ratio": "damping ratio ζ", "viscous": "b in N·s/m"}
 
 _STUCK: Final = ("slip", "carried", "resting")
 _TINT: Final = {"carried": 0.55, "resting": 0.22}
-_HOLD: Final = 12.0
-"""The magnet's pull while it holds, as a factor on the plate's friction."""
 _CARRY: Final = baseline.VALUES["displacement"] / baseline.VALUES["mouse_velocity"]
 
 
@@ -188,7 +186,7 @@ def _key(figure: Figure, *more: Artist) -> None:
 def velocity() -> Exhibit:
     """The velocity of the pin over a line: carried, released, at rest. Computed, not measured."""
     breakaway = _CARRY
-    load = Profile([0.0, breakaway, breakaway + 1e-4], [_HOLD, _HOLD, 1.0])
+    load = Profile([0.0, breakaway, breakaway + 1e-4], [baseline.HOLD, baseline.HOLD, 1.0])
     release = replace(baseline.RELEASE, displacement=0.0, plate_load=load)
     motion = simulate(baseline.DRIVE, release, duration=0.25)
     t = motion.sample_times(1001)
@@ -221,9 +219,9 @@ def velocity() -> Exhibit:
         "figure-2-velocity",
         "In the shape of Figure 2: velocity of the pin while it crosses a line",
         "Computed. The paper's Figure 2 is a measurement whose data are not printed, so nothing of "
-        f"it is here. Assumed: {baseline.stated()}; the magnet holds with {_HOLD:g} times the "
-        f"plate's own friction until {1e3 * breakaway:.1f} ms and releases the pin within 0.1 ms; "
-        "static friction equal to kinetic.",
+        f"it is here. Assumed: {baseline.stated()}; the magnet holds with {baseline.HOLD:g} times "
+        f"the plate's own friction until {1e3 * breakaway:.1f} ms and releases the pin within "
+        "0.1 ms; static friction equal to kinetic.",
         data,
         _draw_velocity,
         (

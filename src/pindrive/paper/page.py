@@ -49,10 +49,22 @@ td:nth-child(3) { min-width: 9rem; }
 td em { display: block; color: var(--soft); font-size: .82rem; font-style: normal; }
 td strong { font-weight: 600; }
 .holds { color: var(--good); } .part { color: var(--part); } .not { color: var(--bad); }
-@media print { nav { display: none; }
-  h2, h3 { break-after: avoid; } figure { break-inside: avoid; } }
+.done { color: var(--link); } .open { color: var(--soft); }
+@page { size: A4; margin: 12mm; }
+@media print {
+  :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #444; --line: #bbb;
+    --wash: #fff; --link: #0062a3; --good: #00795a; --part: #9a5b00; --bad: #b3261e; }
+  body { font-size: 9pt; } nav { display: none; }
+  main, p, ul { max-width: none; } main { padding: 0; }
+  h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; }
+  .wide, figure > div { overflow: visible; } figure svg { min-width: 0; }
+  table { font-size: 7pt; } th, td { padding-right: .5em; overflow-wrap: anywhere; }
+  td:nth-child(n) { white-space: normal; min-width: 0; } td em { font-size: 1em; } }
 """
-_KINDS: Final = {"holds": "holds", "holds when": "part", "does not": "not"}
+_KINDS: Final = {
+    **{"holds when": "part", "holds": "holds", "does not hold": "not"},
+    **{"done here": "done", "not done here": "not", "not judged": "open"},
+}
 """The class of a verdict by how it begins."""
 
 
@@ -76,7 +88,7 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
         body,
     )
     body = re.sub(
-        r"<strong>(holds when|holds|does not)",
+        rf"<strong>({'|'.join(_KINDS)})",
         lambda found: f'<strong class="{_KINDS[found[1]]}">{found[1]}',
         body,
     )

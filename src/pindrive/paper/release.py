@@ -15,6 +15,8 @@ from pindrive.quantities.quantity import NON_NEGATIVE
 from pindrive.quantities.table import QUANTITIES, refusal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
@@ -122,14 +124,17 @@ class Releases:
         release = Release(float(self.mouse_velocity[index]), float(self.displacement[index]))
         return simulated(drive, release, duration=duration)
 
-    def batch(self, **others: ArrayLike | None) -> xr.Dataset:
+    def batch(
+        self, *, outputs: Sequence[str] | None = None, **others: ArrayLike | None
+    ) -> xr.Dataset:
         """The exact numbers of every release, the finger frictionless.
 
         Args:
+            outputs: which, as for `simulate_batch`.
             others: what stands for, or beside, the arrays of the releases, as for `simulate_batch`.
         """
         given = {_ARGUMENT.get(f.name, f.name): getattr(self, f.name) for f in fields(self)}
-        return batched(UNIT_DRIVE, UNIT_RELEASE, given | others)
+        return batched(UNIT_DRIVE, UNIT_RELEASE, given | others, outputs=outputs)
 
 
 def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:

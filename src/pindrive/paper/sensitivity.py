@@ -1,10 +1,12 @@
 """The paper's question: what the transitional period and the largest displacement depend on.
 
-One parameter at a time, about the baseline: six curves each.
+One parameter at a time, about the baseline: eight curves each, and one more for a mass whose
+friction follows its weight.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -12,6 +14,8 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
+from pindrive.motion.drive import Profile
+from pindrive.motion.simulate import simulated
 from pindrive.paper import baseline
 from pindrive.paper.exhibit import Exhibit, listed, page, trend
 from pindrive.plot.style import GREY, PALETTE
@@ -25,6 +29,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from pindrive.motion.drive import Drive
+    from pindrive.motion.motion import Motion
+
 POINTS: Final = 801
 BASELINE: Final[dict[str, Any]] = {
     **{"ls": "none", "marker": "o", "color": "black", "ms": 3.0},
@@ -33,7 +40,7 @@ BASELINE: Final[dict[str, Any]] = {
 
 
 class Parameter(NamedTuple):
-    """One of the six, and how it is drawn."""
+    """One of the eight, and how it is drawn."""
 
     argument: str
     name: str
@@ -48,38 +55,89 @@ class Parameter(NamedTuple):
 
 PARAMETERS: Final = (
     Parameter("plate_kinetic", "surface friction", "F_p", "mN", 1e3, 0.0, 0.1),
+    Parameter("touch_force", "touch force", "N_f", "mN", 1e3, 1e-3, 0.04),
     Parameter("damping", "damping", "b", "N·s/m", 1.0, 0.0, 0.9 * baseline.CRITICAL),
     Parameter("stiffness", "stiffness", "k", "N/m", 1.0, 20.0, 400.0),
     Parameter("mass", "mass", "m", "g", 1e3, 2e-3, 40e-3),
     Parameter("mouse_velocity", "mouse speed", "v_p", "mm/s", 1e3, 2e-3, 0.3),
     Parameter("displacement", "initial deflection", "x_0", "mm", 1e3, 0.1e-3, 5e-3),
+    Parameter("fall_time", "fall time of the pull", "t_f", "ms", 1e3, 0.0, 0.03),
 )
+_NUMBERS: Final = ("settling_time", "rest_time", "peak_displacement")
 
 
 def curves() -> xr.Dataset:
-    """The numbers along each of the six ranges, the other parameters at the baseline."""
-    names = ("transient_settling_time", "transient_rest_time", "transient_peak_displacement")
+    """The numbers along each of the eight ranges, the other parameters at the baseline."""
     values = np.array([np.linspace(p.least, p.most, POINTS) for p in PARAMETERS])
-    columns: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
-    for parameter, along in zip(PARAMETERS, values, strict=True):
-        found = batched(baseline.DRIVE, baseline.RELEASE, {parameter.argument: along})
-        for name in names:
-            columns[name].append(found[name].to_numpy())
+    found = [_along(p.argument, x) for p, x in zip(PARAMETERS, values, strict=True)]
+    masses = values[[p.argument for p in PARAMETERS].index("mass")]
+    by_weight = _batch(baseline.PRESSED, "mass", masses)
+    attributes = {name: dict(by_weight[f"transient_{name}"].attrs) for name in _NUMBERS}
     dims = ("parameter", "point")
     return xr.Dataset(
         {
             "value": (dims, values, {"long_name": "value of the parameter, SI"}),
-            **{name.partition("_")[2]: (dims, columns[name], found[name].attrs) for name in names},
+            **{name: (dims, [of[name] for of in found], attributes[name]) for name in _NUMBERS},
+            **{
+                f"{name}_by_weight": (
+                    "point",
+                    by_weight[f"transient_{name}"].to_numpy(),
+                    attributes[name] | {"comment": "over the mass, friction following the weight"},
+                )
+                for name in _NUMBERS
+            },
         },
         coords={
             "parameter": [p.argument for p in PARAMETERS],
             "si_unit": (
                 "parameter",
-                [QUANTITIES[p.argument.replace("_kinetic", ".kinetic")].unit for p in PARAMETERS],
+                [_si_unit(p.argument) for p in PARAMETERS],
                 {"long_name": "unit of the value"},
             ),
         },
     )
+
+
+def _si_unit(argument: str) -> str:
+    if argument == "fall_time":
+        return "s"
+    return QUANTITIES[argument.replace("_kinetic", ".kinetic")].unit
+
+
+def _batch(drive: Drive, argument: str, values: NDArray[np.float64]) -> xr.Dataset:
+    return batched(drive, baseline.RELEASE, {argument: values})
+
+
+def _along(argument: str, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """The numbers over one of the parameters."""
+    if argument == "fall_time":
+        transients = [_falling(float(time)).transient for time in values]
+        return {name: np.array([getattr(t, name) for t in transients]) for name in _NUMBERS}
+    drive = baseline.PRESSED if argument == "touch_force" else baseline.DRIVE
+    found = _batch(drive, argument, values)
+    return {name: found[f"transient_{name}"].to_numpy() for name in _NUMBERS}
+
+
+def _falling(time: float) -> Motion:
+    """The motion from when the magnet is switched off, its pull falling linearly in `time` (s)."""
+    load = Profile([0.0, time], [baseline.HOLD, 1.0])
+    return simulated(baseline.DRIVE, replace(baseline.RELEASE, plate_load=load))
+
+
+_FOLLOWS: Final = "friction follows the weight"
+_OF_TWO: Final = (
+    f"touch force: F_f = {baseline.FINGER_COEFFICIENT:g} N_f. Fall time: from {baseline.HOLD:g} "
+    "times the plate's own friction linearly to it, from t = 0 on, when the magnet is switched "
+    "off. Dashed: F_p grows with the weight, μ = "
+    f"{baseline.PRESSED.plate.coefficient or 0.0:.3g}."
+)
+
+
+def _far_apart(data: xr.Dataset, name: str) -> tuple[float, float]:
+    """How far the curve of the mass is from the one that follows the weight: most, and where."""
+    of = data.sel(parameter="mass")
+    apart = np.abs(of[f"{name}_by_weight"].values - of[name].values)
+    return float(apart.max()), float(of.value[int(apart.argmax())])
 
 
 def _table(data: xr.Dataset, name: str, scale: float, unit: str) -> tuple[tuple[str, ...], ...]:
@@ -90,6 +148,10 @@ def _table(data: xr.Dataset, name: str, scale: float, unit: str) -> tuple[tuple[
         first, last = (f"{significant(scale * x, 3)} {unit}" for x in (y[0], y[-1]))
         low, high = (f"{p.scale * x:.3g} {p.unit}" for x in (p.least, p.most))
         rows.append((f"{p.name} ${p.symbol}$", low, high, first, last, trend(y)))
+        if p.argument == "mass":
+            y = data[f"{name}_by_weight"].values
+            first, last = (f"{significant(scale * x, 3)} {unit}" for x in (y[0], y[-1]))
+            rows.append((f"{p.name}, {_FOLLOWS}", low, high, first, last, trend(y)))
     return tuple(rows)
 
 
@@ -103,7 +165,8 @@ def _ranked(data: xr.Dataset, name: str) -> list[tuple[float, str]]:
 
 
 def settling(data: xr.Dataset) -> Exhibit:
-    """The time of the transitional period against the six."""
+    """The time of the transitional period against the eight."""
+    apart, mass = _far_apart(data, "settling_time")
     ranked = _ranked(data, "settling_time")
     order = [f"{name} (by {factor:.2g})" for factor, name in ranked]
     jumps = [
@@ -114,10 +177,10 @@ def settling(data: xr.Dataset) -> Exhibit:
     ]
     return Exhibit(
         "influence-on-time",
-        "The time of the transitional period against each of the six parameters",
+        "The time of the transitional period against each parameter",
         f"Blue: settled, from then on within 5 % of |x_0 − x_end|. Orange: at rest. Dot: the "
-        f"baseline ({baseline.stated()}), which every other parameter keeps.",
-        data[["value", "settling_time", "rest_time"]],
+        f"baseline ({baseline.stated()}), which every other parameter keeps; {_OF_TWO}",
+        data[[n for n in data if not str(n).startswith("peak")]],
         _draw_settling,
         (
             f"Between the ends of these ranges the settling time changes most with {order[0]}, "
@@ -125,26 +188,32 @@ def settling(data: xr.Dataset) -> Exhibit:
             "It jumps by more than a twentieth along "
             f"{listed(jumps)}: the pin comes to rest in whole half swings, and one more or one "
             "less leaves the 5 % band at such a place.",
+            f"A friction that follows the weight changes the settling time by up to "
+            f"{1e3 * apart:.3g} ms, at {1e3 * mass:.3g} g.",
         ),
         _table(data, "settling_time", 1e3, "ms"),
     )
 
 
 def displacement(data: xr.Dataset) -> Exhibit:
-    """The largest displacement against the six."""
+    """The largest displacement against the eight."""
+    apart, mass = _far_apart(data, "peak_displacement")
     ranked = _ranked(data, "peak_displacement")
     order = [f"{name} (by {factor:.3g})" for factor, name in ranked]
     small = [name for factor, name in ranked if factor < 1.05]
     return Exhibit(
         "influence-on-displacement",
-        "The largest displacement against each of the six parameters",
+        "The largest displacement against each parameter",
         "The first displacement maximum (14). Grey: the initial deflection, from which it starts. "
-        f"Dot: the baseline ({baseline.stated()}). Same scale but in the last two panels.",
-        data[["value", "peak_displacement"]],
+        f"Dot: the baseline ({baseline.stated()}); {_OF_TWO} Same scale but for mouse speed and "
+        "initial deflection.",
+        data[["value", "peak_displacement", "peak_displacement_by_weight"]],
         _draw_displacement,
         (
             f"It changes most with {order[0]}, then with {listed(order[1:])}, largest over least; "
             f"{listed(small)} change it by less than 5 %.",
+            f"A friction that follows the weight changes it by up to {1e3 * apart:.2g} mm, at "
+            f"{1e3 * mass:.3g} g.",
         ),
         _table(data, "peak_displacement", 1e3, "mm"),
     )
@@ -152,12 +221,12 @@ def displacement(data: xr.Dataset) -> Exhibit:
 
 def _panels(height: float, draw: Callable[[Axes, Parameter], None], label: str) -> Figure:
     figure = page(height)
-    panels = figure.subplots(2, 3).flat
+    panels = figure.subplots(2, 4).flat
     for i, (axes, p) in enumerate(zip(panels, PARAMETERS, strict=True)):
         draw(axes, p)
         axes.set_xlabel(f"{p.name} ${p.symbol}$ ({p.unit})")
         axes.set_xlim(min(0.0, p.scale * p.least), p.scale * p.most)
-        if i % 3 == 0:
+        if i % 4 == 0:
             axes.set_ylabel(label)
     return figure
 
@@ -168,6 +237,8 @@ def _draw_settling(data: xr.Dataset) -> Figure:
         x = p.scale * of.value.values
         _jumping(axes, x, 1e3 * of.rest_time.values, PALETTE["resting"], "rest")
         _jumping(axes, x, 1e3 * of.settling_time.values, PALETTE["curve"], "settled")
+        if p.argument == "mass":
+            axes.plot(x, 1e3 * data.settling_time_by_weight, **_BY_WEIGHT)
         _mark_baseline(axes, p, of.value.values, 1e3 * of.settling_time.values)
 
     figure = _panels(95, draw, "time (ms)")
@@ -176,14 +247,15 @@ def _draw_settling(data: xr.Dataset) -> Figure:
     handles = [
         Line2D([], [], color=PALETTE["curve"], label="settled within 5 %"),
         Line2D([], [], color=PALETTE["resting"], label="at rest"),
+        Line2D([], [], **_BY_WEIGHT, label=_FOLLOWS),
         Line2D([], [], **BASELINE),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=3)
+    figure.legend(handles=handles, loc="outside upper right", ncols=4)
     return figure
 
 
 def _draw_displacement(data: xr.Dataset) -> Figure:
-    low, high = 1.95, 2.5
+    low, high = 1.95, 2.6
 
     def draw(axes: Axes, p: Parameter) -> None:
         of = data.sel(parameter=p.argument)
@@ -191,6 +263,8 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
         start = x if p.argument == "displacement" else np.full_like(x, 1e3 * _X0)
         axes.plot(x, start, **_START, gid="start")
         axes.plot(x, y, color=PALETTE["curve"], gid="peak")
+        if p.argument == "mass":
+            axes.plot(x, 1e3 * data.peak_displacement_by_weight, **_BY_WEIGHT)
         _mark_baseline(axes, p, of.value.values, y)
         if p.argument not in ("mouse_velocity", "displacement"):
             axes.set_ylim(low, high)
@@ -198,13 +272,17 @@ def _draw_displacement(data: xr.Dataset) -> Figure:
     figure = _panels(90, draw, "$x_{m,a}$ (mm)")
     handles = [
         Line2D([], [], color=PALETTE["curve"], label="$x_{m,a}$"),
+        Line2D([], [], **_BY_WEIGHT, label=_FOLLOWS),
         Line2D([], [], **_START, label="initial deflection $x_0$"),
         Line2D([], [], **BASELINE),
     ]
-    figure.legend(handles=handles, loc="outside upper right", ncols=3)
+    figure.legend(handles=handles, loc="outside upper right", ncols=4)
     return figure
 
 
+_BY_WEIGHT: Final[dict[str, Any]] = {
+    **{"color": "black", "lw": 0.8, "ls": (0, (3, 2)), "gid": "by weight"}
+}
 _X0: Final = baseline.VALUES["displacement"]
 _START: Final[dict[str, Any]] = {"color": GREY, "lw": 0.7, "ls": ":"}
 

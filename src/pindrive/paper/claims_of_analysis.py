@@ -1,0 +1,148 @@
+"""The sentences of the mathematical analysis: what has a closed form, and what has none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pindrive.paper import formulas, population
+from pindrive.paper.exhibit import at_most, share
+from pindrive.paper.population import TINY, Claim
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from pindrive.paper.formulas import Array
+    from pindrive.paper.population import Facts, Truth
+    from pindrive.paper.release import Releases
+
+_PLACE = "Mathematical analysis"
+
+
+def has_closed_form(r: Releases) -> Truth:
+    """Whether one of the two elementary expressions of t_1 solves (21), of each release.
+
+    They are π + 2φ_0 for ωt_1, which is exact without damping, and (26) of the limit case.
+    """
+    scale = formulas.natural_frequency(r) * formulas.amplitude(r)
+    turned = (np.pi + 2 * formulas.initial_phase(r)) / formulas.damped_frequency(r)
+    solved = np.zeros(r.shape, dtype=bool)
+    for t in (turned, formulas.limit_reversal_time(r)):
+        solved |= np.abs(formulas.velocity(t, r) - r.mouse_velocity) < TINY * scale
+    return solved
+
+
+def of_the_analysis(facts: Facts) -> Iterator[Claim]:
+    """The five sentences of this section that say more than an equation."""
+    r = facts.r
+    back, start = np.abs(facts.number("return_velocity")), r.mouse_velocity
+    t_1 = facts.number("first_reversal_time")
+    reverses = np.isfinite(t_1)
+    yield Claim(
+        _PLACE,
+        "The absolutely largest pin velocity value (negative, v_m,b) will be obtained at the "
+        "acceleration being equal to zero.",
+        back >= start,
+        "printed-forms",
+        f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
+        f"releases; of those whose friction reverses, in {share((back >= start)[reverses])}. "
+        "Heavily damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
+        "friction reverses afterwards",
+        reverses,
+    )
+    angle = (formulas.damped_frequency(r) * t_1)[reverses]
+    phase, lag = formulas.initial_phase(r)[reverses], formulas.velocity_phase(r)[reverses]
+    above, right = angle > np.pi + 2 * phase, angle >= np.pi + 2 * (phase - lag) - TINY
+    yield Claim(
+        _PLACE,
+        "The first friction force direction change will be at oscillation phase angle ωt value "
+        "which is larger, than π + 2φ_0.",
+        above,
+        "first-reversal",
+        f"True of {share(above)} releases that reverse: not of slow mice. ωt_1 ≥ π + 2(φ_0 − φ′_0) "
+        f"is true of {share(right)}.",
+    )
+    yield from _first_reversal(r.take(reverses), t_1[reverses])
+
+
+def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
+    """What is said of t_1; `damped` are the releases whose friction reverses, at `t_1`."""
+    undamped = damped.replace(damping=0.0)
+    beyond = undamped.displacement > formulas.friction_offset(undamped)
+    undamped = undamped.take(beyond & (undamped.mouse_velocity > 0.0))
+    limit = population.limit_cases()
+    with_form, without, at_limit = (has_closed_form(r) for r in (undamped, damped, limit))
+    scale = formulas.natural_frequency(damped) * formulas.amplitude(damped)
+    residual = np.abs(formulas.velocity(t_1, damped) - damped.mouse_velocity) / scale
+    yield Claim(
+        _PLACE,
+        "Becomes clear that the analytical solution is impossible",
+        ~np.concatenate([without, with_form, at_limit]),
+        "first-reversal",
+        "(22) holds t_1 in an exponential and in a sine: no elementary closed form is known. The "
+        f"two that exist, ωt_1 = π + 2φ_0 and (26), solve it in {share(with_form)} releases "
+        f"without damping and {share(at_limit)} limit cases, and in {share(without)} others. It is "
+        f"computable all the same: t_1 is a root that can be isolated and found to rounding, and "
+        f"{t_1.size} of them satisfy (21) to ${at_most(float(residual.max()))}$ of ω_0 X_m,0.",
+        "analytical means an elementary closed form, there is damping, and it is no limit case",
+        np.arange(without.size + with_form.size + at_limit.size) < without.size,
+    )
+    own = formulas.first_reversal_time(damped)
+    unknown = np.abs(own - t_1) * formulas.natural_frequency(damped) > TINY
+    yield Claim(
+        _PLACE,
+        "because nor pin acceleration neither its displacement at t_1 or at phase angle ωt_1 are "
+        "known.",
+        unknown,
+        "first-reversal",
+        "(22) holds neither of them. From (22) alone t_1 is that of the simulator in "
+        f"{share(~unknown)} releases; displacement and acceleration follow by (6) and (11).",
+    )
+    stops = {}
+    for name in ("damping", "mouse_velocity"):
+        more, less = (limit.replace(**{name: getattr(limit, name) * x}) for x in (1.001, 0.999))
+        never = np.isnan(formulas.first_reversal_time(more))
+        stops[name] = never & np.isfinite(formulas.first_reversal_time(less))
+    both = stops["damping"] & stops["mouse_velocity"]
+    yield Claim(
+        _PLACE,
+        "It is available only in the limit case when the system damping or the mouse velocity v_p "
+        "are large and the second largest value of the pin velocity at t_1 do not exceed v_p, and "
+        "thus dry friction force do not change its direction.",
+        np.concatenate([at_limit & both, ~without, ~with_form]),
+        "first-reversal",
+        f"By (26), corrected, in {share(at_limit)} limit cases; there 0.1 % more damping ends the "
+        f"reversal and 0.1 % less does not in {share(stops['damping'])}, the same of mouse "
+        f"velocity in {share(stops['mouse_velocity'])}. With damping in {share(without)} others; "
+        f"without damping in {share(with_form)} outside the limit case too.",
+        "there is damping",
+        np.arange(both.size + without.size + with_form.size) < both.size + without.size,
+    )
+
+
+def no_closed_form(facts: Facts) -> Iterator[Claim]:
+    """The conclusion on the law of motion."""
+    r = facts.r
+    reverses = np.isfinite(facts.number("first_reversal_time"))
+    one_piece = r.take(~reverses)
+    end = 3 * formulas.limit_reversal_time(one_piece)
+    position = one_piece.batch(duration=end, outputs=["final_position"])["final_position"]
+    off = np.abs(position.to_numpy() - formulas.position(end, one_piece))
+    whole = np.zeros(r.shape, dtype=bool)
+    whole[~reverses] = off < TINY * formulas.amplitude(one_piece)
+    whole[reverses] = has_closed_form(r.take(reverses))
+    yield Claim(
+        "Conclusions",
+        "It was defined that the law of motion of the pin can not be obtained analytically in "
+        "general case when damping is taken into account.",
+        ~whole,
+        "first-reversal",
+        f"(6) is the whole motion in {share(whole[~reverses])} releases whose friction never "
+        f"reverses. Where it does, in {int(reverses.sum())}, (6) holds between two reversals, and "
+        f"their times have an elementary closed form in {share(whole[reverses])}: each is a root, "
+        "found to rounding with certainty, which is how `simulate` follows the pin without steps "
+        "or tolerances.",
+        "friction reverses, and analytically means by elementary closed forms throughout",
+        reverses,
+    )
