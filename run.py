@@ -14,7 +14,7 @@
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py fmu-binaries [PLATFORM...]
                                       compile what FMUs carry for other platforms
-    python3 run.py wheel [--complete] build the sdist and the wheel; judge the wheel and try it alone
+    python3 run.py wheel [--complete] build the sdist and the wheel, judge and try the wheel
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when

@@ -76,6 +76,31 @@ def test_the_extension_forwards_the_component_of_the_stable_abi() -> None:
     assert "nanobind_add_module(_core STABLE_ABI" in text
 
 
+def test_the_recipe_asks_for_what_the_project_does() -> None:
+    recipe = (run.ROOT / "recipe" / "recipe.yaml").read_text("utf-8")
+    listed = {line.replace(" ", "") for line in re.findall(r"^    - (.*)", recipe, re.MULTILINE)}
+    project = PROJECT["project"]
+    needed = {
+        *project["dependencies"],
+        *project["optional-dependencies"]["build"],
+        *PROJECT["build-system"]["requires"],
+    }
+    on_conda = {"matplotlib>=3.10.8": "matplotlib-base>=3.10.8"}
+    assert {on_conda.get(name, name) for name in needed} - listed == set()
+    version = re.findall(
+        r"^project\(pindrive VERSION ([\d.]+)",
+        (run.ROOT / "CMakeLists.txt").read_text("utf-8"),
+        re.MULTILINE,
+    )
+    assert re.findall(r'^  version: "(.*)"', recipe, re.MULTILINE) == version
+
+
+def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> None:
+    form = (run.ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
+    asked = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
+    assert {"device", "certificate", "command", "version"} <= set(asked)
+
+
 @pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "x"]])
 def test_arguments_of_wheel(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
