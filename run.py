@@ -14,6 +14,7 @@
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py fmu-binaries [PLATFORM...]
                                       compile what FMUs carry for other platforms
+    python3 run.py wheel [--complete] build the sdist and the wheel, judge and try the wheel
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when
@@ -43,6 +44,7 @@ STAMP = VENV / "pindrive.json"
 STUB = ROOT / "src" / "pindrive" / "_core.pyi"
 EXAMPLE = Path("examples", "tactile-mouse.toml")
 PICTURE = Path("tactile-mouse.png")
+ACTIONLINT = "github.com/rhysd/actionlint/cmd/actionlint@v1.7.12"
 FMU_OF_CAPI = ("pindrive.cpp", "stepper.cpp")
 SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
 
@@ -303,12 +305,24 @@ def check_stub() -> int:
     return 1
 
 
+def workflows() -> int:
+    """The workflows, by actionlint, which is compiled once and then found in `.venv`."""
+    program = BIN / ("actionlint.exe" if os.name == "nt" else "actionlint")
+    stamp = VENV / "actionlint.txt"
+    if not program.exists() or not stamp.exists() or stamp.read_text("utf-8") != ACTIONLINT:
+        os.environ["GOBIN"] = str(BIN)
+        quietly("compiling actionlint", [str(BIN / "go"), "install", ACTIONLINT])
+        stamp.write_text(ACTIONLINT, "utf-8")
+    return run("actionlint")
+
+
 LINT: dict[str, Callable[[], int]] = {
     "ruff": lambda: run("ruff", "check"),
     "format": lambda: run("ruff", "format", "--check"),
     "mypy": lambda: run("mypy"),
     "clang-format": lambda: run("clang-format", "--dry-run", "-Werror", *cpp_files()),
     "clang-tidy": clang_tidy,
+    "workflows": workflows,
     "stubs": check_stub,
 }
 
@@ -412,6 +426,14 @@ def fmu_binaries(platforms: list[str]) -> int:
     return 0
 
 
+def wheel(arguments: list[str]) -> int:
+    """The sdist and the wheel: built, judged and tried; `--complete`: nothing may be missing."""
+    if arguments not in ([], ["--complete"]):
+        stop(f"wheel takes --complete or nothing, not {' '.join(arguments)!r}")
+    install({"wheel"}, project=False)
+    return run("python", Path("wheels", "build.py"), *arguments)
+
+
 def validation() -> int:
     """The published cases: computed, and written to docs/validation.md with their figures."""
     install({"test"})
@@ -467,7 +489,7 @@ def main(arguments: list[str]) -> int:
         print(__doc__)
         return 0
     taking = {"test": test, "explore": explore, "lint": lint, "bench": bench, "studio": studio}
-    taking["fmu-binaries"] = fmu_binaries
+    taking |= {"fmu-binaries": fmu_binaries, "wheel": wheel}
     alone = {"simulate": simulate, "format": layout, "stubs": stubs}
     alone |= {"docs": docs, "validation": validation}
     if command in taking:

@@ -49,7 +49,11 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
     mass, stiffness = between(2e-3, 2e-2), between(20, 400)
     ratio = (0.0, between(0, 0.3), between(0, 2), 1.0)[random.integers(4)]
     drive = Drive.with_damping_ratio(
-        mass=mass, stiffness=stiffness, damping_ratio=ratio, **contacts
+        mass=mass,
+        stiffness=stiffness,
+        damping_ratio=ratio,
+        plate=contacts["plate"],
+        finger=contacts["finger"],
     )
     times = (0.0, between(0.01, 0.1), between(0.11, 0.3))
     velocity = between(-0.3, 0.3)

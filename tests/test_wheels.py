@@ -1,0 +1,109 @@
+"""How a wheel is judged, and that the workflows pin what they run and try what is promised."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import run
+from wheels.build import contents, faults
+
+WORKFLOWS = sorted((run.ROOT / ".github" / "workflows").glob("*.yml"))
+PROJECT = tomllib.loads((run.ROOT / "pyproject.toml").read_text("utf-8"))
+
+LIBRARIES = [f"pindrive/fmu/{name}/pindrive.{end}" for name, (_, end) in run.FMU_PLATFORMS.items()]
+WHOLE = ["pindrive/_core.abi3.so", "pindrive/studio.html", *LIBRARIES]
+GOOD = "pindrive-0.1.0-cp312-abi3-manylinux_2_28_x86_64.whl"
+
+
+@pytest.mark.parametrize("name", [GOOD, GOOD.replace("cp312-abi3", "cp311-cp311")])
+def test_a_whole_wheel_is_right(name: str) -> None:
+    assert faults(name, 7.9, WHOLE, complete=True) == []
+    assert contents(WHOLE) == (True, sorted(run.FMU_PLATFORMS))
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "names", "complaint"),
+    [
+        (GOOD, 8.01, WHOLE, "has 8.01 MB; at most 8 MB"),
+        (GOOD, 1.0, WHOLE[:2], "no library of FMUs"),
+        (GOOD, 1.0, WHOLE[:-1], "for aarch64-linux"),
+        (GOOD, 1.0, [n for n in WHOLE if "studio" not in n], "lacks the studio page"),
+        (GOOD.replace("manylinux_2_28", "linux"), 1.0, WHOLE, "not manylinux"),
+        (GOOD.replace("cp312-abi3", "cp313-cp313"), 1.0, WHOLE, "cp313-cp313, not cp312-abi3"),
+        (GOOD, 1.0, ["pindrive/_core.cpython-312.so", *WHOLE[1:]], "was not built so"),
+    ],
+)
+def test_what_is_wrong_with_a_wheel(
+    name: str, size: float, names: list[str], complaint: str
+) -> None:
+    found = faults(name, size, names, complete=True)
+    assert any(complaint in line for line in found), found
+    assert all(line.startswith(name) for line in found)
+
+
+def test_without_complete_the_page_and_other_platforms_may_be_missing() -> None:
+    assert faults(GOOD, 1.0, [WHOLE[0], LIBRARIES[0]], complete=False) == []
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_actions_are_pinned_by_commit(workflow: Path) -> None:
+    for line in re.findall(r"uses: *(.*)", workflow.read_text("utf-8")):
+        assert re.fullmatch(r"\./.+|[\w./-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", line), line
+
+
+def test_an_action_has_one_version() -> None:
+    text = "".join(workflow.read_text("utf-8") for workflow in WORKFLOWS)
+    pins = set(re.findall(r"uses: *([\w-][\w./-]*)@(.*)", text))
+    assert len({name for name, _ in pins}) == len(pins) >= 5
+
+
+def test_three_systems_and_the_oldest_and_a_newer_python_are_tested() -> None:
+    text = (run.ROOT / ".github" / "workflows" / "tests.yml").read_text("utf-8")
+    assert "system: [ubuntu-latest, windows-latest, macos-latest]" in text
+    (versions,) = re.findall(r'python: \["([\d.]+)", "([\d.]+)"\]', text)
+    assert PROJECT["project"]["requires-python"] == f">={versions[0]}"
+    assert f"cp{versions[1].replace('.', '')}-*" in PROJECT["tool"]["cibuildwheel"]["build"]
+
+
+def test_the_extension_forwards_the_component_of_the_stable_abi() -> None:
+    """Without it nanobind drops STABLE_ABI and the wheel's tag is untrue."""
+    text = (run.ROOT / "CMakeLists.txt").read_text("utf-8")
+    assert "Development.Module ${SKBUILD_SABI_COMPONENT})" in text
+    assert "nanobind_add_module(_core STABLE_ABI" in text
+
+
+def test_the_recipe_asks_for_what_the_project_does() -> None:
+    recipe = (run.ROOT / "recipe" / "recipe.yaml").read_text("utf-8")
+    listed = {line.replace(" ", "") for line in re.findall(r"^    - (.*)", recipe, re.MULTILINE)}
+    project = PROJECT["project"]
+    needed = {
+        *project["dependencies"],
+        *project["optional-dependencies"]["build"],
+        *PROJECT["build-system"]["requires"],
+    }
+    on_conda = {"matplotlib>=3.10.8": "matplotlib-base>=3.10.8"}
+    assert {on_conda.get(name, name) for name in needed} - listed == set()
+    version = re.findall(
+        r"^project\(pindrive VERSION ([\d.]+)",
+        (run.ROOT / "CMakeLists.txt").read_text("utf-8"),
+        re.MULTILINE,
+    )
+    assert re.findall(r'^  version: "(.*)"', recipe, re.MULTILINE) == version
+
+
+def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> None:
+    form = (run.ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
+    asked = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
+    assert {"device", "certificate", "command", "version"} <= set(asked)
+
+
+@pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "x"]])
+def test_arguments_of_wheel(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        run.wheel(arguments)
+    assert stopped.value.code == 2
+    assert " ".join(arguments) in capsys.readouterr().err

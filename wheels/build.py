@@ -1,0 +1,166 @@
+"""Builds the sdist and from it the wheel, judges them, and tries the wheel where nothing else is.
+
+Called by `python3 run.py wheel [--complete]`; both are left in build/dist.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import venv
+import zipfile
+from collections.abc import Iterable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DIST = ROOT / "build" / "dist"
+EXAMPLE = ROOT / "examples" / "tactile-mouse.toml"
+LARGEST = 8.0  # MB, of a wheel with the page and the libraries of FMUs for all platforms
+SLOWEST = 20.0  # s, of the first command after the installation
+PLATFORMS = 6  # those of `python3 run.py fmu-binaries`
+
+
+def contents(names: Iterable[str]) -> tuple[bool, list[str]]:
+    """Whether the studio page is among the files, and the platforms of the FMU library."""
+    found = set(names)
+    libraries = (re.fullmatch(r"pindrive/fmu/([^/]+)/pindrive\.(?:so|dll|dylib)", n) for n in found)
+    return "pindrive/studio.html" in found, sorted(match[1] for match in libraries if match)
+
+
+def tags(name: str) -> tuple[str, str, str]:
+    """The tags in the file name of a wheel: Python, ABI, platform."""
+    python, abi, platform = name.removesuffix(".whl").split("-")[-3:]
+    return python, abi, platform
+
+
+def faults(name: str, size: float, names: Iterable[str], *, complete: bool) -> list[str]:
+    """What is wrong with a wheel of a size in MB that holds these files; each in one line.
+
+    Args:
+        name: Its file name.
+        size: Its size in MB (1e6 bytes).
+        names: The files in it.
+        complete: Whether the studio page and the FMU library for every platform must be there.
+    """
+    found = set(names)
+    page, platforms = contents(found)
+    python, abi, platform = tags(name)
+    wrong = []
+    if size > LARGEST:
+        wrong.append(f"{name} has {size:.2f} MB; at most {LARGEST:g} MB are allowed")
+    if not platforms:
+        wrong.append(f"{name} has no library of FMUs")
+    if complete and not page:
+        wrong.append(f"{name} lacks the studio page; build it with `python3 run.py studio`")
+    if complete and len(platforms) < PLATFORMS:
+        wrong.append(
+            f"{name} has libraries of FMUs for {', '.join(platforms)} alone; "
+            "compile the others with `python3 run.py fmu-binaries`"
+        )
+    if platform.startswith("linux_"):
+        wrong.append(f"{name} is for this machine's Linux alone, not manylinux")
+    if python != "cp311" and (python, abi) != ("cp312", "abi3"):
+        wrong.append(f"{name} is for {python}-{abi}, not cp312-abi3, the stable ABI")
+    stable = any(name.startswith("pindrive/_core.abi3.") for name in found)
+    if abi == "abi3" and not stable and not platform.startswith("win"):  # there it is _core.pyd
+        wrong.append(f"{name} says abi3, but its extension was not built so")
+    return wrong
+
+
+def call(what: str, *command: str | Path, **options: object) -> str:
+    """Runs a step and returns what it printed; ends with that if it fails."""
+    print(f"{what} ...", flush=True)
+    result = subprocess.run(
+        [*map(str, command)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        check=False,
+        **options,  # type: ignore[call-overload]
+    )
+    if result.returncode:
+        sys.stderr.write(result.stdout)
+        raise SystemExit(f"wheel: {what} failed, see above")
+    return str(result.stdout)
+
+
+def build() -> tuple[Path, Path]:
+    """The sdist and the wheel made from it, which on Linux is given its manylinux tag."""
+    shutil.rmtree(DIST, ignore_errors=True)
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder)
+        module = (sys.executable, "-m", "build", "--no-isolation", "--outdir", made)
+        call("building the sdist, and the wheel from it", *module, ROOT)
+        (sdist,) = made.glob("*.tar.gz")
+        (wheel,) = made.glob("*.whl")
+        if sys.platform == "linux":
+            audited = made / "audited"
+            repair = (sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", audited, wheel)
+            call("auditing it", *repair)
+            (wheel,) = audited.glob("*.whl")
+        DIST.mkdir(parents=True)
+        return Path(shutil.copy2(sdist, DIST)), Path(shutil.copy2(wheel, DIST))
+
+
+def try_out(wheel: Path) -> tuple[float, float]:
+    """Seconds of the installation of a wheel and of the first command after it.
+
+    It goes into a new environment, where no program is found but that environment's, so neither a
+    compiler nor CMake, and it runs in an empty folder.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder, "venv")
+        venv.create(place, with_pip=True)
+        programs = place / ("Scripts" if os.name == "nt" else "bin")
+        kept = ("SYSTEMROOT", "TEMP", "TMP", "HOME", "USERPROFILE", "PIP_INDEX_URL")
+        bare = {name: os.environ[name] for name in kept if name in os.environ}
+        bare |= {"PATH": str(programs), "PYTHONUTF8": "1"}
+        begin = time.monotonic()
+        pip = (programs / "python", "-m", "pip", "install", "--disable-pip-version-check")
+        call("installing it", *pip, "--only-binary", ":all:", wheel, env=bare, cwd=folder)
+        between = time.monotonic()
+        command = (programs / "pindrive", "simulate", EXAMPLE)
+        printed = call("simulating the example with it", *command, env=bare, cwd=folder)
+        end = time.monotonic()
+    if "Laws checked" not in printed:
+        raise SystemExit(f"wheel: simulate printed no check of its laws, but:\n{printed}")
+    return between - begin, end - between
+
+
+def main() -> int:
+    """Builds, judges and tries; the exit status."""
+    parser = argparse.ArgumentParser(prog="run.py wheel", description=__doc__)
+    parser.add_argument(
+        "--complete",
+        action="store_true",
+        help="fail where the studio page or the FMU library for a platform is missing",
+    )
+    complete = parser.parse_args().complete
+    sdist, wheel = build()
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    page, platforms = contents(names)
+    size = wheel.stat().st_size / 1e6
+    wrong = faults(wheel.name, size, names, complete=complete)
+    installing, simulating = try_out(wheel)
+    if simulating > SLOWEST:
+        wrong.append(f"the first command took {simulating:.1f} s of {SLOWEST:g} s")
+    print(f"{sdist.relative_to(ROOT)}: {sdist.stat().st_size / 1e6:.2f} MB")
+    print(f"{wheel.relative_to(ROOT)}: {size:.2f} MB of {LARGEST:g} MB")
+    print(f"studio page: {'yes' if page else 'no, `python3 run.py studio` builds it'}")
+    print(f"FMU libraries: {', '.join(platforms) or 'none'}")
+    print(f"installed in {installing:.1f} s, first `pindrive simulate` in {simulating:.1f} s")
+    for line in wrong:
+        print(f"wheel: {line}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
