@@ -311,9 +311,12 @@ def workflows() -> int:
     stamp = VENV / "actionlint.txt"
     if not program.exists() or not stamp.exists() or stamp.read_text("utf-8") != ACTIONLINT:
         install = [str(BIN / "go"), "install", ACTIONLINT]
-        environment = os.environ | {"GOBIN": str(BIN)}
-        if subprocess.run(install, env=environment, check=False, timeout=300).returncode != 0:
-            print("workflows were not checked: actionlint cannot be had here", file=sys.stderr)
+        try:
+            subprocess.run(
+                install, env=environment() | {"GOBIN": str(BIN)}, check=True, timeout=300
+            )
+        except (OSError, subprocess.SubprocessError) as error:
+            print(f"the workflows were not checked, for want of actionlint: {error}")
             return 0
         stamp.write_text(ACTIONLINT, "utf-8")
     return run("actionlint")
