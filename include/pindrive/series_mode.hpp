@@ -128,9 +128,17 @@ class SeriesMode {
    private:
     friend class SeriesMode;
     void add(Polynomial<T> path, bool at_zero, detail::Bound bound, bool plate, int side) {
-      if (at_zero) path.c[0] = T(0);
+      if (at_zero) leave_zero(path.c);
       const T zero = first_zero(path);
       list_[count_++] = {path, bound, plate, side, zero};
+    }
+    /// Makes exact what the selection of the mode has judged: coefficients to the other side are rounding, or
+    /// the start is and the path turns back within that.
+    template <class Coefficients>
+    static void leave_zero(Coefficients& c) {
+      const bool turns = c[1] < 0 && c[2] > -c[1];
+      c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice as deep as it dips
+      for (int n = 1; n <= 3 && !turns && !(c[n] > 0); ++n) c[n] = T(0);
     }
     std::array<Guard, 6> list_;
     int count_{0};
