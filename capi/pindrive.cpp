@@ -131,9 +131,10 @@ namespace {
 pindrive_error check_rows(const char* name, const pd::Rows& rows, bool negative, bool steps) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto [first, second] = rows[i];
-    const bool steps_here =
-        steps && i > 0 && first == rows[i - 1].first && !(i > 1 && first == rows[i - 2].first);
-    if (!std::isfinite(first) || (i > 0 && !(first > rows[i - 1].first) && !steps_here))
+    const bool stepped = i > 1 && first == rows[i - 2].first;
+    const bool later =
+        i == 0 || first > rows[i - 1].first || (steps && first == rows[i - 1].first && !stepped);
+    if (!std::isfinite(first) || !later)
       return fail(PINDRIVE_BAD_VALUE, "row %zu of %s must come after the one before, not at %.17g",
                   i, name, first);
     if (!std::isfinite(second) || (!negative && second < 0))

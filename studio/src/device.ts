@@ -182,14 +182,14 @@ class Reader {
     for (const [key, quantity] of INPUTS) {
       const [table, name] = split(key);
       if (!names.includes(table)) continue;
-      const alternative = split(quantity.alternative ?? ".")[1];
+      const others = quantity.alternative ?? [];
       if (this.isGiven(key)) {
         this.attempt(() => {
           this.values[key] = this.rows[key] ?? readValue(this.tables[table]![name]!, quantity);
         });
-      } else if (!quantity.mandatory || alternative in this.tables[table]!) {
+      } else if (!quantity.mandatory || others.some((key) => split(key)[1] in this.tables[table]!)) {
         this.values[key] = quantity.absent ?? null;
-      } else if (!meant.has(key) && !meant.has(quantity.alternative ?? "-")) {
+      } else if (!meant.has(key) && !others.some((other) => meant.has(other))) {
         this.problems.push(`${this.file}: ${key} is missing; write ${quantity.line} in [${table}]`);
       }
     }
@@ -209,6 +209,11 @@ class Reader {
 
   private checkContacts(): void {
     for (const table of ["plate", "finger"]) {
+      for (const name of ["coefficient", "static_coefficient", "coefficient_curve"]) {
+        if (!this.isGiven(`${table}.${name}`)) continue;
+        this.problems.push(`${this.file}: ${table}.${name}: the studio takes friction as a force, ${table}.kinetic`);
+        return;
+      }
       const [curve, still] = [this.values[`${table}.curve`], this.values[`${table}.static`]];
       let kinetic = this.values[`${table}.kinetic`];
       if (Array.isArray(curve)) {

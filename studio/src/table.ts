@@ -29,7 +29,7 @@ export interface Quantity {
   readonly remark?: string;
   readonly source?: string;
   readonly mandatory?: boolean;
-  readonly alternative?: string;
+  readonly alternative?: readonly string[];
   readonly follows?: readonly string[];
   readonly rowsOf?: "curve" | "profile" | "places";
   readonly rows?: Rows;
