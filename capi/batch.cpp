@@ -24,41 +24,12 @@ namespace {
 using Block = pd::detail::KernelBlock;
 using pd::detail::PlainNumber;
 
-constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
+using pd::detail::no_column;
+using pd::detail::transient_columns;
 
-/// Where the kernel has each number, in the order of pindrive_number_name.
-constexpr int column_of[] = {
-    PlainNumber::peak_displacement,
-    PlainNumber::peak_time,
-    PlainNumber::trough_displacement,
-    PlainNumber::trough_time,
-    PlainNumber::swing,
-    PlainNumber::return_velocity,
-    PlainNumber::return_velocity_time,
-    PlainNumber::first_reversal_time,
-    PlainNumber::settling_time,
-    Block::rest_time,
-    Block::rest_time,  // the last event is that it comes to rest
-    no_column,         // the stretch of a compliant finger, and its rate
-    no_column,
-    PlainNumber::plate_reversals,
-    PlainNumber::plate_time_stuck,
-    PlainNumber::plate_distance_slid,
-    PlainNumber::plate_dissipated,
-    PlainNumber::plate_peak_force,
-    PlainNumber::finger_reversals,
-    PlainNumber::finger_time_stuck,
-    PlainNumber::finger_distance_slid,
-    PlainNumber::finger_dissipated,
-    PlainNumber::finger_peak_force,
-    Block::rest_position,
-    no_column,  // a steady oscillation: its begin, amplitude and period
-    no_column,
-    no_column,
-};
-constexpr std::size_t number_count = std::size(column_of);
+constexpr std::size_t number_count = std::size(transient_columns);
 constexpr auto settling_time = std::size_t{8};
-static_assert(column_of[settling_time] == PlainNumber::settling_time);
+static_assert(transient_columns[settling_time] == PlainNumber::settling_time);
 
 /// In packs as wide as the processor has them, where the kernel is compiled for several widths; the bits are
 /// the same in each.
@@ -153,13 +124,13 @@ class Batch {
   void by_kernel(std::size_t first, std::size_t count) {
     std::fill_n(block_->output, Block::columns, nullptr);
     block_->output[Block::rest_time] = columns_[Block::rest_time];
-    for (const int column : column_of)
+    for (const int column : transient_columns)
       if (column != no_column) block_->output[column] = columns_[column];
     run_kernel(*block_, count);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < number_count; ++k)
-        row(first + i)[k] = kinds_[i] == Kind::kernel && column_of[k] != no_column
-                                ? columns_[column_of[k]][i]
+        row(first + i)[k] = kinds_[i] == Kind::kernel && transient_columns[k] != no_column
+                                ? columns_[transient_columns[k]][i]
                                 : none;
       const bool rests = !std::isnan(columns_[Block::rest_time][i]);
       const bool refused = kinds_[i] == Kind::refused;

@@ -398,10 +398,12 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
                 PINDRIVE_SKIN_STRETCH_RATE, quantity);
   *value = stepper->ask([&](const auto& of) {
     const auto tau = of.tau();
-    const auto friction = [&] {
-      return pd::friction_in(of.drive(), of.segment(), of.lines(), tau);
-    };
-    return pd::visit_trajectory(of.drive(), of.segment(), of.lines(), [&](const auto& along) {
+    const auto lines = of.lines();
+    return pd::visit_trajectory(of.drive(), of.segment(), lines, [&](const auto& along) {
+      const auto load = [&] { return lines.plate_load; };
+      const auto friction = [&] {
+        return pd::friction_along(along, of.drive(), of.segment(), load, tau);
+      };
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });
   });

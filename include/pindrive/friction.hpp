@@ -129,12 +129,15 @@ struct Touch {
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
     const Branch<T> range = branch();
-    const T faster = acceleration - surface.rate, by_load = does.sense * friction * load.rate;
-    T rate = -range.slope * load.value * faster - by_load,
-      bend = -2 * range.slope * load.rate * faster;
+    const T faster = acceleration - surface.rate;
+    T rate{}, bend{};
     if (oblique()) {
-      rate = slides(v, acceleration).force_rate(range, load);
-      bend = slides(v, acceleration).force_bend(range, load);
+      const ObliqueSlip<T> slip = slides(v, acceleration);
+      rate = slip.force_rate(range, load);
+      bend = slip.force_bend(range, load);
+    } else {
+      rate = -range.slope * load.value * faster - does.sense * friction * load.rate;
+      bend = -2 * range.slope * load.rate * faster;
     }
     const T unsure = range.rounding * load.value * abs(faster);
     return {rate, abs(rate) + unsure / rounding<T>, bend};

@@ -34,6 +34,38 @@ struct KernelBlock {
   double rest[stride];                     ///< of those that are followed again, knowing it
 };
 
+inline constexpr int no_column = -1;  ///< of the output: a number that plain releases do not have
+/// Where the output has each of the transient_numbers, in their order.
+inline constexpr int transient_columns[] = {
+    PlainNumber::peak_displacement,
+    PlainNumber::peak_time,
+    PlainNumber::trough_displacement,
+    PlainNumber::trough_time,
+    PlainNumber::swing,
+    PlainNumber::return_velocity,
+    PlainNumber::return_velocity_time,
+    PlainNumber::first_reversal_time,
+    PlainNumber::settling_time,
+    KernelBlock::rest_time,
+    KernelBlock::rest_time,  // the last event is that it comes to rest
+    no_column,               // the stretch of a compliant finger, and its rate
+    no_column,
+    PlainNumber::plate_reversals,
+    PlainNumber::plate_time_stuck,
+    PlainNumber::plate_distance_slid,
+    PlainNumber::plate_dissipated,
+    PlainNumber::plate_peak_force,
+    PlainNumber::finger_reversals,
+    PlainNumber::finger_time_stuck,
+    PlainNumber::finger_distance_slid,
+    PlainNumber::finger_dissipated,
+    PlainNumber::finger_peak_force,
+    KernelBlock::rest_position,
+    no_column,  // a steady oscillation: its begin, amplitude and period
+    no_column,
+    no_column,
+};
+
 inline namespace PINDRIVE_TARGET {
 
 /// The slots of a pack: consecutive ones, or of a list.

@@ -30,16 +30,14 @@ struct Friction {
   T plate, finger;
 };
 
-/// That of a segment after τ. Two stuck contacts share in proportion to their static friction: how they
-/// really do is not determined.
-template <class T>
-Friction<T> friction_in(const Drive<T>& drive, const Segment<T>& segment,
-                        const InputLines<T>& lines, T tau) {
-  const Friction<T> found = visit_trajectory(drive, segment, lines, [&](const auto& t) {
-    return Friction<T>{t.at(t.plate_force(), tau), t.at(t.finger_force(), tau)};
-  });
+/// That along the quantities of a segment after τ, where load() is that of the plate from its begin on.
+/// Two stuck contacts share in proportion to their static friction: how they really do is not determined.
+template <class Trajectory, class T, class Load>
+Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
+                           const Segment<T>& segment, Load&& load, T tau) {
+  const Friction<T> found{along.at(along.plate_force(), tau), along.at(along.finger_force(), tau)};
   if (!segment.mode.both_stuck()) return found;
-  const T at_plate = drive.plate.static_limit * lines.plate_load.at(tau);
+  const T at_plate = drive.plate.static_limit * load().at(tau);
   const T part = at_plate > 0 ? at_plate / (at_plate + drive.finger.static_limit) : T(0);
   return {part * found.plate, (1 - part) * found.plate};
 }
@@ -100,7 +98,10 @@ class Motion {
   }
 
   Friction<T> friction(const Segment<T>& segment, T tau) const {
-    return friction_in(drive_, segment, InputLines<T>::of(inputs_, segment), tau);
+    return along(segment, [&](const auto& t) {
+      const auto load = [&] { return inputs_.plate_load.from(segment.begin); };
+      return friction_along(t, drive_, segment, load, tau);
+    });
   }
 
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until

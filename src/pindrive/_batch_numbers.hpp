@@ -21,38 +21,8 @@ struct Summary : pd::Summary<double> {
 };
 using Ledger = pd::Ledger<double>;
 
-inline constexpr int no_column = -1;  // of the kernel: a number that plain releases do not have
-
-/// Where the kernel's output has each of the transient's numbers, in their order.
-inline constexpr int transient_columns[] = {
-    PlainNumber::peak_displacement,
-    PlainNumber::peak_time,
-    PlainNumber::trough_displacement,
-    PlainNumber::trough_time,
-    PlainNumber::swing,
-    PlainNumber::return_velocity,
-    PlainNumber::return_velocity_time,
-    PlainNumber::first_reversal_time,
-    PlainNumber::settling_time,
-    Block::rest_time,
-    Block::rest_time,  // the last event is that it comes to rest
-    no_column,         // the stretch of a compliant finger, and its rate
-    no_column,
-    PlainNumber::plate_reversals,
-    PlainNumber::plate_time_stuck,
-    PlainNumber::plate_distance_slid,
-    PlainNumber::plate_dissipated,
-    PlainNumber::plate_peak_force,
-    PlainNumber::finger_reversals,
-    PlainNumber::finger_time_stuck,
-    PlainNumber::finger_distance_slid,
-    PlainNumber::finger_dissipated,
-    PlainNumber::finger_peak_force,
-    Block::rest_position,
-    no_column,  // a steady oscillation: its begin, amplitude and period
-    no_column,
-    no_column,
-};
+using pd::detail::no_column;
+using pd::detail::transient_columns;
 static_assert(std::size(transient_columns) == std::size(pd::transient_numbers<double>));
 
 /// What a batch has beside the transient's numbers and the terms of the ledger.

@@ -86,8 +86,9 @@ struct Values {
 };
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
                  const pd::InputLines<double>& lines, double tau) {
-  const auto friction = pd::friction_in(drive, segment, lines, tau);
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
+    const auto load = [&] { return lines.plate_load; };
+    const auto friction = pd::friction_along(t, drive, segment, load, tau);
     return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
                   friction.finger};
   });
