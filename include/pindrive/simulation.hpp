@@ -175,7 +175,7 @@ class Simulation : private Selection<T, Surface> {
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-      state_.move(segment, finger_.elastic(), tau);
+      state_.move(segment, finger_.elastic());
     }
     if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
     const bool row = tau == row_ - time_;

@@ -338,8 +338,8 @@ class Batch {
       ++general_;
       const auto [segment, tau] = motion.locate(summary.duration, pd::Side::left);
       const auto moved = segment->after(tau);
-      summary.final_position = segment->flow.position.at(moved, tau);
-      summary.final_velocity = segment->flow.velocity.at(moved, tau);
+      summary.final_position = segment->flow.position.at(moved);
+      summary.final_velocity = segment->flow.velocity.at(moved);
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         const Row& row = rows_[k];
         if (row.energy) continue;

@@ -226,7 +226,7 @@ void derivatives() {
     stepper.set({velocity, rate}, {T(1), T(0)});
     stepper.step(T(0.03));
     const T tau = stepper.tau();
-    return stepper.segment().flow.position.at(stepper.segment().after(tau), tau);
+    return stepper.segment().flow.position.at(stepper.segment().after(tau));
   };
   const double at[]{0.010, 1.5e-3, 0.10, -1.0}, along[]{1e-3, 2e-4, 0.02, 0.5}, step = 1e-5;
   const auto moved = [&](int i, double h) { return at[i] + h * along[i]; };
