@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -121,5 +122,15 @@ class OwnedMotion {
   std::vector<Segment<T>> segments_;
   Outcome<T> outcome_;
 };
+
+/// Of a segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
+  return motion.along(segment, [](const auto& along) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, BySeries<double>>)
+      return largest_size(along.acceleration());
+    else
+      return std::numeric_limits<double>::quiet_NaN();
+  });
+}
 
 }  // namespace pindrive

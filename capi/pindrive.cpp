@@ -189,10 +189,6 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error) error = check_rows("force", release.force, true, true);
   if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
   if (!error)
-    error = check("duration", release.duration,
-                  std::isfinite(release.duration) || release.across_velocity.back().second == 0,
-                  "finite where the hand moves across the axis at the end");
-  if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
   if (!error)
@@ -201,7 +197,6 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error)
     error = check("skin_stretch", release.skin_stretch, finite_or(release.skin_stretch, none),
                   "finite, or NaN");
-  if (!error) error = check("duration", release.duration, release.duration > 0, "above 0");
   if (error) return error;
   if (drive.finger.curve.size() > 1 && std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED,
@@ -212,6 +207,14 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
   return check("skin_stretch", skin, std::abs(skin) * drive.finger.stiffness <= most,
                "what the finger's static friction can hold");
+}
+
+pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
+  const pindrive_error error = check("duration", release.duration, release.duration > 0, "above 0");
+  if (error) return error;
+  return check("duration", release.duration,
+               std::isfinite(release.duration) || release.across_velocity.back().second == 0,
+               "finite where the hand moves across the axis at the end");
 }
 
 namespace {
@@ -366,13 +369,6 @@ constexpr std::size_t number_count = std::size(pd::transient_numbers<double>);
 
 }  // namespace
 
-void pindrive_c::write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values) {
-  double duration = none;
-  duration_in(motion, band, duration);
-  write(pd::transient_numbers<double>, pd::Measurement(motion.view(), duration).transient(band),
-        values);
-}
-
 extern "C" {
 
 int pindrive_interface(void) { return PINDRIVE_INTERFACE; }
@@ -476,12 +472,14 @@ pindrive_error pindrive_simulate(const pindrive_drive* drive, const pindrive_rel
   if (!drive) return null_pointer("drive");
   if (!release) return null_pointer("release");
   if (!motion) return null_pointer("motion");
-  if (const pindrive_error error = check(*drive, *release)) return error;
+  pindrive_error error = check(*drive, *release);
+  if (!error) error = check_duration(*release);
+  if (error) return error;
   return guarded([&]() -> pindrive_error {
     auto made = std::make_unique<pindrive_motion>();
     Attended attended(go_on, context);
     const pd::Numbers at = numbers_of(*drive, *release);
-    if (const pindrive_error error = simulated(made->values, at, at, attended)) return error;
+    if (const pindrive_error stopped = simulated(made->values, at, at, attended)) return stopped;
     *motion = made.release();
     return PINDRIVE_OK;
   });
@@ -495,6 +493,7 @@ pindrive_error pindrive_differentiate(const pindrive_drive* drive, const pindriv
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
+  if (!error) error = check_duration(*release);
   if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return guarded([&]() -> pindrive_error {
@@ -587,8 +586,13 @@ pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
                 pd::result(s.flow.velocity.start),
                 pd::result(of.view().along(
                     s, [](const auto& along) { return along.start(along.acceleration()); })),
+                motion->values ? pd::acceleration_bound(motion->values->view(),
+                                                        motion->values->segments()[index])
+                               : none,
                 static_cast<pindrive_contact_state>(s.mode.plate),
                 static_cast<pindrive_contact_state>(s.mode.finger),
+                s.mode.plate_branch,
+                s.mode.finger_branch,
                 static_cast<pindrive_transition>(s.event.plate),
                 static_cast<pindrive_transition>(s.event.finger)};
     return PINDRIVE_OK;

@@ -27,6 +27,9 @@ from pindrive.files.template import (
     template,
     usual_rows,
 )
+from pindrive.motion.contact import SLOPES
+from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
+from pindrive.motion.release import CONTINUOUS, INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
@@ -36,7 +39,7 @@ from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
 PARTS = (
-    "curve.slope",
+    *SLOPES.values(),
     "profile.rate",
     "phase",
     *(name for pair in COLUMNS.values() for name in pair),
@@ -150,6 +153,14 @@ def tables() -> dict[str, Any]:
         "tables": TABLES,
         "alone": ALONE,
         "around": AROUND,
+        "slopes": SLOPES,
+        "coefficients": COEFFICIENT_OF,
+        "pressedBy": {
+            contact: {QUANTITIES[name].key: factor for name, factor in parts.items()}
+            for contact, parts in PRESSED_BY.items()
+        },
+        "overTime": INPUTS,
+        "continuous": [QUANTITIES[name].key for name in CONTINUOUS],
         "studyKeys": STUDY_KEYS,
         "inputRows": budgets.INPUT_ROWS.most,
         "units": units(),

@@ -169,12 +169,7 @@ nb::dict segments(const CoreMotion<T>& motion) {
 /// Of each segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
 Array<double> acceleration_bounds(const CoreMotion<double>& motion) {
   return column<double>(motion, [view = motion.view()](const pd::Segment<double>& segment) {
-    return view.along(segment, [](const auto& along) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(along)>, pd::BySeries<double>>)
-        return pd::largest_size(along.acceleration());
-      else
-        return std::numeric_limits<double>::quiet_NaN();
-    });
+    return pd::acceleration_bound(view, segment);
   });
 }
 

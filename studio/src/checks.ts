@@ -1,13 +1,17 @@
 // What is wrong with values that are each in range: rows, contacts, the skin, the drive together.
 import type { Rows } from "./core";
+import {
+  byCoefficient,
+  CONTACTS,
+  type Found,
+  frictionKeys,
+  frictionOf,
+  givenFriction,
+  type Value,
+  type Values,
+} from "./friction";
 import { brief, counted, floatRepr, general } from "./python";
-import { DRIVE, part, required, type Quantity } from "./table";
-
-export type Value = number | Rows;
-/** The values of keys that are given, SI. */
-export type Values = Readonly<Record<string, Value>>;
-/** The same with what holds where a key is left out; null where nothing does. */
-export type Found = Readonly<Record<string, Value | null | undefined>>;
+import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
 
@@ -25,11 +29,13 @@ export class Refusal extends Error {
 /** Refuses rows out of order, or so close that the slope between them is out of range. */
 export function checkRows(rows: Rows, quantity: Quantity): void {
   const key = quantity.key;
-  const curve = quantity.rowsOf === "curve";
+  const ofSlope = TABLES.slopes[quantity.rowsOf!];
+  const curve = ofSlope !== undefined;
   const name = `${curve ? "speed" : "time"}`;
   const unit = curve ? "m/s" : "s";
-  const steps = !curve && key !== MOUSE;
-  const why = key === MOUSE ? " (a jump would take an infinite force)" : "";
+  const continuous = TABLES.continuous.includes(key);
+  const steps = !curve && !continuous;
+  const why = continuous ? " (a jump would take an infinite force)" : "";
   for (let i = 1; i < rows.length; ++i) {
     const [before, given] = [rows[i - 1]![0], rows[i]![0]];
     const [label, shown] = [`${key}[${i}] ${name}`, `${floatRepr(given)} ${unit}`];
@@ -41,7 +47,7 @@ export function checkRows(rows: Rows, quantity: Quantity): void {
       throw new Refusal(label, `greater than ${one}${third}`, shown);
     }
   }
-  const slope = part(curve ? "curve.slope" : "profile.rate");
+  const slope = part(ofSlope ?? "profile.rate");
   const worst = steepest(rows);
   const limits = slope.bounds![1]!;
   if (Math.abs(worst) > limits.upper!) {
@@ -63,23 +69,59 @@ function steepest(rows: Rows): number {
 
 // ---- what does not fit together ----------------------------------------------------------------------
 
-export function checkCurve(rows: Rows, kinetic: number): void {
-  const [speed, force] = rows[0]!;
-  if (speed !== 0) throw new Refusal("curve[0] speed", "0 m/s", `${floatRepr(speed)} m/s`);
-  if (force !== kinetic) {
-    const words = `the kinetic friction, ${floatRepr(kinetic)} N`;
-    throw new Refusal("curve[0] force", words, `${floatRepr(force)} N`);
+/** Refuses friction given both by forces and by coefficients; `given` are keys. */
+export function checkOneKind(contact: string, given: readonly string[]): void {
+  const [force, coefficient] = [false, true].map((kind) =>
+    frictionKeys(contact, kind).find((key) => given.includes(key)),
+  );
+  if (!force || !coefficient) return;
+  const words = `left out where ${force} gives the friction as a force`;
+  throw new Refusal(coefficient, words, `both, ${coefficient} and ${force}`);
+}
+
+/** Refuses a coefficient of the finger without a touch force, or that without the other. */
+export function checkTouch(coefficients: boolean, touch: Value | null | undefined): void {
+  if (coefficients && touch == null) {
+    throw new Refusal("touch_force", "given where a coefficient gives the finger's friction", "none");
+  }
+  if (!coefficients && touch != null) {
+    const words = "left out where the finger's friction is given as a force";
+    throw new Refusal("touch_force", words, `${floatRepr(touch as number)} N`);
   }
 }
 
-export function checkStatic(still: number, kinetic: number): void {
+/** What a key of friction is, and its unit behind a number: a force or a coefficient. */
+function kindOf(key: string): {
+  readonly name: string;
+  readonly what: string;
+  readonly noun: string;
+  readonly unit: string;
+} {
+  const name = key.split(".")[1]!;
+  return name.includes("coefficient")
+    ? { name, what: "coefficient", noun: "friction coefficient", unit: "" }
+    : { name, what: "force", noun: "friction", unit: " N" };
+}
+
+export function checkCurve(rows: Rows, kinetic: number, key: string): void {
+  const { name, what, noun, unit } = kindOf(key);
+  const [speed, value] = rows[0]!;
+  if (speed !== 0) throw new Refusal(`${name}[0] speed`, "0 m/s", `${floatRepr(speed)} m/s`);
+  if (value !== kinetic) {
+    const words = `the kinetic ${noun}, ${floatRepr(kinetic)}${unit}`;
+    throw new Refusal(`${name}[0] ${what}`, words, `${floatRepr(value)}${unit}`);
+  }
+}
+
+export function checkStatic(still: number, kinetic: number, key: string): void {
   if (still >= kinetic) return;
-  const words = `at least the kinetic friction, ${floatRepr(kinetic)} N`;
-  throw new Refusal("static", words, `${floatRepr(still)} N`);
+  const { name, noun, unit } = kindOf(key);
+  const words = `at least the kinetic ${noun}, ${floatRepr(kinetic)}${unit}`;
+  throw new Refusal(name, words, `${floatRepr(still)}${unit}`);
 }
 
 export function checkSkin(values: Found): void {
-  const [curve, stiffness] = [values["finger.curve"] as Rows | null, values["finger.stiffness"]];
+  const [curve, stiffness] = [frictionOf(values, "finger").curve, values["finger.stiffness"]];
   if (!curve || curve.length < 2 || stiffness == null) return;
   const words = "one row for a compliant finger, whose skin would lag behind it";
   throw new Refusal("finger.curve", words, counted(curve.length, "row"));
@@ -92,7 +134,7 @@ export function checkStretch(values: Found): void {
   if (typeof stiffness !== "number") {
     throw new Refusal("skin_stretch", "left out for a rigid finger", given);
   }
-  const largest = staticOf(values, "finger") / stiffness;
+  const largest = frictionOf(values, "finger").still / stiffness;
   if (Math.abs(stretch) <= largest) return;
   const words = `at most static friction over stiffness, ${floatRepr(largest)} m, either way`;
   throw new Refusal("skin_stretch", words, given);
@@ -106,12 +148,10 @@ export function checkDrive(values: Found): void {
   const rounded = Number(ratio.toPrecision(12));
   if (rounded !== 0 && !(rounded >= limits.lower! && rounded <= limits.upper!)) {
     const words = `such that the damping ratio is ${limits.words}`;
-    throw new Refusal(
-      "damping", words, `${floatRepr(damping)} N*s/m, which makes it ${general(ratio)}`,
-    );
+    throw new Refusal("damping", words, `${floatRepr(damping)} N*s/m, which makes it ${general(ratio)}`);
   }
-  for (const table of ["plate", "finger"]) {
-    const worst = Math.abs(steepest((values[`${table}.curve`] as Rows | null) ?? []));
+  for (const table of CONTACTS) {
+    const worst = Math.abs(steepest(frictionOf(values, table).curve ?? []));
     if (worst <= limits.upper! * critical) continue;
     const words = `at most ${brief(limits.upper!)} times critical damping`;
     throw new Refusal(`${table} curve slope`, words, `${general(worst)} N*s/m`);
@@ -144,15 +184,12 @@ export function dampingOf(values: Found): number {
   return 2 * num(values, "drive.damping_ratio") * Math.sqrt(mass) * Math.sqrt(stiffness);
 }
 
-export function kineticOf(values: Found, contact: string): number {
-  return (
-    (values[`${contact}.kinetic`] as number | null | undefined) ??
-    (values[`${contact}.curve`] as Rows)[0]![1]
-  );
-}
-
-export function staticOf(values: Found, contact: string): number {
-  return (values[`${contact}.static`] as number | null | undefined) ?? kineticOf(values, contact);
+/** Refuses a release whose end is not known: its hand moves across the axis for ever. */
+function checkEnd(values: Found): void {
+  const across = values["motion.across_velocity"] ?? 0;
+  const last = typeof across === "number" ? across : across[across.length - 1]![1];
+  if (last === 0 || values["motion.duration"] != null) return;
+  throw new Refusal("duration", "given where the hand moves across the axis at the end", "None");
 }
 
 /** What is wrong with values that a person set, in one line; empty where nothing is. */
@@ -167,15 +204,20 @@ export function problemOf(values: Values): string {
         if (words) throw new Refusal(key, words, `${floatRepr(value)} ${quantity.unit ?? ""}`.trim());
       }
     }
-    for (const table of ["plate", "finger"]) {
-      const curve = found[`${table}.curve`] as Rows | null;
-      if (curve) checkCurve(curve, kineticOf(found, table));
-      checkStatic(staticOf(found, table), kineticOf(found, table));
+    for (const table of CONTACTS) {
+      const coefficients = byCoefficient(found, table);
+      checkOneKind(table, Object.keys(values));
+      if (table === "finger") checkTouch(coefficients, found["finger.touch_force"]);
+      const [, ofStatic, ofCurve] = frictionKeys(table, coefficients);
+      const { kinetic, still, curve } = givenFriction(found, table);
+      if (curve) checkCurve(curve, kinetic, ofCurve);
+      checkStatic(still, kinetic, ofStatic);
     }
     checkSkin(found);
     checkStretch(found);
     checkDrive(found);
     checkPhase(found);
+    checkEnd(found);
   } catch (error) {
     if (error instanceof Refusal) return error.message;
     throw error;

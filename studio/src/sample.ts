@@ -1,7 +1,9 @@
 // What the plots show of motions: columns at common times, with both limits at each event.
-import type { Values } from "./checks";
-import { CoreError, type Core, type Motion, type QuantityName, type Transition } from "./core";
-import { coreInput, settlingBand, valueOf } from "./design";
+
+import { problemOf } from "./checks";
+import { type Core, CoreError, type Motion, type QuantityName, type Transition } from "./core";
+import { coreInput, settlingBand, valueFor } from "./design";
+import type { Values } from "./friction";
 
 export type EventKind = Exclude<Transition, "none">;
 export type ContactName = "plate" | "finger" | "both";
@@ -50,7 +52,10 @@ interface Made {
 
 /** Motions of several designs over one window: as long as the longest of them, unless given. */
 export function simulateAll(
-  core: Core, designs: readonly Values[], windowEnd: number | null, samples = SAMPLES,
+  core: Core,
+  designs: readonly Values[],
+  windowEnd: number | null,
+  samples = SAMPLES,
 ): { end: number; found: Simulated[] } {
   const made = designs.map((values): Made | string => {
     try {
@@ -64,8 +69,8 @@ export function simulateAll(
   try {
     const end = windowEnd ?? good.reduce((most, { duration }) => Math.max(most, duration), 1e-3);
     const grid = commonTimes(good, end, samples);
-    const found = made.map((one): Simulated =>
-      typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) },
+    const found = made.map(
+      (one): Simulated => (typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) }),
     );
     return { end, found };
   } finally {
@@ -74,8 +79,10 @@ export function simulateAll(
 }
 
 function begin(core: Core, values: Values): Made {
+  const problem = problemOf(values);
+  if (problem) throw new CoreError(problem);
   const motion = core.simulate(coreInput(values));
-  const given = valueOf(values, "motion.duration");
+  const given = valueFor(values, "motion.duration");
   const known = motion.outcome.knownUntil;
   const long = typeof given === "number" ? given : motion.duration(settlingBand(values));
   const duration = Math.min(long, known);
@@ -126,7 +133,9 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
     const column = new Float64Array(grid.times.length).fill(NaN);
     column.set(motion.evaluate(name, asked));
     const limits = motion.evaluate(name, before, "left");
-    left.forEach((index, i) => (column[index] = limits[i]!));
+    left.forEach((index, i) => {
+      column[index] = limits[i]!;
+    });
     columns[name] = column;
   }
   return {

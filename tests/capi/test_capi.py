@@ -273,7 +273,9 @@ class Segment(ctypes.Structure):
 
     _fields_ = (
         *((name, c_double) for name in ("begin", "end", "position", "velocity", "acceleration")),
-        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
+        ("acceleration_bound", c_double),
+        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_branch", "finger_branch")),
+        *((name, ctypes.c_int) for name in ("plate_event", "finger_event")),
     )
 
 
@@ -326,11 +328,14 @@ def compare(c: Interface, number: int, motion: c_void_p, core: Any) -> float:
     ending = [numbers[f"ending.{name}"] for name in ("steady_since", "period")]
     same((outcome.steady_since, outcome.period), ending, number)
     table = core.segments()
+    if isinstance(core, _core.Motion):
+        table["acceleration_bound"] = core.acceleration_bounds()
     assert outcome.segments == len(table["begin"])
     for i in range(0, outcome.segments, max(outcome.segments // 7, 1)):
         segment = Segment()
         c("segment_of", motion, c_size_t(i), byref(segment))
-        for name in table.keys() & {column[0] for column in Segment._fields_}:
+        assert table.keys() <= {column[0] for column in Segment._fields_}
+        for name in table:
             same(getattr(segment, name), table[name][i], number)
     return float(outcome.known_until)
 
@@ -402,6 +407,8 @@ class Instant(ctypes.Structure):
     _fields_ = (
         *((name, c_double) for name in ("time", "next_event", "mouse_velocity")),
         *((name, c_double) for name in ("mouse_velocity_rate", "plate_load", "plate_load_rate")),
+        *((name, c_double) for name in ("across_velocity", "across_velocity_rate")),
+        *((name, c_double) for name in ("force", "force_rate")),
         *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
     )
 
@@ -409,12 +416,12 @@ class Instant(ctypes.Structure):
 def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
     """Whatever the steps, and the inputs that change on the way."""
     random = np.random.default_rng(17)
-    worst, steps, kept = 0.0, 0, 0
+    worst, steps, kept, oblique = 0.0, 0, 0, 0
     for number in range(150):
         case = drawn(random)
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
-        rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
-        case.inputs |= {"force": [(0.0, 0.0)], "across_velocity": [(0.0, 0.0)]}
+        rows = case.inputs
+        oblique += len(rows["across_velocity"]) > 1
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
         case.numbers["duration"] = changes[-1] + 0.2
         core = case.core()
@@ -461,6 +468,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         c.free(drive=drive, release=release, stepper=stepper)
     print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
     assert kept > 100
+    assert oblique > 10
 
 
 class Varied(ctypes.Structure):
@@ -491,7 +499,8 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
         "duration": np.where(random.integers(5, size=points) == 0, 0.1, inf),
     }
     varied["mass"][7] = -1.0
-    names = c.names("number")
+    motion, energy = c.names("number"), [f"energy.{name}" for name in c.names("energy")]
+    names = [*motion, *energy, "duration", "final.position", "final.velocity"]
     expected = pd.simulate_batch(
         pd.Drive(
             mass=0.01,
@@ -502,24 +511,26 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
         ),
         pd.Release(mouse_velocity=0.1),
         **{name.replace(".", "_"): values for name, values in varied.items()},
-        outputs=[name.replace(".", "_") for name in names] + ["ending", "status"],
+        outputs=[name.replace(".", "_") for name in names] + ["ending", "status", "events"],
     )
     drive, release = c.given(Case())
     listed = (Varied * len(varied))(
         *(Varied(name.encode(), doubles(values)) for name, values in varied.items())
     )
     numbers = np.empty((points, len(names)))
-    codes = [np.empty(points, np.int32) for _ in range(3)]
-    outputs = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in codes))
+    events, *codes = (np.empty(points, np.int32) for _ in range(4))
+    filled = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in (events, *codes)))
+    outputs = (c_char_p * len(names))(*(name.encode() for name in names))
     c(
         *("batch", drive, release, listed, c_size_t(len(varied)), c_size_t(points)),
-        *(c_double(0.05), None, None, *outputs),
+        *(c_double(0.05), outputs, c_size_t(len(names)), None, None, *filled),
     )
     for k, name in enumerate(names):
         same(numbers[:, k], expected[name.replace(".", "_")].values, k)
     good = expected["status"].values == Status.ok
     assert_array_equal(codes[2] == 0, expected["status"].values < Status.incomplete)
     assert_array_equal(codes[1][good], expected["ending"].values[good])
+    assert_array_equal(events, expected["events"].values)
     assert not good[7] and good.sum() > 0.99 * points
     c.free(drive=drive, release=release)
 

@@ -396,7 +396,7 @@ def friction_parts(key: str) -> tuple[str, ...]:
     if key not in COEFFICIENT_OF:
         return ()
     own, pressing = COEFFICIENT_OF[key], PRESSED_BY[key.partition(".")[0]]
-    return (own, *(QUANTITIES[name].key for name in pressing))
+    return (own, *DRIVE[own].follows, *(QUANTITIES[name].key for name in pressing))
 
 
 def written(key: str, value: float) -> str | float:
