@@ -219,8 +219,8 @@ class Certifier {
   /// force at that velocity or, where that turns steeply, by how far the velocity is from those with the
   /// direction of the force, as a part of the largest.
   T oblique_error(T u, T across, T force, T load) const {
+    using detail::hypot;
     using std::abs;
-    using std::hypot;
     using std::sqrt;
     const T speed = hypot(u, across), strength = load * kinetic(drive_.plate, speed);
     if (!(strength > 0)) return force;
