@@ -15,6 +15,8 @@ from typing import Any
 import pint
 
 from pindrive import __version__
+from pindrive.device.coil import COIL, COIL_NEEDS
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.template import (
     ALONE,
     AROUND,
@@ -42,6 +44,7 @@ PARTS = (
     *SLOPES.values(),
     "profile.rate",
     "phase",
+    *(f"coil.{name}" for name in ("resistance", "inductance", "current", "field", "power")),
     *(name for pair in COLUMNS.values() for name in pair),
 )
 """Quantities of a drive's parts that the page checks."""
@@ -161,6 +164,10 @@ def tables() -> dict[str, Any]:
         },
         "overTime": INPUTS,
         "continuous": [QUANTITIES[name].key for name in CONTINUOUS],
+        "coil": COIL,
+        "coilNeeds": {name: QUANTITIES[name].meaning for name in COIL_NEEDS},
+        "magnet": DIRECT,
+        "pins": [budgets.PINS.most, budgets.PINS.counted],
         "studyKeys": STUDY_KEYS,
         "inputRows": budgets.INPUT_ROWS.most,
         "units": units(),

@@ -496,7 +496,7 @@ class Certifier {
     const T still = T(1e-12) * v_scale_;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
     const bool oblique = segment.mode.plate == ContactState::slip_oblique;
-    const T drags = stage.plate_velocity.rate, turns = std::hypot(drags, stage.across.rate);
+    const T drags = stage.plate_velocity.rate, turns = detail::hypot(drags, stage.across.rate);
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "pindrive/functions.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/simulation.hpp"
 
@@ -260,7 +261,7 @@ class Stepper {
 
   /// The velocity across jumps, and with it the speed at which the plate slides.
   void turn() {
-    using std::hypot;
+    using detail::hypot;
     auto& plate = simulation_.plate_;
     plate.reached = detail::Bound::none;
     if (!plate.oblique()) return;

@@ -14,6 +14,29 @@ import { brief, counted, floatRepr, general } from "./python";
 import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
+/** What a release has beside what it has over time. */
+export const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
+
+/** The keys that a motion depends on here; of those that may have rows, each. */
+const MOVES: ReadonlySet<string> = new Set([
+  ...["mass", "stiffness", "damping", "damping_ratio"].map((name) => `drive.${name}`),
+  ...CONTACTS.flatMap((contact) => [...frictionKeys(contact, false), ...frictionKeys(contact, true)]),
+  ...Object.values(TABLES.pressedBy).flatMap((parts) => Object.keys(parts)),
+  "finger.stiffness",
+  ...[...RELEASED, ...TABLES.overTime, "settling_band"].map((name) => `motion.${name}`),
+]);
+const MAY_CHANGE: ReadonlySet<string> = new Set(TABLES.overTime.map((name) => `motion.${name}`));
+
+/** Why a key of a device file with a value is not simulated here; empty where it is. */
+export function notSimulated(key: string, value: Value | null): string {
+  const takes = "the studio does not simulate it; `pindrive simulate` does";
+  if (!MOVES.has(key)) return `${key}: ${takes}`;
+  const curve = CONTACTS.some((contact) =>
+    [false, true].some((kind) => frictionKeys(contact, kind)[2] === key),
+  );
+  if (Array.isArray(value) && !curve && !MAY_CHANGE.has(key)) return `${key}: rows: ${takes}`;
+  return "";
+}
 
 /** A value that is refused; its words have no place yet. */
 export class Refusal extends Error {
@@ -204,6 +227,10 @@ export function problemOf(values: Values): string {
         if (words) throw new Refusal(key, words, `${floatRepr(value)} ${quantity.unit ?? ""}`.trim());
       }
     }
+    const other = Object.entries(values)
+      .map(([key, value]) => notSimulated(key, value))
+      .find(Boolean);
+    if (other) return other;
     for (const table of CONTACTS) {
       const coefficients = byCoefficient(found, table);
       checkOneKind(table, Object.keys(values));

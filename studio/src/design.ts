@@ -1,5 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import { dampingOf, MOUSE } from "./checks";
+import { dampingOf, MOUSE, RELEASED } from "./checks";
 import type { Input, Rows } from "./core";
 import type { Device } from "./device";
 import {
@@ -19,8 +19,6 @@ export interface Design extends Device {
   /** Whether its curves are drawn beside those of the current one. */
   readonly shown: boolean;
 }
-
-const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
 
 export function isRows(value: Value | null | undefined): value is Rows {
   return Array.isArray(value);

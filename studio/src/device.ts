@@ -10,6 +10,7 @@ import {
   checkStretch,
   checkTouch,
   MOUSE,
+  notSimulated,
   Refusal,
 } from "./checks";
 import type { Row, Rows } from "./core";
@@ -18,6 +19,7 @@ import { closest, floatRepr, general, quoted } from "./python";
 import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
 import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
 import { toSi, UnitError } from "./units";
+import { fits } from "./whole";
 
 export interface Device {
   readonly name: string;
@@ -129,11 +131,18 @@ class Reader {
     const before = problems.length;
     this.readValues(whole ? TABLES.tables : TABLES.alone, meant);
     if (hand) this.values["motion.mouse_velocity"] = this.values["scan.hand_speed"] ?? null;
+    for (const key of DRIVE.keys()) {
+      const words = this.isGiven(key) && key in this.values ? notSimulated(key, this.values[key]!) : "";
+      if (words) problems.push(`${file}: ${words}`);
+    }
     this.checkContacts();
-    const complete = problems.length === before;
-    if (complete || this.allRead(whole)) this.checkTogether();
+    const complete = problems.length === before && this.allRead(whole);
+    if (complete) this.checkTogether();
+    if (complete && whole) {
+      for (const { check, keys } of fits(this.values, tables)) this.attempt(check, ...keys);
+    }
     if (problems.length) throw new DeviceError(problems);
-    this.attempt(() => checkDrive(this.values), "");
+    this.attempt(() => checkDrive(this.values));
     if (problems.length) throw new DeviceError(problems);
     const of = tables.device!;
     const given = [...DRIVE.keys()].filter((key) => this.isGiven(key) || (hand && key === MOUSE));
@@ -198,14 +207,14 @@ class Reader {
     }
   }
 
-  /** Adds what a check refuses, with the place of `key`, of which its label may be the last part. */
-  private attempt(check: () => void, key = ""): void {
+  /** Adds what a check refuses, with its key: the first of `keys` of which its label is the last part. */
+  private attempt(check: () => void, ...keys: string[]): void {
     try {
       check();
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       const own = error.label.split("[")[0]!;
-      const full = key.endsWith(`.${own}`) ? key : own;
+      const full = keys.find((key) => key.endsWith(`.${own}`)) ?? own;
       this.problems.push(`${this.file}: ${full}${error.message.slice(own.length)}`);
     }
   }

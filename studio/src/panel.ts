@@ -1,5 +1,5 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { problemOf } from "./checks";
+import { notSimulated, problemOf } from "./checks";
 import { isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
 import { h, option, symbol } from "./dom";
@@ -32,7 +32,7 @@ export class Panel {
   constructor(private readonly change: Change) {
     for (const [table, title] of GROUPS) {
       const rows = [...DRIVE.values()]
-        .filter((quantity) => quantity.key.startsWith(`${table}.`))
+        .filter(({ key }) => key.startsWith(`${table}.`) && !notSimulated(key, null))
         .map((quantity) =>
           quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity),
         );

@@ -60,6 +60,12 @@ interface Tables {
   /** What a release has over time, by name; which of that may have no steps, by key. */
   readonly overTime: readonly string[];
   readonly continuous: readonly string[];
+  /** How a coil is made; what it must say, with its meaning; what says what a magnet does instead. */
+  readonly coil: readonly string[];
+  readonly coilNeeds: Readonly<Record<string, string>>;
+  readonly magnet: readonly string[];
+  /** How many pins an array may have, and what a message calls them. */
+  readonly pins: readonly [number, string];
   readonly studyKeys: readonly string[];
   readonly inputRows: number;
   readonly units: {

@@ -117,10 +117,46 @@ WRONG = [
 ]
 """A text of a file that is good, and what stands there instead."""
 
+WRONG_AROUND = [
+    *(("magnet", line) for line in (
+        'turns = 300', 'gap = "0.1 mm"\nturns = 300',
+        'residual = "5 N"', "pwm_duty = 0.5", 'pwm_frequency = "1 kHz"',
+        'voltage = [["0 s", "1 V"]]', "saturation = 2",
+    )),
+    *(("coil", line) for line in (
+        'outer_diameter = "2.7 mm"', 'voltage = [["1 ms", "1 V"]]', 'voltage = [["0 s", "99 V"]]',
+        'voltage = [["0 s", "1 V"], ["0 s", "2 V"]]', 'saturation_field = "1e-6 T"\nresidual = "1 N"',
+        'voltage = [["0 s", "1 V"]]\npwm_frequency = "1 kHz"\npwm_duty = 0.5',
+    )),
+    ("control", "threshold = 0.9\nhysteresis = 0.3"),
+    *(("array", line) for line in (
+        "columns = 2.5", "columns = 200\nrows = 200", 'places = [["0 m", "0 m"]]\ncolumns = 2',
+        'places = [["0 m", "0 m"], ["1 m", "0 m"], ["0 m", "0 m"]]',
+        'slot_length = "1 mm"\npin_diameter = "2 mm"',
+    )),
+    ("plate", ""),
+]  # fmt: skip
+"""A table of the whole device, and what stands in it."""
+
+
+def around(table: str, lines: str) -> str:
+    """A whole device of which one table is wrong."""
+    if table == "plate":
+        return GOOD.replace('"20 mN"', '"0 N"') + '[magnet]\nresidual = "0 N"\n'
+    if table == "coil":
+        lines = (
+            'turns = 300\npole_area = "4 mm^2"\ngap = "0.1 mm"\nwire_diameter = "0.1 mm"\n'
+            f'turn_length = "15 mm"\nsupply_voltage = "5 V"\n{lines}'
+        )
+        table = "magnet"
+    return f"{GOOD}[{table}]\n{lines}\n"
+
 
 def spoiled() -> list[str]:
     assert all(old in GOOD for old, _ in WRONG)
-    return [GOOD.replace(old, new, 1) if old else new for old, new in WRONG]
+    return [around(*wrong) for wrong in WRONG_AROUND] + [
+        GOOD.replace(old, new, 1) if old else new for old, new in WRONG
+    ]
 
 
 def said_by_python(text: str, path: Path) -> list[str]:
@@ -343,6 +379,12 @@ def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
             "checks.ts",
             "const steps = !curve && !continuous",
             "const steps = !curve",
+            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+        ),
+        (
+            "whole.ts",
+            "2 * area <= face",
+            "area <= face",
             test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
         ),
         (

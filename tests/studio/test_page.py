@@ -61,7 +61,7 @@ def numbers_shown(page: Any) -> dict[str, float]:
 
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
-    """Which move as in Python: test_core.py."""
+    """Which are those of Python: test_core.py."""
     _, asked = questions(1000, 16)
     answers = page.evaluate(
         "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))", asked

@@ -72,7 +72,8 @@ class Problems(list[str]):
         except ValueError as error:
             said, where = error.args[0], self._place(*keys)
             if isinstance(said, Refusal):
-                named = [key for key in keys if key.endswith(f".{said.label}")]
+                own = said.label.partition("[")[0]
+                named = [key for key in keys if key.endswith(f".{own}")]
                 self.append(said.at(where, (named or keys)[0]))
             else:
                 self.append(f"{where}: {said}")
