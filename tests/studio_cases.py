@@ -102,7 +102,7 @@ def doubles(bits: str) -> np.ndarray[Any, Any]:
 
 
 def compare(found: dict[str, Any], motion: Motion) -> None:
-    """A motion from the page has the bits of Python: its events, its numbers, and values at times."""
+    """A motion from the page has the bits of Python: its events, its numbers, values at times."""
     assert found["status"] == int(motion.status)
     assert found["end"] == motion.ending.end.name
     ends = [end for segment in motion.segments for end in (segment.begin, segment.end)]

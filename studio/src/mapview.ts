@@ -172,9 +172,14 @@ export class MapView {
     const across = align === "center";
     context.textAlign = align;
     context.textBaseline = across ? "top" : "middle";
+    let end = -Infinity; // of the last text along a narrow axis, which the next must not touch
     for (const value of axisTicks(range)) {
-      const part = partOf(range, value);
-      context.fillText(tickText(value * quantity.displayScale), ...place(part));
+      const words = tickText(value * quantity.displayScale);
+      const [x, y] = place(partOf(range, value));
+      const half = context.measureText(words).width / 2;
+      if (across && x - half < end) continue;
+      end = x + half + 4;
+      context.fillText(words, x, y);
     }
     const name = `${symbolOf(key)}${unitOf(quantity) ? `, ${unitOf(quantity)}` : ""}`;
     const [x, y] = place(0.5);

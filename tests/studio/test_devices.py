@@ -125,7 +125,7 @@ WRONG_AROUND = [
     )),
     *(("coil", line) for line in (
         'outer_diameter = "2.7 mm"', 'voltage = [["1 ms", "1 V"]]', 'voltage = [["0 s", "99 V"]]',
-        'voltage = [["0 s", "1 V"], ["0 s", "2 V"]]', 'saturation_field = "1e-6 T"\nresidual = "1 N"',
+        'voltage = [["0 s", "1 V"], ["0 s", "2 V"]]', 'saturation_field = "1 mT"\nresidual = "1 N"',
         'voltage = [["0 s", "1 V"]]\npwm_frequency = "1 kHz"\npwm_duty = 0.5',
     )),
     ("control", "threshold = 0.9\nhysteresis = 0.3"),
