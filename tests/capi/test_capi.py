@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import re
 import shutil
@@ -313,6 +314,46 @@ def test_codes_are_those_of_python(c: Interface) -> None:
     }
     for code in codes.values():
         assert c.library.pindrive_status_text(int(code)).decode() == Status(int(code)).explanation
+
+
+IN_C = {
+    "Motion": dict.fromkeys(
+        ("position", "velocity", "acceleration", "plate_force", "finger_force", "stretch"),
+        "evaluate",
+    )
+    | {
+        **{"stretch_rate": "evaluate", "segments": "segment_of", "transient": "numbers"},
+        **{"ledger": "energy", "acceleration_bounds": "segment_of", "status": "outcome_of"},
+        **dict.fromkeys(("known_until", "end", "cycle_begin", "until"), "outcome_of"),
+        "segment_count": "outcome_of",
+    },
+    "": {"simulate_batch": "batch", "statuses": "status_text"},
+}
+"""The function of pindrive.h for what the extension calls otherwise."""
+OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"}
+"""How it computes, and its constants: of these C has no function."""
+
+
+def test_what_python_can_do_with_the_core_c_can() -> None:
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    functions = set(re.findall(r"pindrive_(\w+)\(", header))
+    stub = ast.parse((ROOT / "src" / "pindrive" / "_core.pyi").read_text("utf-8"))
+    asked = 0
+    for node in stub.body:
+        if isinstance(node, ast.ClassDef):
+            names = [each.name for each in node.body if isinstance(each, ast.FunctionDef)]
+        elif isinstance(node, ast.FunctionDef):
+            names = [node.name]
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names = [node.target.id]
+        else:
+            continue
+        of = IN_C["Motion" if isinstance(node, ast.ClassDef) else ""]
+        for name in names:
+            if name not in OF_THE_EXTENSION:
+                assert of.get(name, name) in functions, name
+                asked += 1
+    assert asked > 25
 
 
 def same(found: Any, expected: Any, case: int) -> None:
