@@ -99,7 +99,7 @@ export class Animation {
     // Electromagnet and pin, in the colour of what they do.
     const name = {
       carried: "carried by the plate",
-      resting: "resting on the finger",
+      resting: "at rest",
       gripping: "gripped by the skin",
     };
     context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;

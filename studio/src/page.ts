@@ -420,7 +420,7 @@ function legend(): HTMLElement {
     "p",
     { class: "legend note" },
     entry("swatch carried", "carried by the plate"),
-    entry("swatch resting", "resting on the finger"),
+    entry("swatch resting", "at rest"),
     entry("swatch gripping", "gripped by skin"),
     entry("mark stick plate", "sticks"),
     entry("mark slip plate", "breaks loose"),

@@ -2,7 +2,7 @@
 
 import { problemOf } from "./checks";
 import { type Core, CoreError, type Motion, type QuantityName, type Transition } from "./core";
-import { coreInput, settlingBand, valueFor } from "./design";
+import { coreInput, plateVelocity, settlingBand, valueFor } from "./design";
 import type { Values } from "./friction";
 
 export type EventKind = Exclude<Transition, "none">;
@@ -142,7 +142,7 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
     times: grid.times,
     columns,
     events: events.filter(({ time }) => time <= end),
-    phases: phasesOf(motion, Math.min(end, knownUntil)),
+    phases: phasesOf(motion, values, Math.min(end, knownUntil)),
     numbers: motion.numbers(duration, settlingBand(values)),
     energy: motion.energy(duration),
     certificate: motion.certificate(duration),
@@ -153,8 +153,8 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
   };
 }
 
-/** When the plate carries the pin, when it rests on the finger, when skin grips it. */
-function phasesOf(motion: Motion, end: number): Phase[] {
+/** When the plate carries the pin, when it is at rest, on the finger or a plate that stands, when skin grips it. */
+function phasesOf(motion: Motion, values: Values, end: number): Phase[] {
   const { cycleBegin, simulated } = motion.outcome;
   const found: Phase[] = [];
   const add = (kind: PhaseKind, begin: number, until: number): void => {
@@ -162,15 +162,19 @@ function phasesOf(motion: Motion, end: number): Phase[] {
     if (last && last.end === begin) found[found.indexOf(last)] = { ...last, end: until };
     else found.push({ kind, begin, end: until });
   };
-  const segments = motion.segments(end);
+  const segments = motion.segments(end).map((segment) => {
+    const times = [segment.begin, segment.begin + Math.min(segment.end - segment.begin, 1) / 2];
+    return { ...segment, stands: times.every((time) => plateVelocity(values, time) === 0) };
+  });
   const round = simulated - cycleBegin;
   for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
     for (const segment of segments) {
       if (rounds > 0 && segment.begin < cycleBegin) continue;
       const [begin, until] = [segment.begin + shift, Math.min(segment.end + shift, end)];
       if (begin >= end || until <= begin) continue;
-      if (segment.plate === "sticks") add("carried", begin, until);
-      if (segment.finger === "sticks") add("resting", begin, until);
+      const rests = segment.finger === "sticks" || (segment.plate === "sticks" && segment.stands);
+      if (rests) add("resting", begin, until);
+      else if (segment.plate === "sticks") add("carried", begin, until);
       if (segment.finger === "grips") add("gripping", begin, until);
     }
     if (!(round > 0) || simulated + shift >= end) break;

@@ -133,8 +133,9 @@ def test_what_is_shown_is_what_python_computes(
     curves = "pindrive.page.view.lines[0].result.curves"
     phases = page.evaluate(f"{curves}.phases.map(({{kind, begin, end}}) => [kind, begin, end])")
     window = page.evaluate("pindrive.page.view.end")
+    last = motion.segments[-1].end  # from where on a cycle goes on, of which Python keeps one round
     for kind in ("carried", "resting"):
-        shown_ends = {end for name, *ends in phases if name == kind for end in ends}
+        shown_ends = {end for name, *ends in phases if name == kind for end in ends if end <= last}
         stuck = [s for s in motion.segments if s.mode == kind and s.begin < window]
         ends = {end for s in stuck for end in (s.begin, min(s.end, window))}
         assert shown_ends <= ends, kind
@@ -226,7 +227,9 @@ def test_friction_is_given_by_forces_or_by_coefficients(page: Any, tmp_path: Pat
     assert value(page, "finger.touch_force") == 0.01
     assert value(page, "plate.kinetic") is None
     assert page.locator("#plate-kinetic").is_hidden()
-    assert numbers_shown(page) == pytest.approx(before, rel=1e-9, nan_ok=True)
+    after = numbers_shown(page)
+    known = [name for name, number in before.items() if number is not None]
+    assert [after[name] for name in known] == pytest.approx([before[name] for name in known], 1e-9)
     page.fill("#drive-mass", "20")  # and with it the weight
     page.keyboard.press("Enter")
     settled(page)
