@@ -59,20 +59,20 @@ PINDRIVE_API int pindrive_interface(void);
 typedef int pindrive_error;
 enum {
   PINDRIVE_OK = 0,
-  PINDRIVE_MORE = 1,          /* done, but there was more than fitted */
-  PINDRIVE_BAD_NAME = 2,      /* nothing has that name */
-  PINDRIVE_BAD_VALUE = 3,     /* a number, or a code, out of its range */
-  PINDRIVE_NULL = 4,          /* a null pointer where one is needed */
-  PINDRIVE_UNSUPPORTED = 5,   /* a drive and a release that the core cannot follow together */
-  PINDRIVE_DERIVATIVE = 6,    /* asked of derivatives what only a motion has, or the reverse */
-  PINDRIVE_STOPPED = 7,       /* go_on returned 0 */
+  PINDRIVE_MORE = 1,        /* done, but there was more than fitted */
+  PINDRIVE_BAD_NAME = 2,    /* nothing has that name */
+  PINDRIVE_BAD_VALUE = 3,   /* a number, or a code, out of its range */
+  PINDRIVE_NULL = 4,        /* a null pointer where one is needed */
+  PINDRIVE_UNSUPPORTED = 5, /* a drive and a release that the core cannot follow together */
+  PINDRIVE_DERIVATIVE = 6,  /* asked of derivatives what only a motion has, or the reverse */
+  PINDRIVE_STOPPED = 7,     /* go_on returned 0 */
   PINDRIVE_OUT_OF_MEMORY = 8,
   PINDRIVE_GIVEN_UP = 9 /* a stepper that cannot go on */
 };
 
 /* What the last call of this thread that failed was given, and what is allowed; valid until the next
  * one fails. Empty before. */
-PINDRIVE_API const char *pindrive_last_error(void);
+PINDRIVE_API const char* pindrive_last_error(void);
 
 /* ---- drives and releases --------------------------------------------------------------------- */
 
@@ -80,8 +80,8 @@ typedef struct pindrive_drive pindrive_drive;
 typedef struct pindrive_release pindrive_release;
 
 /* A drive without friction whose mass and stiffness are still to be given; null when memory is out. */
-PINDRIVE_API pindrive_drive *pindrive_drive_new(void);
-PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
+PINDRIVE_API pindrive_drive* pindrive_drive_new(void);
+PINDRIVE_API void pindrive_drive_free(pindrive_drive* drive);
 
 /* Sets a number of a drive. Names, units, and ranges, which pindrive_simulate() checks:
  *   mass              kg     > 0: electromagnet and pin
@@ -91,71 +91,72 @@ PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
  *   plate.static      N      >= plate.kinetic
  *   finger.kinetic, finger.static: the same at the finger
  *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first */
-PINDRIVE_API pindrive_error pindrive_drive_set(pindrive_drive *drive, const char *name,
+PINDRIVE_API pindrive_error pindrive_drive_set(pindrive_drive* drive, const char* name,
                                                double value);
 
 /* Gives a contact, "plate" or "finger", a friction curve: kinetic friction forces[i] (N, >= 0) at
  * sliding speeds[i] (m/s, increasing from 0), linear between. Its kinetic friction becomes forces[0],
  * and its static friction too, which may follow. count 0 takes the curve away. */
-PINDRIVE_API pindrive_error pindrive_drive_set_curve(pindrive_drive *drive, const char *contact,
-                                                     const double *speeds, const double *forces,
+PINDRIVE_API pindrive_error pindrive_drive_set_curve(pindrive_drive* drive, const char* contact,
+                                                     const double* speeds, const double* forces,
                                                      size_t count);
 
 /* A release at rest at the spring's rest, with a plate that stands still; null when memory is out. */
-PINDRIVE_API pindrive_release *pindrive_release_new(void);
-PINDRIVE_API void pindrive_release_free(pindrive_release *release);
+PINDRIVE_API pindrive_release* pindrive_release_new(void);
+PINDRIVE_API void pindrive_release_free(pindrive_release* release);
 
 /* Sets a number of a release. Names, units, ranges:
  *   mouse_velocity  m/s  constant velocity of the plate under the mouse
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
  *   force           N    constant external force on the pin, the way of x; 0 at first
  *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first
+ *   finger_load          >= 0: constant factor on the finger's friction; 1 at first
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
  *   duration        s    > 0; infinite: until the ending is known, as it is at first
  * A velocity across that lasts needs a finite duration. */
-PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
+PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release* release, const char* name,
                                                  double value);
 
-/* Gives a release "mouse_velocity", "plate_load", "force" or "across_velocity" over time: values[i] at times[i] (s, increasing,
- * count >= 1), linear between, constant outside. Two rows of a load or a force at one time are a step:
- * from that time on the later one holds. */
-PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
-                                                         const char *name, const double *times,
-                                                         const double *values, size_t count);
+/* Gives a release "mouse_velocity", "plate_load", "force", "across_velocity" or "finger_load" over time:
+ * values[i] at times[i] (s, increasing, count >= 1), linear between, constant outside. Two rows of a load
+ * or a force at one time are a step: from that time on the later one holds. A finger_load that changes
+ * needs a rigid finger without a curve. */
+PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release* release,
+                                                         const char* name, const double* times,
+                                                         const double* values, size_t count);
 
 /* ---- simulation ------------------------------------------------------------------------------ */
 
 typedef struct pindrive_motion pindrive_motion;
 
 /* Asked now and then whether to go on; 0 stops the computation. */
-typedef int (*pindrive_go_on)(void *context);
+typedef int (*pindrive_go_on)(void* context);
 
 /* Simulates a release; `motion` is to be freed. go_on may be null. A simulation that had to be given
  * up is no error: the motion's outcome says so. */
-PINDRIVE_API pindrive_error pindrive_simulate(const pindrive_drive *drive,
-                                              const pindrive_release *release,
-                                              pindrive_go_on go_on, void *context,
-                                              pindrive_motion **motion);
+PINDRIVE_API pindrive_error pindrive_simulate(const pindrive_drive* drive,
+                                              const pindrive_release* release, pindrive_go_on go_on,
+                                              void* context, pindrive_motion** motion);
 
 /* The exact derivatives of that motion, through its events, along a direction: every number of the
  * drive and the release changes at the rate that stands in drive_rate and release_rate, whose
  * profiles and curves have as many rows. What is then asked of `derivative` is the derivative of what
  * the motion would answer: of values at a time, of numbers, of the times of its segments. */
-PINDRIVE_API pindrive_error pindrive_differentiate(const pindrive_drive *drive,
-                                                   const pindrive_release *release,
-                                                   const pindrive_drive *drive_rate,
-                                                   const pindrive_release *release_rate,
-                                                   pindrive_go_on go_on, void *context,
-                                                   pindrive_motion **derivative);
+PINDRIVE_API pindrive_error pindrive_differentiate(const pindrive_drive* drive,
+                                                   const pindrive_release* release,
+                                                   const pindrive_drive* drive_rate,
+                                                   const pindrive_release* release_rate,
+                                                   pindrive_go_on go_on, void* context,
+                                                   pindrive_motion** derivative);
 
 /* A direction along which nothing changes: every number, and every row, of a drive or a release is 0.
  * To be changed by the functions above and freed; null when memory is out. */
-PINDRIVE_API pindrive_drive *pindrive_drive_rate_new(const pindrive_drive *drive);
-PINDRIVE_API pindrive_release *pindrive_release_rate_new(const pindrive_release *release);
+PINDRIVE_API pindrive_drive* pindrive_drive_rate_new(const pindrive_drive* drive);
+PINDRIVE_API pindrive_release* pindrive_release_rate_new(const pindrive_release* release);
 
-PINDRIVE_API void pindrive_motion_free(pindrive_motion *motion);
+PINDRIVE_API void pindrive_motion_free(pindrive_motion* motion);
 
 /* Whether it was followed to its end, and what stopped it. */
 typedef int pindrive_status;
@@ -189,11 +190,11 @@ typedef struct pindrive_outcome {
   size_t segments;
 } pindrive_outcome;
 
-PINDRIVE_API pindrive_error pindrive_outcome_of(const pindrive_motion *motion,
-                                                pindrive_outcome *outcome);
+PINDRIVE_API pindrive_error pindrive_outcome_of(const pindrive_motion* motion,
+                                                pindrive_outcome* outcome);
 
 /* What a status means and what to do about it. */
-PINDRIVE_API const char *pindrive_status_text(pindrive_status status);
+PINDRIVE_API const char* pindrive_status_text(pindrive_status status);
 
 /* ---- the motion over time -------------------------------------------------------------------- */
 
@@ -213,9 +214,9 @@ typedef int pindrive_side;
 enum { PINDRIVE_LEFT = 0, PINDRIVE_RIGHT = 1 };
 
 /* values[i] of a quantity at times[i] in [0, known_until]. */
-PINDRIVE_API pindrive_error pindrive_evaluate(const pindrive_motion *motion,
-                                              pindrive_quantity quantity, const double *times,
-                                              size_t count, pindrive_side side, double *values);
+PINDRIVE_API pindrive_error pindrive_evaluate(const pindrive_motion* motion,
+                                              pindrive_quantity quantity, const double* times,
+                                              size_t count, pindrive_side side, double* values);
 
 /* What a contact does in a segment. */
 typedef int pindrive_contact_state;
@@ -245,8 +246,8 @@ typedef struct pindrive_segment {
 } pindrive_segment;
 
 /* Segment `index` of the outcome's `segments`. */
-PINDRIVE_API pindrive_error pindrive_segment_of(const pindrive_motion *motion, size_t index,
-                                                pindrive_segment *segment);
+PINDRIVE_API pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
+                                                pindrive_segment* segment);
 
 typedef struct pindrive_event {
   double time;               /* s */
@@ -258,51 +259,51 @@ typedef struct pindrive_event {
  * return PINDRIVE_MORE where there were more. They ask of a motion, not of derivatives. */
 
 /* The events in [from, to], cycles expanded. */
-PINDRIVE_API pindrive_error pindrive_events(const pindrive_motion *motion, double from, double to,
-                                            pindrive_event *events, size_t capacity, size_t *count);
+PINDRIVE_API pindrive_error pindrive_events(const pindrive_motion* motion, double from, double to,
+                                            pindrive_event* events, size_t capacity, size_t* count);
 
 /* Times and values of the extrema of position, velocity or acceleration in [0, until]: its begin and
  * end, where it turns, and both sides of a jump. Between two neighbours it goes one way. */
-PINDRIVE_API pindrive_error pindrive_extrema(const pindrive_motion *motion,
+PINDRIVE_API pindrive_error pindrive_extrema(const pindrive_motion* motion,
                                              pindrive_quantity quantity, double until,
-                                             double *times, double *values, size_t capacity,
-                                             size_t *count);
+                                             double* times, double* values, size_t capacity,
+                                             size_t* count);
 
 /* Where position, velocity or acceleration changes from one side of a level to the other in
  * [0, until]: the times, and +1 or -1 for the side to which it goes. */
-PINDRIVE_API pindrive_error pindrive_crossings(const pindrive_motion *motion,
+PINDRIVE_API pindrive_error pindrive_crossings(const pindrive_motion* motion,
                                                pindrive_quantity quantity, double level,
-                                               double until, double *times, signed char *sides,
-                                               size_t capacity, size_t *count);
+                                               double until, double* times, signed char* sides,
+                                               size_t capacity, size_t* count);
 
 /* ---- numbers of a motion --------------------------------------------------------------------- */
 
 /* How many numbers a motion has, and the name of each, such as "transient.settling_time". */
 PINDRIVE_API size_t pindrive_number_count(void);
-PINDRIVE_API const char *pindrive_number_name(size_t index);
+PINDRIVE_API const char* pindrive_number_name(size_t index);
 
 /* All of them over [0, duration], in that order; NaN where a motion has no such number. The duration
  * is > 0 and at most known_until; NaN: long enough to see the ending. The settling band is a part of
  * |x(0) - x_end|, in (0, 1]; 0.05 is usual. */
-PINDRIVE_API pindrive_error pindrive_numbers(const pindrive_motion *motion, double duration,
-                                             double settling_band, double *values);
+PINDRIVE_API pindrive_error pindrive_numbers(const pindrive_motion* motion, double duration,
+                                             double settling_band, double* values);
 
 /* The duration that NaN stands for above, s. */
-PINDRIVE_API pindrive_error pindrive_duration(const pindrive_motion *motion, double settling_band,
-                                              double *duration);
+PINDRIVE_API pindrive_error pindrive_duration(const pindrive_motion* motion, double settling_band,
+                                              double* duration);
 
 /* The energy ledger over [0, duration], J: the same for its entries. */
 PINDRIVE_API size_t pindrive_energy_count(void);
-PINDRIVE_API const char *pindrive_energy_name(size_t index);
-PINDRIVE_API pindrive_error pindrive_energy(const pindrive_motion *motion, double duration,
-                                            double *values);
+PINDRIVE_API const char* pindrive_energy_name(size_t index);
+PINDRIVE_API pindrive_error pindrive_energy(const pindrive_motion* motion, double duration,
+                                            double* values);
 
 /* The certificate over [0, duration]: how far, relative to the terms of each law, the motion is from
  * obeying it. Of a correct motion all are of the order of rounding. */
 PINDRIVE_API size_t pindrive_certificate_count(void);
-PINDRIVE_API const char *pindrive_certificate_name(size_t index);
-PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, double duration,
-                                                 double *values);
+PINDRIVE_API const char* pindrive_certificate_name(size_t index);
+PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion* motion, double duration,
+                                                 double* values);
 
 /* ---- step by step ---------------------------------------------------------------------------- */
 
@@ -312,46 +313,43 @@ typedef struct pindrive_stepper pindrive_stepper;
 
 /* A release at the time `begin`, s; to be freed. Its mouse_velocity and plate_load have one value, as
  * its inputs are set on the way; its duration does not matter. */
-PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive *drive,
-                                                 const pindrive_release *release, double begin,
-                                                 pindrive_stepper **stepper);
+PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive* drive,
+                                                 const pindrive_release* release, double begin,
+                                                 pindrive_stepper** stepper);
 
 /* The exact derivatives of that stepper along a direction, as of pindrive_differentiate(). What is then
  * evaluated of it is a derivative at a time. */
-PINDRIVE_API pindrive_error pindrive_stepper_differentiate(const pindrive_drive *drive,
-                                                           const pindrive_release *release,
-                                                           const pindrive_drive *drive_rate,
-                                                           const pindrive_release *release_rate,
-                                                           double begin,
-                                                           pindrive_stepper **derivative);
+PINDRIVE_API pindrive_error pindrive_stepper_differentiate(
+    const pindrive_drive* drive, const pindrive_release* release, const pindrive_drive* drive_rate,
+    const pindrive_release* release_rate, double begin, pindrive_stepper** derivative);
 
 /* The derivatives from now on of a stepper along which nothing has changed so far: directions of its
  * inputs are then set by pindrive_stepper_set_along(). */
-PINDRIVE_API pindrive_error pindrive_stepper_derivative(const pindrive_stepper *stepper,
-                                                        pindrive_stepper **derivative);
+PINDRIVE_API pindrive_error pindrive_stepper_derivative(const pindrive_stepper* stepper,
+                                                        pindrive_stepper** derivative);
 
 /* A stepper in the same state, which goes on to the same bits: so a state is kept and gone back to. */
-PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper *stepper,
-                                                  pindrive_stepper **copy);
+PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper* stepper,
+                                                  pindrive_stepper** copy);
 
-PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
+PINDRIVE_API void pindrive_stepper_free(pindrive_stepper* stepper);
 
 /* Sets "mouse_velocity" (m/s, rate m/s^2) or "plate_load" (>= 0, rate 1/s) from now on: it goes on at
  * its rate until it is set again; a load that has fallen to zero stays there. A mouse velocity that jumps
  * moves the housing in no time: beside it the pin keeps its velocity, to the plate too. A value that
  * differs from the input as it went on by rounding is the same. Of derivatives it is a number, which does
  * not change along the direction. */
-PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
+PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input,
                                                  double value, double rate);
 
 /* Of derivatives: how an input and its rate change along the direction, from now on. */
-PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper *derivative,
-                                                       const char *input, double value,
+PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper* derivative,
+                                                       const char* input, double value,
                                                        double rate);
 
 /* Goes on to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
  * a contact until then. */
-PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper *stepper, double until,
+PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper* stepper, double until,
                                                   int stop_at_event);
 
 typedef struct pindrive_instant {
@@ -364,28 +362,28 @@ typedef struct pindrive_instant {
   pindrive_transition plate_event, finger_event; /* what happens now */
 } pindrive_instant;
 
-PINDRIVE_API pindrive_error pindrive_stepper_now(const pindrive_stepper *stepper,
-                                                 pindrive_instant *instant);
+PINDRIVE_API pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper,
+                                                 pindrive_instant* instant);
 
 /* A quantity now; at an event, after it. */
-PINDRIVE_API pindrive_error pindrive_stepper_evaluate(const pindrive_stepper *stepper,
-                                                      pindrive_quantity quantity, double *value);
+PINDRIVE_API pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
+                                                      pindrive_quantity quantity, double* value);
 
 /* A stepper, not of derivatives, as bytes: how many they are, and writing them. They are read by a
  * library of the same interface on a machine that keeps numbers in the same way; damaged ones are
  * refused. */
-PINDRIVE_API size_t pindrive_stepper_size(const pindrive_stepper *stepper);
-PINDRIVE_API pindrive_error pindrive_stepper_write(const pindrive_stepper *stepper, void *bytes,
+PINDRIVE_API size_t pindrive_stepper_size(const pindrive_stepper* stepper);
+PINDRIVE_API pindrive_error pindrive_stepper_write(const pindrive_stepper* stepper, void* bytes,
                                                    size_t size);
-PINDRIVE_API pindrive_error pindrive_stepper_read(const void *bytes, size_t size,
-                                                  pindrive_stepper **stepper);
+PINDRIVE_API pindrive_error pindrive_stepper_read(const void* bytes, size_t size,
+                                                  pindrive_stepper** stepper);
 
 /* ---- many releases --------------------------------------------------------------------------- */
 
 /* A number of the drive or the release that is another one in each point of a batch. */
 typedef struct pindrive_varied {
-  const char *name;     /* as in pindrive_drive_set and pindrive_release_set */
-  const double *values; /* one for each point */
+  const char* name;     /* as in pindrive_drive_set and pindrive_release_set */
+  const double* values; /* one for each point */
 } pindrive_varied;
 
 /* The numbers of `points` releases: a drive and a release in which some numbers vary. Point i fills
@@ -393,13 +391,10 @@ typedef struct pindrive_varied {
  * be simulated has an error there, which is PINDRIVE_OK otherwise, and NaN for numbers. The last three
  * may be null. Each is measured over its own duration, long enough to see its ending where the release
  * has none. */
-PINDRIVE_API pindrive_error pindrive_batch(const pindrive_drive *drive,
-                                           const pindrive_release *release,
-                                           const pindrive_varied *varied, size_t varied_count,
-                                           size_t points, double settling_band,
-                                           pindrive_go_on go_on, void *context, double *numbers,
-                                           pindrive_status *status, pindrive_end *end,
-                                           pindrive_error *error);
+PINDRIVE_API pindrive_error pindrive_batch(
+    const pindrive_drive* drive, const pindrive_release* release, const pindrive_varied* varied,
+    size_t varied_count, size_t points, double settling_band, pindrive_go_on go_on, void* context,
+    double* numbers, pindrive_status* status, pindrive_end* end, pindrive_error* error);
 
 #ifdef __cplusplus
 }

@@ -121,6 +121,8 @@ pindrive_error check_start(const pindrive_release& release, double begin) {
         std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity}})
     if (rows->size() > 1 || rows->front().second != 0)
       return fail(PINDRIVE_UNSUPPORTED, "%s of a stepper must be 0", name);
+  if (release.finger_load.size() > 1 || release.finger_load.front().second != 1)
+    return fail(PINDRIVE_UNSUPPORTED, "finger_load of a stepper must be 1");
   return check("begin", begin, std::isfinite(begin), "finite");
 }
 
@@ -400,9 +402,8 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
     const auto tau = of.tau();
     const auto lines = of.lines();
     return pd::visit_trajectory(of.drive(), of.segment(), lines, [&](const auto& along) {
-      const auto load = [&] { return lines.plate_load; };
       const auto friction = [&] {
-        return pd::friction_along(along, of.drive(), of.segment(), load, tau);
+        return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
       };
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });

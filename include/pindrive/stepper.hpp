@@ -23,6 +23,11 @@ struct Held {
   Line<T> line{};                              ///< from then on
   T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
 
+  Held() = default;
+  explicit Held(T constant) : line{constant, T(0)} {}
+  Held(T from, const Line<T>& along, T until = std::numeric_limits<T>::infinity())
+      : since(from), line(along), ends(until) {}
+
   Line<T> from(T t) const {
     if (t >= ends) return {};
     return {line.at(t - since), line.rate};

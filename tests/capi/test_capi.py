@@ -110,6 +110,7 @@ class Case:
             "plate_load": [(0.0, 1.0)],
             "force": [(0.0, 0.0)],
             "across_velocity": [(0.0, 0.0)],
+            "finger_load": [(0.0, 1.0)],
         }
     )
 
@@ -127,6 +128,7 @@ class Case:
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
+            self.inputs["finger_load"],
             n["duration"],
         )
 
@@ -169,6 +171,8 @@ def drawn(random: np.random.Generator) -> Case:
         if random.integers(2):
             n["duration"] = between(0.05, 0.3)
             case.inputs["across_velocity"] = [(t, between(-0.1, 0.1)) for t in times]
+    if kind == 3:
+        case.inputs["finger_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
@@ -415,6 +419,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
         rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
         case.inputs |= {"force": [(0.0, 0.0)], "across_velocity": [(0.0, 0.0)]}
+        case.inputs["finger_load"] = [(0.0, 1.0)]
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
         case.numbers["duration"] = changes[-1] + 0.2
         core = case.core()
