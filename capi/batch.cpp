@@ -40,13 +40,14 @@ void run_kernel(Block& block, std::size_t count, Asked asked) {
 /// plate in its friction; the order is that of the kernel's blocks.
 std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
   const double load = at.plate_load[0].second, velocity = at.mouse_velocity[0].second;
+  const double finger_load = at.finger_load[0].second;
   return {at.mass,
           at.stiffness,
           at.damping,
           load == 1 ? at.plate.kinetic : at.plate.kinetic * load,
           load == 1 ? at.plate.static_limit : at.plate.static_limit * load,
-          at.finger.kinetic,
-          at.finger.static_limit,
+          at.finger.kinetic * finger_load,
+          at.finger.static_limit * finger_load,
           at.finger.stiffness,
           velocity,
           at.displacement,
@@ -59,14 +60,16 @@ bool constant(const pd::Numbers& at) {
   const auto none_of = [](const pd::Rows& rows) { return rows.size() == 1 && rows[0].second == 0; };
   return at.plate.curve.empty() && at.finger.curve.empty() && at.mouse_velocity.size() == 1 &&
          at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
-         none_of(at.across_velocity);
+         none_of(at.across_velocity) && at.finger_load.size() == 1;
 }
 /// The same with its load in its friction.
 pd::Numbers pressed(pd::Numbers at) {
   const double load = at.plate_load[0].second;
   if (load != 1)
     for (double* force : {&at.plate.kinetic, &at.plate.static_limit}) *force *= load;
-  at.plate_load[0].second = 1;
+  for (double* force : {&at.finger.kinetic, &at.finger.static_limit})
+    *force *= at.finger_load[0].second;
+  at.plate_load[0].second = at.finger_load[0].second = 1;
   return at;
 }
 

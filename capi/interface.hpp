@@ -24,7 +24,8 @@ struct pindrive_drive {
 };
 
 struct pindrive_release {
-  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}};
+  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}},
+      finger_load{{0, 1}};
   double displacement{0}, velocity{pindrive_c::none}, skin_stretch{pindrive_c::none},
       duration{pindrive_c::infinity};
 };
@@ -79,8 +80,8 @@ constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
     "finger.stiffness";
 constexpr const char* release_names =
-    "mouse_velocity, plate_load, force, across_velocity, displacement, velocity, skin_stretch, "
-    "duration";
+    "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
+    "skin_stretch, duration";
 
 pindrive_error check_band(double band);
 /// What the core can follow, whether to an end, and what fits the direction of a derivative.

@@ -87,6 +87,7 @@ pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   if (std::strcmp(name, "force") == 0) return &release.force;
   if (std::strcmp(name, "across_velocity") == 0) return &release.across_velocity;
+  if (std::strcmp(name, "finger_load") == 0) return &release.finger_load;
   return nullptr;
 }
 
@@ -188,6 +189,7 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error) error = check_rows("plate_load", release.plate_load, false, true);
   if (!error) error = check_rows("force", release.force, true, true);
   if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
+  if (!error) error = check_rows("finger_load", release.finger_load, false, true);
   if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
@@ -201,7 +203,12 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (drive.finger.curve.size() > 1 && std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED,
                 "a compliant finger must have one kinetic friction, not a curve");
-  const double skin = release.skin_stretch, most = drive.finger.static_limit;
+  if (release.finger_load.size() > 1 &&
+      (drive.finger.curve.size() > 1 || std::isfinite(drive.finger.stiffness)))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must have one value for a finger that is compliant or has a curve");
+  const double skin = release.skin_stretch;
+  const double most = drive.finger.static_limit * release.finger_load[0].second;
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
@@ -238,14 +245,15 @@ pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindri
   if (!error) error = same_rows("force", release.force, release_rate.force);
   if (!error)
     error = same_rows("across_velocity", release.across_velocity, release_rate.across_velocity);
+  if (!error) error = same_rows("finger_load", release.finger_load, release_rate.finger_load);
   return error;
 }
 
 pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
-  return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
-          drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity, release.skin_stretch,   release.force,      release.across_velocity,
-          release.duration};
+  return {drive.mass,          drive.stiffness,        drive.damping,      drive.plate,
+          drive.finger,        release.mouse_velocity, release.plate_load, release.displacement,
+          release.velocity,    release.skin_stretch,   release.force,      release.across_velocity,
+          release.finger_load, release.duration};
 }
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
@@ -426,8 +434,9 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!times || !values) return null_pointer("times and values");
   pd::Rows* input = profile(*release, name);
   if (!input)
-    return bad_name("a release", name,
-                    "the profiles mouse_velocity, plate_load, force and across_velocity");
+    return bad_name(
+        "a release", name,
+        "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
@@ -458,6 +467,7 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
                                   pd::Rows(release->plate_load.size()),
                                   pd::Rows(release->force.size()),
                                   pd::Rows(release->across_velocity.size()),
+                                  pd::Rows(release->finger_load.size()),
                                   0,
                                   0,
                                   0,

@@ -110,6 +110,7 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
  *   force           N    constant external force on the pin, the way of x; 0 at first
  *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first
+ *   finger_load          >= 0: constant factor on the finger's friction; 1 at first
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
@@ -118,9 +119,10 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 
-/* Gives a release "mouse_velocity", "plate_load", "force" or "across_velocity" over time: values[i] at times[i] (s, increasing,
- * count >= 1), linear between, constant outside. Two rows of a load or a force at one time are a step:
- * from that time on the later one holds. */
+/* Gives a release "mouse_velocity", "plate_load", "force", "across_velocity" or "finger_load" over time:
+ * values[i] at times[i] (s, increasing, count >= 1), linear between, constant outside. Two rows of a load
+ * or a force at one time are a step: from that time on the later one holds. A finger_load that changes
+ * needs a rigid finger without a curve. */
 PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
                                                          const char *name, const double *times,
                                                          const double *values, size_t count);
@@ -313,8 +315,8 @@ PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, 
  * answers are those of one simulation, whatever the steps: nothing is integrated again at a step. */
 typedef struct pindrive_stepper pindrive_stepper;
 
-/* A release at the time `begin`, s; to be freed. Its mouse_velocity, plate_load, across_velocity and force
- * have one value, as its inputs are set on the way; its duration does not matter. */
+/* A release at the time `begin`, s; to be freed. Its mouse_velocity, plate_load, across_velocity, force
+ * and finger_load have one value, as its inputs are set on the way; its duration does not matter. */
 PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive *drive,
                                                  const pindrive_release *release, double begin,
                                                  pindrive_stepper **stepper);
@@ -339,9 +341,9 @@ PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper *steppe
 
 PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 
-/* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" (>= 0, rate 1/s) or "force"
- * (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has fallen to zero
- * stays there. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
+/* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
+ * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
+ * fallen to zero stays there. A finger_load that changes needs a rigid finger without a curve. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
  * velocity, to the plate too. Where the velocity across jumps the pin keeps its velocity as well, and the
  * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
  * it is a number, which does not change along the direction. */
@@ -366,6 +368,7 @@ typedef struct pindrive_instant {
   double plate_load, plate_load_rate;            /* 1, 1/s */
   double across_velocity, across_velocity_rate;  /* m/s, m/s^2 */
   double force, force_rate;                      /* N, N/s */
+  double finger_load, finger_load_rate;          /* 1, 1/s */
   pindrive_contact_state plate, finger;          /* from now on */
   pindrive_transition plate_event, finger_event; /* what happens now */
 } pindrive_instant;

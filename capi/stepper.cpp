@@ -78,6 +78,7 @@ StateOfDual lifted(const State& s) {
           held(s.plate_load),
           held(s.across_velocity),
           held(s.force),
+          held(s.finger_load),
           s.event};
 }
 
@@ -109,7 +110,8 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
                                           held(at.plate_load, along.plate_load),
                                           pd::number<T>(at.skin_stretch, along.skin_stretch),
                                           held(at.force, along.force),
-                                          held(at.across_velocity, along.across_velocity)};
+                                          held(at.across_velocity, along.across_velocity),
+                                          held(at.finger_load, along.finger_load)};
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 
@@ -118,7 +120,8 @@ pindrive_error check_start(const pindrive_release& release, double begin) {
        {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
         std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
         std::pair<const char*, const pd::Rows*>{"force", &release.force},
-        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity}})
+        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity},
+        std::pair<const char*, const pd::Rows*>{"finger_load", &release.finger_load}})
     if (rows->size() > 1)
       return fail(PINDRIVE_UNSUPPORTED,
                   "%s of a stepper must have one value, not %zu rows; set it on the way", name,
@@ -149,7 +152,8 @@ pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
       {"mouse_velocity", &inputs.plate_velocity},
       {"plate_load", &inputs.plate_load},
       {"across_velocity", &inputs.across_velocity},
-      {"force", &inputs.force}};
+      {"force", &inputs.force},
+      {"finger_load", &inputs.finger_load}};
   for (const auto& [known, line] : lines)
     if (std::strcmp(known, name) == 0) return line;
   return nullptr;
@@ -163,9 +167,17 @@ pindrive_error set_input(pd::Stepper<T>& stepper, const char* name, Change&& cha
   if (!line)
     return fail(
         PINDRIVE_BAD_NAME,
-        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force",
+        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
+        "finger_load",
         name);
+  const pd::Line<T> before = *line;
   change(*line);
+  const auto& finger = stepper.drive().finger;
+  const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
+  if (line == &inputs.finger_load && !same && (!finger.rigid() || finger.branches > 0))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must stay %.17g for a finger that is compliant or has a curve",
+                plain(before.value));
   stepper.set(inputs);
   return stepper.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper.status());
 }
@@ -201,7 +213,9 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
   option(s.finger);
   number(s.at_plate, s.at_finger, s.limit);
   line(s.plate_velocity);
-  for (auto* input : {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force}) held(*input);
+  for (auto* input :
+       {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force, &s.finger_load})
+    held(*input);
   number(s.event.plate, s.event.finger);
 }
 
@@ -341,7 +355,7 @@ pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input
                                     double rate) {
   if (!stepper) return null_pointer("stepper");
   if (!input) return null_pointer("input");
-  const bool load = std::strcmp(input, "plate_load") == 0;
+  const bool load = std::strcmp(input, "plate_load") == 0 || std::strcmp(input, "finger_load") == 0;
   if (!std::isfinite(value) || (load && value < 0))
     return check(input, value, false, load ? "at least 0 and finite" : "finite");
   if (!std::isfinite(rate)) return check("rate", rate, false, "finite");
@@ -391,6 +405,8 @@ pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper, pindrive_in
                             plain(inputs.across_velocity.rate),
                             plain(inputs.force.value),
                             plain(inputs.force.rate),
+                            plain(inputs.finger_load.value),
+                            plain(inputs.finger_load.rate),
                             static_cast<pindrive_contact_state>(of.mode().plate),
                             static_cast<pindrive_contact_state>(of.mode().finger),
                             static_cast<pindrive_transition>(of.event().plate),
@@ -410,9 +426,8 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
     const auto tau = of.tau();
     const auto lines = of.lines();
     return pd::visit_trajectory(of.drive(), of.segment(), lines, [&](const auto& along) {
-      const auto load = [&] { return lines.plate_load; };
       const auto friction = [&] {
-        return pd::friction_along(along, of.drive(), of.segment(), load, tau);
+        return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
       };
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });

@@ -52,7 +52,7 @@ class Stepper {
     int limit;                          ///< … this side a stick force, …
     Line<T> plate_velocity;             ///< … and from there on the plate moved like this
     /// The inputs as they were set.
-    Held<T> mouse_velocity, plate_load, across_velocity, force;
+    Held<T> mouse_velocity, plate_load, across_velocity, force, finger_load;
     Event event;  ///< what happened to the contacts now
   };
 
@@ -67,9 +67,9 @@ class Stepper {
   }
   Stepper(const Drive<T>& drive, const State& state)
       : drive_(drive),
-        inputs_(
-            without_end({state.mouse_velocity, state.pin.x, state.pin.v, never, state.plate_load,
-                         std::numeric_limits<T>::quiet_NaN(), state.force, state.across_velocity})),
+        inputs_(without_end({state.mouse_velocity, state.pin.x, state.pin.v, never,
+                             state.plate_load, std::numeric_limits<T>::quiet_NaN(), state.force,
+                             state.across_velocity, state.finger_load})),
         simulation_(drive_, inputs_, state.since),
         now_(state.now) {
     restore(state);
@@ -86,6 +86,7 @@ class Stepper {
     found.plate_load = inputs_.plate_load;
     found.across_velocity = inputs_.across_velocity;
     found.force = inputs_.force;
+    found.finger_load = inputs_.finger_load;
     found.event = event_;
     return found;
   }
@@ -112,24 +113,28 @@ class Stepper {
     return true;
   }
 
-  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most. A mouse velocity
+  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most, and that of a
+  /// compliant finger, or of one with a curve, stays as it is. A mouse velocity
   /// that jumps moves the housing in no time: beside it the pin keeps its velocity, as no finite force could
   /// change that; so it does where the velocity across jumps. A value that differs from the input as it went
   /// on by rounding is the same.
   void set(const InputLines<T>& given) {
     Held<T>&velocity = inputs_.mouse_velocity, &load = inputs_.plate_load;
     Held<T>&across = inputs_.across_velocity, &force = inputs_.force;
+    Held<T>& touch = inputs_.finger_load;
     const bool turns = differs(given.plate_velocity, velocity),
                loads = differs(given.plate_load, load);
     const bool drifts = differs(given.across_velocity, across),
                pushes = differs(given.force, force);
-    if (!turns && !loads && !drifts && !pushes) return;
+    const bool touches = differs(given.finger_load, touch);
+    if (!turns && !loads && !drifts && !pushes && !touches) return;
     const T jump = change_to(given.plate_velocity.value, velocity);
     const bool across_jumps = plain(change_to(given.across_velocity.value, across)) != 0;
     if (turns) velocity = {now_, {velocity.from(now_).value, given.plate_velocity.rate}};
     if (loads) load = load_from(now_, given.plate_load.value, given.plate_load.rate);
     if (drifts) across = {now_, given.across_velocity};
     if (pushes) force = {now_, given.force};
+    if (touches) touch = load_from(now_, given.finger_load.value, given.finger_load.rate);
     restart();
     const ContactState plate = simulation_.plate_.does.state;
     const ContactState finger = simulation_.finger_.does.state;
@@ -151,7 +156,8 @@ class Stepper {
   const Drive<T>& drive() const { return drive_; }
   InputLines<T> inputs() const {
     return {inputs_.mouse_velocity.from(now_), inputs_.plate_load.from(now_),
-            inputs_.across_velocity.from(now_), inputs_.force.from(now_)};
+            inputs_.across_velocity.from(now_), inputs_.force.from(now_),
+            inputs_.finger_load.from(now_)};
   }
 
   /// The segment that goes on from now, how long it has lasted, and its inputs from its begin on.
@@ -159,7 +165,7 @@ class Stepper {
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
   InputLines<T> lines() const {
     return {segment_.plate_velocity, simulation_.plate_.load, simulation_.plate_.across,
-            simulation_.force_};
+            simulation_.force_, simulation_.finger_.load};
   }
 
  private:
@@ -173,9 +179,8 @@ class Stepper {
   }
   static Inputs<T, Held<T>> without_end(Inputs<T, Held<T>> inputs) {
     inputs.duration = never;
-    const Held<T>& load = inputs.plate_load;
-    if (!(load.ends < never))
-      inputs.plate_load = load_from(load.since, load.line.value, load.line.rate);
+    for (Held<T>* load : {&inputs.plate_load, &inputs.finger_load})
+      if (!(load->ends < never)) *load = load_from(load->since, load->line.value, load->line.rate);
     return inputs;
   }
   /// Whether a number, and its derivative, is zero.
@@ -220,6 +225,7 @@ class Stepper {
     simulation_.plate_.load = inputs_.plate_load.from(time);
     simulation_.plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time);
     simulation_.force_ = inputs_.force.from(time);
+    simulation_.finger_.load = inputs_.finger_load.from(time);
   }
 
   /// Brings the pin to now, where the inputs have a row: at an event that is now to rounding, to that.
@@ -285,12 +291,14 @@ class Stepper {
              {},
              {},
              {},
+             {},
              {}};
     // A quantity that follows a line is looked at for a finite time.
-    const bool steady =
-        plate.surface.rate == 0 && plate.load.rate == 0 && simulation_.force_.rate == 0;
-    simulation_.row_ = std::min(inputs_.plate_load.next_row(simulation_.time_),
-                                steady ? never : simulation_.time_ + far_);
+    const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
+                        simulation_.force_.rate == 0;
+    simulation_.row_ = std::min({inputs_.plate_load.next_row(simulation_.time_),
+                                 inputs_.finger_load.next_row(simulation_.time_),
+                                 steady ? never : simulation_.time_ + far_});
     simulation_.select();
     simulation_.begin(segment_);
     tau_ = simulation_.earliest(segment_.flow);

@@ -215,7 +215,7 @@ static void mistakes(void) {
     refuses(pindrive_drive_set_curve(drive, "thumb", speeds, forces, 2), PINDRIVE_BAD_NAME,
             "the contacts plate and finger");
     refuses(pindrive_release_set_profile(release, "displacement", speeds, forces, 2),
-            PINDRIVE_BAD_NAME, "the profiles mouse_velocity, plate_load, force and across_velocity");
+            PINDRIVE_BAD_NAME, "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
     refuses(pindrive_simulate(NULL, release, NULL, NULL, &motion), PINDRIVE_NULL, "drive");
     pindrive_drive_free(drive);
     pindrive_release_free(release);

@@ -111,6 +111,7 @@ class Case:
             "plate_load": [(0.0, 1.0)],
             "force": [(0.0, 0.0)],
             "across_velocity": [(0.0, 0.0)],
+            "finger_load": [(0.0, 1.0)],
         }
     )
 
@@ -128,6 +129,7 @@ class Case:
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
+            self.inputs["finger_load"],
             n["duration"],
         )
 
@@ -170,6 +172,8 @@ def drawn(random: np.random.Generator) -> Case:
         if random.integers(2):
             n["duration"] = between(0.05, 0.3)
             case.inputs["across_velocity"] = [(t, between(-0.1, 0.1)) for t in times]
+    if kind == 3:
+        case.inputs["finger_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
@@ -450,6 +454,7 @@ class Instant(ctypes.Structure):
         *((name, c_double) for name in ("mouse_velocity_rate", "plate_load", "plate_load_rate")),
         *((name, c_double) for name in ("across_velocity", "across_velocity_rate")),
         *((name, c_double) for name in ("force", "force_rate")),
+        *((name, c_double) for name in ("finger_load", "finger_load_rate")),
         *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
     )
 

@@ -32,7 +32,7 @@ bool one_of(Random& random, int count) { return random() % static_cast<unsigned>
 struct Case {
   std::vector<pd::Branch<double>> curve{5};
   pd::Drive<double> drive{};
-  std::vector<double> times{0}, velocities, loads, forces, across;
+  std::vector<double> times{0}, velocities, loads, forces, across, touches;
   double displacement, duration;
 
   explicit Case(Random& random) {
@@ -55,6 +55,7 @@ struct Case {
                                                       : between(random, -0.3, 0.3));
       loads.push_back(one_of(random, 2) ? 1 : between(random, 0, 2));
       forces.push_back(forced ? between(random, -0.1, 0.1) : 0);
+      touches.push_back(drive.finger.rigid() && forced ? between(random, 0, 2) : 1);
       across.push_back(oblique && !one_of(random, 3) ? between(random, -0.2, 0.2) : 0);
     }
     displacement = between(random, -3e-3, 3e-3);
@@ -68,7 +69,7 @@ struct Case {
     const auto line = [&](const std::vector<double>& values) {
       return pd::Profile<double>(times.data(), values.data(), times.size()).from(t);
     };
-    return {line(velocities), line(loads), line(across), line(forces)};
+    return {line(velocities), line(loads), line(across), line(forces), line(touches)};
   }
 };
 
@@ -86,7 +87,8 @@ struct Whole {
                {c.times.data(), c.loads.data(), c.times.size()},
                std::numeric_limits<double>::quiet_NaN(),
                {c.times.data(), c.forces.data(), c.times.size()},
-               {c.times.data(), c.across.data(), c.times.size()}},
+               {c.times.data(), c.across.data(), c.times.size()},
+               {c.times.data(), c.touches.data(), c.times.size()}},
         outcome(pd::simulate(c.drive, inputs, [&](const auto& s) { segments.push_back(s); })) {}
   pd::Motion<double> view(const Case& c) const {
     return {c.drive, inputs, segments.data(), segments.size(), outcome};
@@ -99,8 +101,7 @@ struct Values {
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
                  const pd::InputLines<double>& lines, double tau) {
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
-    const auto load = [&] { return lines.plate_load; };
-    const auto friction = pd::friction_along(t, drive, segment, load, tau);
+    const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
     return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
                   friction.finger};
   });
@@ -114,7 +115,8 @@ pd::Inputs<double, pd::Held<double>> start_of(const Case& c) {
   return {{0, lines.plate_velocity}, c.displacement,
           c.velocities[0],           infinity,
           {0, lines.plate_load},     std::numeric_limits<double>::quiet_NaN(),
-          {0, lines.force},          {0, lines.across_velocity}};
+          {0, lines.force},          {0, lines.across_velocity},
+          {0, lines.finger_load}};
 }
 
 struct Worst {
