@@ -9,6 +9,7 @@ import numpy as np
 
 from pindrive import Contact, Drive, Profile, Release
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import INPUTS
 from pindrive.quantities.results import ENDING, TRANSIENT
 
 Ask = Callable[[list[dict[str, Any]]], list[Any]]
@@ -58,6 +59,8 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
     times = (0.0, between(0.01, 0.1), between(0.11, 0.3))
     velocity = between(-0.3, 0.3)
     inputs: dict[str, Any] = {"mouse_velocity": velocity}
+    if kind in (0, 3) and random.integers(4) == 0:
+        inputs["finger_load"] = Profile(times, [between(0, 2) for _ in times])
     if random.integers(4) == 0:
         inputs["force"] = Profile((*times, times[-1]), [between(-0.1, 0.1) for _ in range(4)])
     if random.integers(5) == 0:
@@ -90,10 +93,7 @@ def as_input(drive: Drive, release: Release) -> dict[str, Any]:
         "drive": numbers | skin,
         "curves": {name: curve for name, curve in curves.items() if curve},
         "release": {"displacement": release.displacement} | velocity,
-        "profiles": {
-            name: rows(getattr(release, name))
-            for name in ("mouse_velocity", "plate_load", "force", "across_velocity")
-        },
+        "profiles": {name: rows(getattr(release, name)) for name in INPUTS},
     }
 
 

@@ -150,6 +150,25 @@ export function checkSkin(values: Found): void {
   throw new Refusal("finger.curve", words, counted(curve.length, "row"));
 }
 
+/** Refuses a load that changes on a finger with a stiffness or a curve. */
+export function checkFingerLoad(values: Found): void {
+  const load = values["motion.finger_load"];
+  if (!Array.isArray(load) || load.every(([, y]) => y === load[0]![1])) return;
+  const rigid = values["finger.stiffness"] == null;
+  if (rigid && (frictionOf(values, "finger").curve?.length ?? 0) < 2) return;
+  const words = `constant for a finger with ${rigid ? "a curve" : "a stiffness"}`;
+  throw new Refusal("finger_load", words, `a Profile of ${load.length} rows`);
+}
+
+/** What an input is at t = 0. */
+function initial(given: Value): number {
+  if (typeof given === "number") return given;
+  const after = given.findIndex(([time]) => time > 0);
+  if (after <= 0) return given[after < 0 ? given.length - 1 : 0]![1];
+  const [[t0, y0], [t1, y1]] = [given[after - 1]!, given[after]!];
+  return y0 + ((y1 - y0) / (t1 - t0)) * (0 - t0);
+}
+
 export function checkStretch(values: Found): void {
   const [stretch, stiffness] = [values["motion.skin_stretch"], values["finger.stiffness"]];
   if (typeof stretch !== "number") return;
@@ -157,7 +176,8 @@ export function checkStretch(values: Found): void {
   if (typeof stiffness !== "number") {
     throw new Refusal("skin_stretch", "left out for a rigid finger", given);
   }
-  const largest = frictionOf(values, "finger").still / stiffness;
+  const largest =
+    (frictionOf(values, "finger").still * initial(values["motion.finger_load"] ?? 1)) / stiffness;
   if (Math.abs(stretch) <= largest) return;
   const words = `at most static friction over stiffness, ${floatRepr(largest)} m, either way`;
   throw new Refusal("skin_stretch", words, given);
@@ -241,6 +261,7 @@ export function problemOf(values: Values): string {
       checkStatic(still, kinetic, ofStatic);
     }
     checkSkin(found);
+    checkFingerLoad(found);
     checkStretch(found);
     checkDrive(found);
     checkPhase(found);

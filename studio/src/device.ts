@@ -3,6 +3,7 @@
 import {
   checkCurve,
   checkDrive,
+  checkFingerLoad,
   checkOneKind,
   checkRows,
   checkSkin,
@@ -247,6 +248,7 @@ class Reader {
 
   private checkTogether(): void {
     this.attempt(() => checkSkin(this.values), "finger.curve");
+    this.attempt(() => checkFingerLoad(this.values), "motion.finger_load");
     this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
   }
 }

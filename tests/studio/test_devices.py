@@ -111,6 +111,11 @@ WRONG = [
     ),
     ('"100 mm/s"', '"100 mm/s"\nforce = [["0 s", "1 N"], ["0 s", "2 N"], ["0 s", "3 N"]]'),
     ('"100 mm/s"', '"100 mm/s"\nforce = "1 m"'),
+    ('"100 mm/s"', '"100 mm/s"\nfinger_load = -1'),
+    *(
+        ('"5 mN"\n[motion]', f'"5 mN"\n{more}\n[motion]\nfinger_load = [["0 s", 1], ["1 s", 2]]')
+        for more in ('stiffness = "1 N/m"', 'curve = [["0 m/s", "5 mN"], ["1 m/s", "1 mN"]]')
+    ),
     ('"100 mm/s"', '"100 mm/s"\nacross_velocity = [["0 s", "1 m/s"], ["0 s", "2 m/s"]]'),
     ('"5 mN"', '"5 mN"\n[scan]\nhand_speed = "1 kg"'),
     ('"5 mN"', '"5 mN"\n[array]\npitc = "1 mm"'),
@@ -206,7 +211,8 @@ BY_COEFFICIENTS = (
         1,
     )
     .replace('static = "7.5 mN"', "static_coefficient = 0.75", 1)
-    + 'skin_stretch = "2 um"\nforce = [["0 s", "0 N"], ["10 ms", "10 mN"], ["10 ms", "0 N"]]\n'
+    + 'finger_load = 1.5\nskin_stretch = "2 um"\n'
+    'force = [["0 s", "0 N"], ["10 ms", "10 mN"], ["10 ms", "0 N"]]\n'
     'across_velocity = [["0 s", "20 mm/s"], ["50 ms", "0 mm/s"]]\n'
 )
 CURVED = GOOD.replace(
