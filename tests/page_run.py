@@ -12,7 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -54,12 +54,14 @@ class Run:
 
     Args:
         home: the home folder of its commands.
-        longer: options that some commands get here, to be quick.
+        longer: how some commands begin, and options that they get here, to be quick.
+        coarser: what is replaced in copies of files, for the same reason.
         done: commands that a fixture has run.
     """
 
     home: Path
     longer: Mapping[str, str]
+    coarser: Mapping[str, Sequence[tuple[str, str]]]
     done: frozenset[str] = frozenset()
     names: dict[str, Any] = field(default_factory=lambda: {"__name__": "__main__"})
     warnings: list[str] = field(default_factory=list)
@@ -72,6 +74,11 @@ class Run:
                 shutil.copytree(ROOT / name, name)
             else:
                 shutil.copy(ROOT / name, name)
+        for name, replaced in self.coarser.items():
+            file = Path(name)
+            for long, short in replaced:
+                assert long in file.read_text("utf-8"), f"{name} has no {long!r}"
+                file.write_text(file.read_text("utf-8").replace(long, short), "utf-8")
         try:
             for block, after in zip(found, [*found[1:], None], strict=True):
                 if block.language == "text" or block.reason:
@@ -112,7 +119,8 @@ class Run:
         if not words:
             return ""
         if words[0] == ".venv/bin/pindrive":
-            result = run(*words[1:], *shlex.split(self.longer.get(line, "")))
+            more = "".join(self.longer[given] for given in self.longer if line.startswith(given))
+            result = run(*words[1:], *shlex.split(more))
             assert result.exit_code == 0, f"{line}\n{result.output}"
             self.warnings += result.stderr.splitlines()
             return result.stdout
@@ -125,8 +133,13 @@ class Run:
         env = {**os.environ, "PATH": path, "HOME": str(self.home)}
         if words[-1] == "&":
             command = ["sh", "-c", f"exec {line.rstrip(' &')}"]
-            quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            begun = subprocess.Popen(command, env=env, start_new_session=True, **quiet)
+            begun = subprocess.Popen(
+                command,
+                env=env,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+            )
             self._running.append(begun)
             return ""
         done = subprocess.run(

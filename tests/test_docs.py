@@ -5,8 +5,11 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -21,17 +24,22 @@ EXCEPTIONS = {
 }
 """Pages with blocks that cannot be run here, and their language; the page says why."""
 LONGER = {
-    ".venv/bin/pindrive speed examples/tactile-reader.toml --plot speed.png": (
+    ".venv/bin/pindrive sensitivity examples/": "--rows 128",
+    ".venv/bin/pindrive speed examples/": (
         '--pitch "4 mm" --slowest "0.05 m/s" --fastest "0.2 m/s"'
-    )
+    ),
 }
-"""What a command that takes long gets here, to be quick; it changes nothing in what it takes."""
+"""How commands that take long begin, and what they get here beside what they say."""
+COARSER = {
+    "examples/tactile-reader-study.toml": (("count = 19", "count = 4"), ("count = 13", "count = 3"))
+}
+"""Examples of which the pages have a copy with fewer points, to be quick."""
 WARNED = {
     "docs/studies.md": "the plate's friction coefficient",
     "docs/scanning.md": "the spot of pin 0 is beyond the page",
 }
 """Pages whose commands warn, and of what."""
-LIBRARY = [block.text.splitlines() for block in BLOCKS["docs/c.md"]][0]
+LIBRARY = BLOCKS["docs/c.md"][0].text.splitlines()
 """The commands that install the C interface, which a fixture runs."""
 
 
@@ -56,7 +64,7 @@ def test_a_page_prints_what_it_says(
         (tmp_path / ".local").symlink_to(request.getfixturevalue("c_library"))
     (tmp_path / "page").mkdir()
     monkeypatch.chdir(tmp_path / "page")
-    done = Run(tmp_path, LONGER, frozenset(LIBRARY))
+    done = Run(tmp_path, LONGER, COARSER, frozenset(LIBRARY))
     done.page(BLOCKS[page])
     expected = f"warning: {WARNED[page]}" if page in WARNED else None
     assert [line for line in done.warnings if not expected or not line.startswith(expected)] == []
@@ -88,6 +96,8 @@ def test_every_file_that_a_page_writes_is_used_on_it() -> None:
         for i, block in enumerate(page):
             if block.language in FILES and not block.reason:
                 name = Path(file_of(block).partition("\n")[0])
+                if (ROOT / name).is_file():
+                    continue  # an excerpt of it
                 places = {str(name), name.name, name.parts[0]}
                 others = "".join(other.text for other in [*page[:i], *page[i + 1 :]])
                 assert any(place in others for place in places), block
@@ -128,9 +138,155 @@ def test_every_page_is_on_the_site() -> None:
     assert "% other pages" in index
 
 
+# ---- notebooks -----------------------------------------------------------------------------------
+
+
+NOTEBOOKS = sorted(DOCS.glob("notebooks/*.md"))
+
+
+def test_there_are_five_notebooks_and_code_is_executed_in_no_other_page() -> None:
+    """Sphinx runs them when it makes the site; an error in a cell ends the build."""
+    assert len(NOTEBOOKS) == 5
+    assert "nb_execution_raise_on_error = True" in (DOCS / "conf.py").read_text("utf-8")
+    for page in pages():
+        has = bool(re.search(r"^```\{code", page.read_text("utf-8"), re.M))
+        assert has == (page in NOTEBOOKS), page
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS, ids=lambda page: page.stem)
+def test_a_notebook_shows_a_result_and_can_be_downloaded(page: Path) -> None:
+    text = page.read_text("utf-8")
+    cells = re.findall(r"^```\{code-cell\}\n(.*?)^```$", text, re.M | re.S)
+    last = [cell.strip().splitlines()[-1] for cell in cells]
+    assert any(re.fullmatch(r"[\w.\[\]\"]+(\(\))?", line) for line in last), "nothing is displayed"
+    assert f"{{nb-download}}`{page.stem}.ipynb`" in text
+
+
+# ---- reference -----------------------------------------------------------------------------------
+
+
+def documented() -> dict[str, list[str]]:
+    """The names that the reference of Python has of each module."""
+    names: dict[str, list[str]] = {}
+    module = ""
+    page = (DOCS / "reference" / "python.md").read_text("utf-8")
+    for kind, name in re.findall(r"^\.\. (currentmodule|auto\w+):: ([\w.]+)$", page, re.M):
+        if kind == "currentmodule":
+            module = name
+        else:
+            names.setdefault(module, []).append(name)
+    return names
+
+
 def test_the_public_names_are_in_the_reference() -> None:
     import pindrive
 
-    page = (DOCS / "reference" / "python.md").read_text("utf-8")
-    documented = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
-    assert sorted(documented) == sorted(n for n in pindrive.__all__ if not n.startswith("__"))
+    names = documented()
+    public = [name for name in pindrive.__all__ if not name.startswith("__")]
+    assert sorted(names["pindrive"]) == sorted(public)
+
+
+@pytest.mark.parametrize("package", ["fitting", "optimisation", "study", "evaluation"])
+def test_the_names_of_a_package_are_in_the_reference(package: str) -> None:
+    module = import_module(f"pindrive.{package}")
+    public = {name for name in dir(module) if not name.startswith("_")}
+    here = {name for name in public if getattr(module, name).__module__.startswith("pindrive.")}
+    assert here - {*documented()["pindrive"]} <= {*documented()[f"pindrive.{package}"]}
+
+
+def extension(name: str) -> ModuleType:
+    """A module of the site's own that needs nothing of Sphinx."""
+    spec = spec_from_file_location(name, DOCS / "_ext" / f"{name}.py")
+    assert spec and spec.loader
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_reference_of_c_has_all_that_the_header_declares() -> None:
+    header = re.sub(r"/\*.*?\*/", "", (ROOT / "capi" / "pindrive.h").read_text("utf-8"), flags=re.S)
+    internal = {f"PINDRIVE_{name}" for name in ("API", "BUILDING", "H", "SHARED", "WITHIN")}
+    names = {*re.findall(r"\b(?:pindrive|PINDRIVE)_\w+", header)} - internal
+    page = extension("c_header").reference()
+    code = "\n".join(re.findall(r"^```c\n(.*?)^```$", page, re.M | re.S))
+    assert len(names) > 100
+    assert names <= {*re.findall(r"\b\w+", code)}
+    functions = {*re.findall(r"\b(pindrive_\w+)\([^)]", header)}
+    assert functions <= {*re.findall(r"`(\w+)`", "".join(re.findall(r"^### .*", page, re.M)))}
+    assert "mass must" not in page and "Sets a number of a drive." in page
+
+
+def keys(page: str) -> list[str]:
+    """The first column of the first table of a reference page."""
+    table = (
+        (DOCS / "reference" / page).read_text("utf-8").partition("|---|")[2].partition("\n\n")[0]
+    )
+    return [name.strip("`[]") for name in re.findall(r"^\| (\S+) \|", table, re.M)]
+
+
+def test_the_keys_of_study_and_wish_files_are_in_the_reference() -> None:
+    from pindrive.optimisation.wish import _KEYS
+    from pindrive.study.axes import _WAYS
+    from pindrive.study.spec import _OWN
+
+    assert sorted(keys("study-file.md")) == sorted(_OWN)
+    assert sorted(keys("wish-file.md")) == sorted(_KEYS)
+    text = (DOCS / "reference" / "study-file.md").read_text("utf-8")
+    assert [way for way in _WAYS if f"{{ {way} = " not in text] == []
+
+
+def test_calls_of_julia_are_those_of_the_header() -> None:
+    """Their names, the types of their arguments and of their results."""
+    of_c = {"double": "Cdouble", "size_t": "Csize_t", "char *": "Cstring", "void": "Cvoid"}
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    whole = {*re.findall(r"^typedef int (\w+);", header, re.M), "int"}
+
+    def julia(declared: str) -> set[str]:
+        """What may stand in Julia for an argument or a result."""
+        name = re.sub(r"\bconst |\b\w+$", "", declared.strip()) if " " in declared else declared
+        name = name.strip()
+        if name in of_c:
+            return {of_c[name]}
+        if name in whole:
+            return {"Cint"}
+        if name.endswith("**"):
+            return {"Ref{Ptr{Cvoid}}"}
+        if name in ("double *", "size_t *"):
+            inner = of_c[name[:-2]]
+            return {f"Ptr{{{inner}}}", f"Ref{{{inner}}}"}
+        return {"Ptr{Cvoid}"}
+
+    (block,) = (block for block in BLOCKS["docs/julia.md"] if block.language == "julia")
+    calls = re.findall(r"@ccall lib\.(\w+)\((.*?)\)::([\w{}]+)", block.text, re.S)
+    assert len(calls) == block.text.count("@ccall") >= 10
+    for name, given, result in calls:
+        declared = re.search(rf"^PINDRIVE_API ([^;(]*?){name}\(([^)]*)\);", header, re.M)
+        assert declared, name
+        assert result in julia(f"{declared[1]}x"), name
+        expected = [] if declared[2] == "void" else re.split(r",\s*", declared[2])
+        types = re.findall(r"::([\w{}]+)", given)
+        assert len(types) == len(expected), name
+        for type_, parameter in zip(types, expected, strict=True):
+            assert type_ in julia(parameter), (name, type_, parameter)
+
+
+# ---- without a network ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("asks", "text"),
+    [
+        (True, '<script src="https://cdn.example/a.js"></script>'),
+        (True, "<script async src=//cdn.example/a.js></script>"),
+        (True, '<link rel="stylesheet" type="text/css" href="http://a.example/a.css">'),
+        (True, '<link href="https://fonts.example" rel="preconnect">'),
+        (True, "<style>@import 'https://a.example/a.css'; p {src: url(//a.example/f)}</style>"),
+        (True, '<img alt="a" src="https://a.example/a.png">'),
+        (False, '<script src="_static/a.js"></script><img src="data:image/png;base64,a//b">'),
+        (False, '<a href="https://a.example">there</a><link rel="next" href="a.html">'),
+    ],
+)
+def test_what_a_page_asks_the_network_for_is_found(asks: bool, text: str) -> None:
+    """The build of the site looks for it in every file that it made."""
+    assert bool(extension("offline").requests(text, ".html")) == asks
+    assert '"offline"' in (DOCS / "conf.py").read_text("utf-8")

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
+import c_header
 from docutils import nodes
 from docutils.statemachine import StringList
 from sphinx.application import Sphinx
@@ -20,7 +21,7 @@ from pindrive.cli.app import app
 from pindrive.files.template import NUMBERS
 from pindrive.files.template import template as device_template
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import JUDGED, LINE, OUTPUTS, SCANNED, SERIES
+from pindrive.quantities.results import DESIGNED, JUDGED, LINE, OUTPUTS, SCANNED, SERIES
 from pindrive.quantities.status import End, Status
 from pindrive.study.template import study_template
 
@@ -97,6 +98,7 @@ def dataset() -> str:
         "Of the pins of a scan": SCANNED,
         "Of the lines that were read": LINE,
         "What a scan is judged by": JUDGED,
+        "Of a design": DESIGNED,
     }
     return "\n\n".join(f"## {name}\n\n{table(headings, rows(of))}" for name, of in groups.items())
 
@@ -115,6 +117,7 @@ PARTS: dict[str, Callable[[], str]] = {
     "study-file": study_file,
     "dataset": dataset,
     "status": status,
+    "c-header": c_header.reference,
 }
 
 

@@ -83,7 +83,7 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
     """An executor on the workers of a scheduler, and how many threads they have, at least 1.
 
     Args:
-        address: such as tcp://10.0.0.1:8786, or a file that the scheduler writes, which ends in .json.
+        address: such as tcp://10.0.0.1:8786, or the file of the scheduler, which ends in .json.
         kept: what is left where workers die one after the other, for the message.
 
     Raises:
