@@ -14,7 +14,7 @@ def reference() -> str:
     text = HEADER.read_text("utf-8")
     head, _, rest = text.partition("*/\n#ifndef")
     body = rest.partition('extern "C" {\n#endif\n')[2].partition("#ifdef __cplusplus")[0]
-    parts = [_prose(head.removeprefix("/*")), "## Version"]
+    parts = ["## Use", _prose(head.removeprefix("/*")), "## Version"]
     for paragraph in re.split(r"\n\s*\n", body.strip()):
         if title := re.fullmatch(r"/\* -+ (.*?) -+ \*/", paragraph):
             parts.append(f"## {title[1].capitalize()}")

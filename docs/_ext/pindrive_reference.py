@@ -108,7 +108,7 @@ def status() -> str:
     codes = ((f"`{s.name}`", str(s.value), s.explanation) for s in Status)
     ends = ((f"`{end.name}`", str(end.value)) for end in End)
     first = table(("status", "code", "meaning"), codes)
-    return f"{first}\n\n## Endings\n\n{table(('ending', 'code'), ends)}"
+    return f"## Status\n\n{first}\n\n## Endings\n\n{table(('ending', 'code'), ends)}"
 
 
 PARTS: dict[str, Callable[[], str]] = {
@@ -129,6 +129,10 @@ class FromPindrive(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """The nodes of the Markdown."""
         text = PARTS[self.arguments[0]]()
+        if "\n## " in text and not text.startswith("## "):
+            raise ExtensionError(
+                f"{self.arguments[0]}: what stands before its first heading would come last"
+            )
         lines = StringList(text.splitlines(), source="pindrive")
         inside = nodes.section()
         inside.document = self.state.document
