@@ -138,6 +138,14 @@ def test_every_page_is_on_the_site() -> None:
     assert "% other pages" in index
 
 
+def test_the_headers_that_the_chapters_of_the_theory_name_are_there() -> None:
+    heads = re.findall(r"^## .*$", (DOCS / "theory.md").read_text("utf-8"), re.M)
+    named = re.findall(r"`([\w/]+\.(?:hpp|py))`", "\n".join(heads))
+    folders = (ROOT / "include" / "pindrive", ROOT / "src" / "pindrive")
+    assert len(named) > 20
+    assert [n for n in named if not any((folder / n).exists() for folder in folders)] == []
+
+
 # ---- notebooks -----------------------------------------------------------------------------------
 
 
