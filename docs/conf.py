@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import sys
 from importlib.metadata import version as installed
+from importlib.util import find_spec
 from pathlib import Path
 
+from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
@@ -17,7 +20,8 @@ author = copyright = "the pindrive founders"
 release = installed("pindrive")
 extensions = [
     "mathml",
-    "myst_parser",
+    "myst_nb",
+    "offline",
     "pindrive_reference",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
@@ -25,11 +29,19 @@ extensions = [
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 exclude_patterns = ["_build"]
+logging.getLogger("traitlets").setLevel(logging.WARNING)  # a line for each notebook
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
 nitpicky = False  # Python's own documentation is not asked over the network
 html_theme = "furo"
 html_math_renderer = "mathml"
 html_title = f"pindrive {release}"
 html_copy_source = False
+# The studio, where it has been built: `_static/studio.html`, which docs/studio.md then links to.
+STUDIO = Path(str(find_spec("pindrive").origin)).with_name("studio.html")
+html_static_path = [str(STUDIO)] if STUDIO.exists() else []
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
@@ -40,7 +52,8 @@ default_role = "code"  # docstrings set code between single backticks
 def read(app: Sphinx, docname: str, source: list[str]) -> None:
     """Turn links to CONTRIBUTING.md into links to its page, and those to folders into their text.
 
-    The guides of the first page have, after those that it names, all other pages of this folder.
+    The guides of the first page have, after those that it names, all other pages of this folder;
+    that of the studio has a link to it.
     """
     text = source[0].replace("](../CONTRIBUTING.md", "](contributing.md")
     text = re.sub(r"\[([^]]+)\]\(\.\./[\w/]+\)", r"\1", text)
@@ -48,6 +61,10 @@ def read(app: Sphinx, docname: str, source: list[str]) -> None:
         listed = text.splitlines()
         pages = sorted(path.stem for path in HERE.glob("*.md") if path.stem != "index")
         text = text.replace("% other pages", "\n".join(p for p in pages if p not in listed))
+    if docname == "studio" and STUDIO.exists():
+        text = text.replace(
+            "% the page", '<p><a href="_static/studio.html">Open the studio</a></p>'
+        )
     source[0] = text
 
 
@@ -60,5 +77,6 @@ def escape(
 
 def setup(app: Sphinx) -> None:
     """Called by Sphinx."""
+    app.add_lexer("csv", TextLexer)
     app.connect("source-read", read)
     app.connect("autodoc-process-docstring", escape)

@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
-import shlex
+import subprocess
+import sys
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-from command import run
+from page_run import NOT_RUN, Run, agrees, is_excerpt
+from pages import DOCS, FILES, ROOT, blocks, file_of, pages
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
-
-
-def blocks(page: str) -> list[tuple[str, str]]:
-    """The fenced blocks of a page as (language, content)."""
-    text = (DOCS / page).read_text("utf-8")
-    return re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
-
-
-def agrees(printed: str, shown: str) -> bool:
-    """Whether it was printed, spaces at line ends apart; `...` stands for what is left out."""
-
-    def lines(text: str) -> str:
-        return "\n".join(line.rstrip() for line in text.strip().splitlines())
-
-    parts = [re.escape(part) for part in re.split(r"^\.\.\.$", lines(shown), flags=re.MULTILINE)]
-    return re.fullmatch(".*".join(parts), lines(printed), re.DOTALL) is not None
+BLOCKS = {page.relative_to(ROOT).as_posix(): blocks(page) for page in pages()}
+EXCEPTIONS = {
+    ("docs/cluster.md", "sbatch"),
+    ("docs/julia.md", "julia"),
+    ("docs/matlab.md", "matlab"),
+}
+"""Pages with blocks that cannot be run here, and their language; the page says why."""
+LONGER = {
+    ".venv/bin/pindrive sensitivity examples/": "--rows 128",
+    ".venv/bin/pindrive speed examples/": (
+        '--pitch "4 mm" --slowest "0.05 m/s" --fastest "0.2 m/s"'
+    ),
+}
+"""How commands that take long begin, and what they get here beside what they say."""
+COARSER = {
+    "examples/tactile-reader-study.toml": (("count = 19", "count = 4"), ("count = 13", "count = 3"))
+}
+"""Examples of which the pages have a copy with fewer points, to be quick."""
+WARNED = {
+    "docs/studies.md": "the plate's friction coefficient",
+    "docs/scanning.md": "the spot of pin 0 is beyond the page",
+}
+"""Pages whose commands warn, and of what."""
+LIBRARY = BLOCKS["docs/c.md"][0].text.splitlines()
+"""The commands that install the C interface, which a fixture runs."""
 
 
 def test_what_is_left_out_is_no_more_than_that() -> None:
@@ -36,29 +48,83 @@ def test_what_is_left_out_is_no_more_than_that() -> None:
     assert agrees("a\nb\nc\n", "a\n...\n")
     assert not agrees("a\nb\nc\n", "a\nc\n")
     assert not agrees("a\nb\nc\n", "b\n...\n")
+    assert is_excerpt("a\n\nc\n", "a\nb\nc\n")
+    assert not is_excerpt("c\na\n", "a\nb\nc\n")
 
 
-@pytest.mark.usefixtures("in_empty_folder")
-@pytest.mark.parametrize("page", ["tutorial.md", "simulink.md"])
-def test_a_page_prints_what_it_says(page: str) -> None:
-    """Its commands and programs, one after the other, each with the block of text after it."""
-    found = blocks(page)
-    names = {"__name__": "__main__"}
-    for i, (language, block) in enumerate(found):
-        if language == "python":
-            output = io.StringIO()
-            with contextlib.redirect_stdout(output):
-                exec(compile(block, page, "exec"), names)
-            printed = output.getvalue()
-        elif language == "sh":
-            result = run(*shlex.split(block.removeprefix(".venv/bin/pindrive ")))
-            assert (result.exit_code, result.stderr) == (0, ""), block
-            printed = result.stdout
-        else:
-            assert language == "text" and found[i - 1][0] in ("python", "sh")
-            continue
-        follows, shown = found[i + 1] if i + 1 < len(found) else ("", "")
-        assert agrees(printed, shown if follows == "text" else ""), (block, printed)
+@pytest.mark.parametrize("page", [page for page, found in BLOCKS.items() if found])
+def test_a_page_prints_what_it_says(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    """Its blocks, one after the other, in one folder, each with the block of text after it."""
+    text = "".join(block.text for block in BLOCKS[page])
+    if sys.platform == "win32" and re.search(r"^(cmake|cc|dask) ", text, re.M):
+        pytest.skip("its commands are those of other systems")
+    if "~/.local/lib" in text or LIBRARY[0] in text:
+        (tmp_path / ".local").symlink_to(request.getfixturevalue("c_library"))
+    (tmp_path / "page").mkdir()
+    monkeypatch.chdir(tmp_path / "page")
+    done = Run(tmp_path, LONGER, COARSER, frozenset(LIBRARY))
+    done.page(BLOCKS[page])
+    expected = f"warning: {WARNED[page]}" if page in WARNED else None
+    assert [line for line in done.warnings if not expected or not line.startswith(expected)] == []
+    assert bool(done.warnings) == bool(expected)
+
+
+def test_every_block_is_of_a_language_that_is_run_or_says_why_not() -> None:
+    found = [block for page in BLOCKS.values() for block in page]
+    assert {block.language for block in found if not block.reason} <= {
+        *FILES,
+        "python",
+        "sh",
+        "text",
+    }
+    excused = [block for block in found if block.reason]
+    assert {(block.page, block.language) for block in excused} == EXCEPTIONS
+    assert all(len(block.reason.split()) > 4 for block in excused)
+
+
+def test_every_text_was_printed_by_the_block_before_it() -> None:
+    for page in BLOCKS.values():
+        for before, block in pairwise([None, *page]):
+            if block and block.language == "text":
+                assert before and before.language in ("python", "sh") and not before.reason, block
+
+
+def test_every_file_that_a_page_writes_is_used_on_it() -> None:
+    for page in BLOCKS.values():
+        for i, block in enumerate(page):
+            if block.language in FILES and not block.reason:
+                name = Path(file_of(block).partition("\n")[0])
+                if (ROOT / name).is_file():
+                    continue  # an excerpt of it
+                places = {str(name), name.name, name.parts[0]}
+                others = "".join(other.text for other in [*page[:i], *page[i + 1 :]])
+                assert any(place in others for place in places), block
+
+
+def test_commands_that_no_page_runs_are_there() -> None:
+    """Those of run.py are listed by its help."""
+    said = subprocess.run(
+        [sys.executable, ROOT / "run.py", "--help"], capture_output=True, text=True, check=True
+    ).stdout
+    listed = {*re.findall(r"^    python3 run\.py *(\S*)", said, re.M)}
+    for page in BLOCKS.values():
+        for block in page:
+            for line in block.text.splitlines() if block.language == "sh" else ():
+                if match := re.match(r"python3 run\.py ?(\S*)", line):
+                    assert match[1] in listed or (not match[1] and "simulate" in listed), line
+    assert all(len(reason.split()) > 3 for reason in NOT_RUN.values())
+
+
+def test_pictures_are_small() -> None:
+    pictures = {
+        (page.parent / name).resolve()
+        for page in pages()
+        for name in re.findall(r"!\[[^]]*\]\(([^)]+\.png)\)", page.read_text("utf-8"))
+    }
+    assert len(pictures) > 20
+    assert [path.name for path in pictures if path.stat().st_size > 600_000] == []
 
 
 def test_every_page_is_on_the_site() -> None:
@@ -72,9 +138,163 @@ def test_every_page_is_on_the_site() -> None:
     assert "% other pages" in index
 
 
+def test_the_headers_that_the_chapters_of_the_theory_name_are_there() -> None:
+    heads = re.findall(r"^## .*$", (DOCS / "theory.md").read_text("utf-8"), re.M)
+    named = re.findall(r"`([\w/]+\.(?:hpp|py))`", "\n".join(heads))
+    folders = (ROOT / "include" / "pindrive", ROOT / "src" / "pindrive")
+    assert len(named) > 20
+    assert [n for n in named if not any((folder / n).exists() for folder in folders)] == []
+
+
+# ---- notebooks -----------------------------------------------------------------------------------
+
+
+NOTEBOOKS = sorted(DOCS.glob("notebooks/*.md"))
+
+
+def test_there_are_five_notebooks_and_code_is_executed_in_no_other_page() -> None:
+    """Sphinx runs them when it makes the site; an error in a cell ends the build."""
+    assert len(NOTEBOOKS) == 5
+    assert "nb_execution_raise_on_error = True" in (DOCS / "conf.py").read_text("utf-8")
+    for page in pages():
+        has = bool(re.search(r"^```\{code", page.read_text("utf-8"), re.M))
+        assert has == (page in NOTEBOOKS), page
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS, ids=lambda page: page.stem)
+def test_a_notebook_shows_a_result_and_can_be_downloaded(page: Path) -> None:
+    text = page.read_text("utf-8")
+    cells = re.findall(r"^```\{code-cell\}\n(.*?)^```$", text, re.M | re.S)
+    last = [cell.strip().splitlines()[-1] for cell in cells]
+    assert any(re.fullmatch(r"[\w.\[\]\"]+(\(\))?", line) for line in last), "nothing is displayed"
+    assert f"{{nb-download}}`{page.stem}.ipynb`" in text
+
+
+# ---- reference -----------------------------------------------------------------------------------
+
+
+def documented() -> dict[str, list[str]]:
+    """The names that the reference of Python has of each module."""
+    names: dict[str, list[str]] = {}
+    module = ""
+    page = (DOCS / "reference" / "python.md").read_text("utf-8")
+    for kind, name in re.findall(r"^\.\. (currentmodule|auto\w+):: ([\w.]+)$", page, re.M):
+        if kind == "currentmodule":
+            module = name
+        else:
+            names.setdefault(module, []).append(name)
+    return names
+
+
 def test_the_public_names_are_in_the_reference() -> None:
     import pindrive
 
-    page = (DOCS / "reference" / "python.md").read_text("utf-8")
-    documented = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
-    assert sorted(documented) == sorted(n for n in pindrive.__all__ if not n.startswith("__"))
+    names = documented()
+    public = [name for name in pindrive.__all__ if not name.startswith("__")]
+    assert sorted(names["pindrive"]) == sorted(public)
+
+
+@pytest.mark.parametrize("package", ["fitting", "optimisation", "study", "evaluation"])
+def test_the_names_of_a_package_are_in_the_reference(package: str) -> None:
+    module = import_module(f"pindrive.{package}")
+    public = {name for name in dir(module) if not name.startswith("_")}
+    here = {name for name in public if getattr(module, name).__module__.startswith("pindrive.")}
+    assert here - {*documented()["pindrive"]} <= {*documented()[f"pindrive.{package}"]}
+
+
+def extension(name: str) -> ModuleType:
+    """A module of the site's own that needs nothing of Sphinx."""
+    spec = spec_from_file_location(name, DOCS / "_ext" / f"{name}.py")
+    assert spec and spec.loader
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_reference_of_c_has_all_that_the_header_declares() -> None:
+    header = re.sub(r"/\*.*?\*/", "", (ROOT / "capi" / "pindrive.h").read_text("utf-8"), flags=re.S)
+    internal = {f"PINDRIVE_{name}" for name in ("API", "BUILDING", "H", "SHARED", "WITHIN")}
+    names = {*re.findall(r"\b(?:pindrive|PINDRIVE)_\w+", header)} - internal
+    page = extension("c_header").reference()
+    code = "\n".join(re.findall(r"^```c\n(.*?)^```$", page, re.M | re.S))
+    assert len(names) > 100
+    assert names <= {*re.findall(r"\b\w+", code)}
+    functions = {*re.findall(r"\b(pindrive_\w+)\([^)]", header)}
+    assert functions <= {*re.findall(r"`(\w+)`", "".join(re.findall(r"^### .*", page, re.M)))}
+    assert "mass must" not in page and "Sets a number of a drive." in page
+
+
+def keys(page: str) -> list[str]:
+    """The first column of the first table of a reference page."""
+    table = (
+        (DOCS / "reference" / page).read_text("utf-8").partition("|---|")[2].partition("\n\n")[0]
+    )
+    return [name.strip("`[]") for name in re.findall(r"^\| (\S+) \|", table, re.M)]
+
+
+def test_the_keys_of_study_and_wish_files_are_in_the_reference() -> None:
+    from pindrive.optimisation.wish import _KEYS
+    from pindrive.study.axes import _WAYS
+    from pindrive.study.spec import _OWN
+
+    assert sorted(keys("study-file.md")) == sorted(_OWN)
+    assert sorted(keys("wish-file.md")) == sorted(_KEYS)
+    text = (DOCS / "reference" / "study-file.md").read_text("utf-8")
+    assert [way for way in _WAYS if f"{{ {way} = " not in text] == []
+
+
+def test_calls_of_julia_are_those_of_the_header() -> None:
+    """Their names, the types of their arguments and of their results."""
+    of_c = {"double": "Cdouble", "size_t": "Csize_t", "char *": "Cstring", "void": "Cvoid"}
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    whole = {*re.findall(r"^typedef int (\w+);", header, re.M), "int"}
+
+    def julia(declared: str) -> set[str]:
+        """What may stand in Julia for an argument or a result."""
+        name = re.sub(r"\bconst |\b\w+$", "", declared.strip()) if " " in declared else declared
+        name = name.strip()
+        if name in of_c:
+            return {of_c[name]}
+        if name in whole:
+            return {"Cint"}
+        if name.endswith("**"):
+            return {"Ref{Ptr{Cvoid}}"}
+        if name in ("double *", "size_t *"):
+            inner = of_c[name[:-2]]
+            return {f"Ptr{{{inner}}}", f"Ref{{{inner}}}"}
+        return {"Ptr{Cvoid}"}
+
+    (block,) = (block for block in BLOCKS["docs/julia.md"] if block.language == "julia")
+    calls = re.findall(r"@ccall lib\.(\w+)\((.*?)\)::([\w{}]+)", block.text, re.S)
+    assert len(calls) == block.text.count("@ccall") >= 10
+    for name, given, result in calls:
+        declared = re.search(rf"^PINDRIVE_API ([^;(]*?){name}\(([^)]*)\);", header, re.M)
+        assert declared, name
+        assert result in julia(f"{declared[1]}x"), name
+        expected = [] if declared[2] == "void" else re.split(r",\s*", declared[2])
+        types = re.findall(r"::([\w{}]+)", given)
+        assert len(types) == len(expected), name
+        for type_, parameter in zip(types, expected, strict=True):
+            assert type_ in julia(parameter), (name, type_, parameter)
+
+
+# ---- without a network ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("asks", "text"),
+    [
+        (True, '<script src="https://cdn.example/a.js"></script>'),
+        (True, "<script async src=//cdn.example/a.js></script>"),
+        (True, '<link rel="stylesheet" type="text/css" href="http://a.example/a.css">'),
+        (True, '<link href="https://fonts.example" rel="preconnect">'),
+        (True, "<style>@import 'https://a.example/a.css'; p {src: url(//a.example/f)}</style>"),
+        (True, '<img alt="a" src="https://a.example/a.png">'),
+        (False, '<script src="_static/a.js"></script><img src="data:image/png;base64,a//b">'),
+        (False, '<a href="https://a.example">there</a><link rel="next" href="a.html">'),
+    ],
+)
+def test_what_a_page_asks_the_network_for_is_found(asks: bool, text: str) -> None:
+    """The build of the site looks for it in every file that it made."""
+    assert bool(extension("offline").requests(text, ".html")) == asks
+    assert '"offline"' in (DOCS / "conf.py").read_text("utf-8")

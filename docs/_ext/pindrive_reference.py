@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
+import c_header
 from docutils import nodes
 from docutils.statemachine import StringList
 from sphinx.application import Sphinx
@@ -20,7 +21,7 @@ from pindrive.cli.app import app
 from pindrive.files.template import NUMBERS
 from pindrive.files.template import template as device_template
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.results import JUDGED, LINE, OUTPUTS, SCANNED, SERIES
+from pindrive.quantities.results import DESIGNED, JUDGED, LINE, OUTPUTS, SCANNED, SERIES
 from pindrive.quantities.status import End, Status
 from pindrive.study.template import study_template
 
@@ -97,6 +98,7 @@ def dataset() -> str:
         "Of the pins of a scan": SCANNED,
         "Of the lines that were read": LINE,
         "What a scan is judged by": JUDGED,
+        "Of a design": DESIGNED,
     }
     return "\n\n".join(f"## {name}\n\n{table(headings, rows(of))}" for name, of in groups.items())
 
@@ -106,7 +108,7 @@ def status() -> str:
     codes = ((f"`{s.name}`", str(s.value), s.explanation) for s in Status)
     ends = ((f"`{end.name}`", str(end.value)) for end in End)
     first = table(("status", "code", "meaning"), codes)
-    return f"{first}\n\n## Endings\n\n{table(('ending', 'code'), ends)}"
+    return f"## Status\n\n{first}\n\n## Endings\n\n{table(('ending', 'code'), ends)}"
 
 
 PARTS: dict[str, Callable[[], str]] = {
@@ -115,6 +117,7 @@ PARTS: dict[str, Callable[[], str]] = {
     "study-file": study_file,
     "dataset": dataset,
     "status": status,
+    "c-header": c_header.reference,
 }
 
 
@@ -126,6 +129,10 @@ class FromPindrive(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """The nodes of the Markdown."""
         text = PARTS[self.arguments[0]]()
+        if "\n## " in text and not text.startswith("## "):
+            raise ExtensionError(
+                f"{self.arguments[0]}: what stands before its first heading would come last"
+            )
         lines = StringList(text.splitlines(), source="pindrive")
         inside = nodes.section()
         inside.document = self.state.document

@@ -39,28 +39,14 @@ def run(*command: str | Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.fixture(scope="module")
-def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the C interface is installed."""
-    folder = tmp_path_factory.mktemp("capi")
-    settings = ("-DPINDRIVE_C=ON", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_INSTALL_LIBDIR=lib")
-    quick = (
-        "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"  # the bits are the same, half of the time is not
-    )
-    run("cmake", "-S", ROOT, "-B", folder / "build", "-G", "Ninja", *settings, quick)
-    run("cmake", "--build", folder / "build")
-    run("cmake", "--install", folder / "build", "--prefix", folder / "prefix")
-    return folder / "prefix"
-
-
-def test_a_program_in_c99(prefix: Path, tmp_path: Path) -> None:
+def test_a_program_in_c99(c_library: Path, tmp_path: Path) -> None:
     source = ROOT / "tests" / "capi"
-    run("cmake", "-S", source, "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "-S", source, "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={c_library}")
     run("cmake", "--build", tmp_path)
     run(tmp_path / "consumer")
 
 
-def test_the_example_of_the_header_is_a_program(prefix: Path, tmp_path: Path) -> None:
+def test_the_example_of_the_header_is_a_program(c_library: Path, tmp_path: Path) -> None:
     header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
     lines = re.findall(r"^ \*     (.*)$", header, re.MULTILINE)
     source, program = tmp_path / "example.c", tmp_path / "example"
@@ -69,10 +55,10 @@ def test_the_example_of_the_header_is_a_program(prefix: Path, tmp_path: Path) ->
         "#include <stdio.h>\n#include <pindrive.h>\nint main(void) {\n"
         f'{body}\nprintf("%.17g\\n", x);\nreturn 0;\n}}\n'
     )
-    library = prefix / "lib"
+    library = c_library / "lib"
     run(
         *("cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", source, "-o", program),
-        *(f"-I{prefix / 'include'}", f"-L{library}", f"-Wl,-rpath,{library}", "-lpindrive"),
+        *(f"-I{c_library / 'include'}", f"-L{library}", f"-Wl,-rpath,{library}", "-lpindrive"),
     )
     said = subprocess.run([program], capture_output=True, text=True, check=True).stdout
     case = Case()
@@ -188,9 +174,9 @@ def doubles(values: Any) -> Any:
 class Interface:
     """The installed library."""
 
-    def __init__(self, prefix: Path) -> None:
+    def __init__(self, c_library: Path) -> None:
         name = "libpindrive.dylib" if sys.platform == "darwin" else "libpindrive.so"
-        self.library = ctypes.CDLL(str(prefix / "lib" / name))
+        self.library = ctypes.CDLL(str(c_library / "lib" / name))
         for function in ("drive_new", "release_new", "drive_rate_new", "release_rate_new"):
             getattr(self.library, f"pindrive_{function}").restype = c_void_p
         for function in ("number", "energy", "certificate"):
@@ -294,8 +280,8 @@ class Event(ctypes.Structure):
 
 
 @pytest.fixture(scope="module")
-def c(prefix: Path) -> Interface:
-    return Interface(prefix)
+def c(c_library: Path) -> Interface:
+    return Interface(c_library)
 
 
 def test_numbers_have_their_names_of_the_table(c: Interface) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64decode
 from html.parser import HTMLParser
 from io import BytesIO
@@ -120,6 +121,25 @@ def test_the_table_has_the_numbers_in_the_units_that_a_person_reads(motion: pd.M
     x = motion.to_dataset().position.values
     ends = f"{significant(1e3 * x.min())} to {significant(1e3 * x.max())}"
     assert rows["position"][:2] == [f"{ends} (time {len(x)})", "mm"]
+
+
+def test_the_picture_comes_first_and_only_numbers_are_unfolded(
+    motion: pd.Motion, results: dict[str, Any]
+) -> None:
+    text = motion._repr_html_()
+    folded = re.findall(r"<details( open)?><summary>(\w+)</summary>(.*?)</details>", text)
+    assert [(bool(open_), title) for open_, title, _ in folded] == [
+        (True, "numbers"),
+        (False, "energy"),
+        (False, "arrays"),
+    ]
+    assert text.index("<img") < text.index("<details")
+    names = {title: {row[0] for row in Parts(table).rows} for _, title, table in folded}
+    assert "transient_settling_time" in names["numbers"] and "position" in names["arrays"]
+    assert all(name.startswith("energy_") for name in names["energy"] - {"number"})
+    assert "<summary>numbers" not in results["scan"]._repr_html_()  # each has a dimension
+    rows = {row[0]: row[1] for row in Parts(results["scan"]._repr_html_()).rows}
+    assert " to " not in rows["hand_y"], "the smallest is the largest"
 
 
 def test_the_derivatives_of_a_motion_as_data_and_as_a_figure(motion: pd.Motion) -> None:

@@ -129,14 +129,17 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
     assert Path("study.nc").read_bytes() == whole
 
 
-def test_a_cluster_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("place", ["tcp://127.0.0.1:9", "nobody.json", "study.toml.json"])
+def test_a_cluster_that_is_not_there(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
-    monkeypatch.setattr("pindrive.study.cluster._PATIENCE", "0.2s")
+    monkeypatch.setattr("pindrive.study.cluster._PATIENCE", 0.2)
     plan()
-    said = run("study.toml", "--cluster", "tcp://127.0.0.1:9")
+    Path("study.toml.json").write_text("[]")
+    said = run("study.toml", "--cluster", place)
     assert said.exit_code == 2
-    assert said.stderr.startswith("--cluster must be the address of a Dask scheduler, like tcp://")
-    assert files() == {"study.toml"}
+    required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786, or its .json file"
+    assert said.stderr.startswith(f"--cluster must be {required}, got {place}: ")
+    assert files() == {"study.toml", "study.toml.json"}
 
 
 def test_workers_of_another_version_are_refused() -> None:

@@ -73,7 +73,12 @@ RateOption = Annotated[
     str | None, file_option('Of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY")
 ]
 ClusterOption = Annotated[
-    str | None, option(COMPUTED, "Work on a Dask cluster instead.", metavar="ADDRESS")
+    str | None,
+    option(
+        COMPUTED,
+        "Work on a Dask cluster instead: its scheduler, or the file of it.",
+        metavar="ADDRESS",
+    ),
 ]
 ThreadsOption = Annotated[int | None, count_option("--threads", "All cores unless given.")]
 

@@ -21,7 +21,7 @@ _DPI: Final = 96
 """Of the picture: as large on the screen as on paper."""
 _STYLE: Final = (
     "<style>.pindrive td,.pindrive th{padding:1px 8px;text-align:left}"
-    ".pindrive td.value{text-align:right;font-variant-numeric:tabular-nums}"
+    ".pindrive td.value{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}"
     ".pindrive img{max-width:100%;height:auto;background:white}</style>"
 )
 
@@ -39,24 +39,33 @@ class Result(Protocol):
 def html(result: Result) -> str:
     """The result as a piece of HTML that needs nothing else.
 
-    A row for each number that exists, the terms of an energy ledger folded away; of what has
-    dimensions, these and its smallest and largest value.
+    The picture, then a row for each number that exists. Folded away: the terms of an energy ledger,
+    and what has dimensions, with these and its smallest and largest value.
     """
     data = result.to_dataset()
     names = [str(name) for name in data.data_vars]
-    energies = [name for name in names if name.startswith("energy_")]
-    folded = _table(data, energies)
-    shown = _table(data, [name for name in names if name not in energies])
-    more = f"<details><summary>energy</summary>{folded}</details>" if energies else ""
+    groups: dict[str, list[str]] = {"numbers": [], "energy": [], "arrays": []}
+    for name in names:
+        energy = "energy" if name.startswith("energy_") else "numbers"
+        groups["arrays" if data[name].ndim else energy].append(name)
     title = escape(repr(result).strip("<>"))
+    tables = (_folded(data, group, names) for group, names in groups.items())
     return (
         f'<div class="pindrive">{_STYLE}<p><strong>{title}</strong></p>'
-        f"{shown}{more}{_picture(result.plot(), title)}</div>"
+        f"{_picture(result.plot(), title)}{''.join(tables)}</div>"
     )
 
 
-def _table(data: xr.Dataset, names: list[str]) -> str:
-    rows = "".join(filter(None, (_row(name, data[name]) for name in names)))
+def _folded(data: xr.Dataset, title: str, names: list[str]) -> str:
+    """A table below a line that opens it; numbers are open at first."""
+    rows = "".join(_row(name, data[name]) for name in names)
+    if not rows:
+        return ""
+    state = " open" if title == "numbers" else ""
+    return f"<details{state}><summary>{title}</summary>{_table(rows)}</details>"
+
+
+def _table(rows: str) -> str:
     heads = "".join(f"<th>{head}</th>" for head in ("number", "value", "unit", "meaning"))
     return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
 
@@ -93,8 +102,8 @@ def _value(variable: xr.DataArray, scale: float) -> str:
     known = values[~np.isnan(values)] if values.dtype.kind == "f" else values
     if not known.size:
         return ""
-    ends = " to ".join(significant(float(end) * scale) for end in (known.min(), known.max()))
-    return f"{ends} ({sizes})"
+    ends = [significant(float(end) * scale) for end in (known.min(), known.max())]
+    return f"{' to '.join(dict.fromkeys(ends))} ({sizes})"
 
 
 def _number(number: float, scale: float, count: bool) -> str:

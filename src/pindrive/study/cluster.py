@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from pindrive.files.output import OutputError
@@ -16,8 +19,8 @@ Shared = TypeVar("Shared")
 Given = TypeVar("Given")
 Done = TypeVar("Done")
 
-_PATIENCE: Final = "20s"
-"""How long a scheduler may take to answer."""
+_PATIENCE: Final = 20.0
+"""How long a scheduler may take to write its file, and to answer, s."""
 
 
 class Here:
@@ -80,7 +83,7 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
     """An executor on the workers of a scheduler, and how many threads they have, at least 1.
 
     Args:
-        address: such as tcp://10.0.0.1:8786.
+        address: such as tcp://10.0.0.1:8786, or the file of the scheduler, which ends in .json.
         kept: what is left where workers die one after the other, for the message.
 
     Raises:
@@ -89,9 +92,10 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
     from distributed import Client, KilledWorker
 
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        place = _written(Path(address)) if address.endswith(".json") else address
+        client = Client(place, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
-        required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786"
+        required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786, or its .json file"
         given = f"{address}: {str(error) or type(error).__name__}"
         raise ValueError(refusal("--cluster", required, given)) from None
     with client, client.get_executor(pure=False) as executor:
@@ -102,6 +106,23 @@ def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
             raise OutputError(
                 f"--cluster {address}: workers died one after the other: {error}; {kept}"
             ) from None
+
+
+def _written(file: Path) -> str:
+    """The address in the file of a scheduler, which may have just begun.
+
+    Raises:
+        ValueError: it is not there, or holds no address, after `_PATIENCE`.
+    """
+    end = monotonic() + _PATIENCE
+    while True:
+        try:
+            return str(json.loads(file.read_text("utf-8"))["address"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            if monotonic() > end:
+                missing = isinstance(error, OSError)
+                raise ValueError("cannot be read" if missing else "holds no address") from None
+        sleep(0.05)
 
 
 def _version() -> str:
