@@ -32,6 +32,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -56,6 +57,23 @@ FMU_PLATFORMS = {
     "aarch64-windows": ("aarch64-windows-gnu", "dll"),
     "x86_64-darwin": ("x86_64-macos", "dylib"),
     "aarch64-darwin": ("aarch64-macos", "dylib"),
+}
+
+# Small, and linked as C: fmu/runtime.cpp takes the place of what a runtime of C++ would add.
+FMU_COMPILE = (
+    *("-std=c++17", "-Os", "-Xclang", "-Oz", "-g0", "-DPINDRIVE_WITHIN", "-ffp-contract=off"),
+    *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
+)
+_WITHOUT_TABLES = ("-fno-unwind-tables", "-fno-asynchronous-unwind-tables")  # none is thrown through
+FMU_COMPILE_FOR = {
+    "so": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
+    "dll": (),  # there the functions of FMI alone are exported, and unwinding needs its tables
+    "dylib": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
+}
+FMU_LINK_FOR = {
+    "so": ("-Wl,--gc-sections", "-Wl,--version-script=fmu/exports.map"),
+    "dll": ("-Wl,--gc-sections",),
+    "dylib": ("-Wl,-dead_strip", "-Wl,-x"),
 }
 
 # A package manager, and what it installs: Python, its venv module, its headers, a C++ compiler.
@@ -412,25 +430,35 @@ def fmu_binaries(platforms: list[str]) -> int:
     if unknown:
         stop(f"no platform {unknown[0]!r}; there are {', '.join(FMU_PLATFORMS)}")
     install({"fmu"}, project=False)
-    sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
-    headers = [f"-I{ROOT / name}" for name in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")]
-    options = ["-std=c++17", "-O2", "-s", "-shared", "-ffp-contract=off", "-DPINDRIVE_WITHIN"]
     for name in platforms or FMU_PLATFORMS:
-        target, suffix = FMU_PLATFORMS[name]
-        library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
-        library.parent.mkdir(parents=True, exist_ok=True)
-        part = library.with_name(f"part.{suffix}")
-        command = [str(BIN / "python"), "-m", "ziglang", "c++", "-target", target, *options]
-        if suffix != "dll":
-            command.append("-fvisibility=hidden")
-        quietly(f"compiling for {name}", [*command, *headers, *map(str, sources), "-o", str(part)])
-        part.replace(library)
-        print(f"{library.relative_to(ROOT)}: {library.stat().st_size} bytes")
-        for beside in library.parent.glob("part*"):  # an import library, which nobody needs
-            beside.unlink()
+        library = fmu_binary(name)
+        print(f"{library.relative_to(ROOT)}: {library.stat().st_size / 1e3:.0f} kB", flush=True)
     write_stamp({**json.loads(STAMP.read_text("utf-8")), "sources": None})
     install({"fmu"})
     return 0
+
+
+def fmu_binary(name: str) -> Path:
+    """The library that an FMU carries for a platform, compiled here."""
+    target, suffix = FMU_PLATFORMS[name]
+    sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
+    headers = [f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")]
+    library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
+    library.parent.mkdir(parents=True, exist_ok=True)
+    zig = [str(BIN / "python"), "-m", "ziglang"]
+    with tempfile.TemporaryDirectory() as folder:
+        objects = [str(Path(folder, f"{source.stem}.o")) for source in sources]
+        for source, compiled in zip(sources, objects, strict=True):
+            options = [*FMU_COMPILE, *FMU_COMPILE_FOR[suffix], *headers]
+            compiling = [*zig, "c++", "-target", target, *options, "-c", str(source), "-o", compiled]
+            quietly(f"compiling {source.name} for {name}", compiling)
+        part = Path(folder, library.name)
+        linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]
+        quietly(f"linking for {name}", [*linking, *objects, "-o", str(part)])
+        beside = library.with_name("part")
+        shutil.copyfile(part, beside)
+        beside.replace(library)
+    return library
 
 
 def wheel(arguments: list[str]) -> int:

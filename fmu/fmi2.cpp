@@ -1,63 +1,76 @@
 // FMI 2.0 co-simulation: names of the standard over an Instance.
-#include <cstdio>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "fmi2Functions.h"
 #include "instance.hpp"
+#include "interface.hpp"
 
 namespace {
 
-using pindrive_fmu::Failure;
+using pindrive_c::fail;
 using pindrive_fmu::Instance;
+
+using Text = std::vector<char>;  // zero-terminated
 
 struct Component {
   Instance instance;
-  std::string name;
+  Text name;
   fmi2CallbackLogger log;
   fmi2ComponentEnvironment environment;
+
+  fmi2Status told(pindrive_error error) const {
+    if (!error) return fmi2OK;
+    if (log)
+      log(environment, name.data(), fmi2Error, "logStatusError", "%s", pindrive_last_error());
+    return fmi2Error;
+  }
 };
 Component& at(fmi2Component c) { return *static_cast<Component*>(c); }
 
 /// Runs what may be refused; the importer is told why.
 template <class Function>
 fmi2Status attempt(fmi2Component c, Function&& function) {
-  std::string why;
-  try {
-    function(at(c).instance);
-    return fmi2OK;
-  } catch (const std::exception& error) {
-    why = error.what();
-  }
-  const Component& own = at(c);
-  if (own.log)
-    own.log(own.environment, own.name.c_str(), fmi2Error, "logStatusError", "%s", why.c_str());
-  return fmi2Error;
+  return at(c).told(function(at(c).instance));
+}
+
+/// The same for each of several numbers.
+template <class Function>
+fmi2Status each(fmi2Component c, size_t count, Function&& function) {
+  return attempt(c, [&](Instance& i) {
+    pindrive_error error = PINDRIVE_OK;
+    for (size_t k = 0; k < count && !error; ++k) error = function(i, k);
+    return error;
+  });
+}
+
+Text text(const char* from) { return Text(from, from + std::strlen(from) + 1); }
+
+/// What a digit of a percent-encoding stands for; −1: none.
+int digit(char c) {
+  const char* const digits = "0123456789abcdef";
+  const char small = static_cast<char>(c >= 'A' && c <= 'F' ? c - 'A' + 'a' : c);
+  const char* const found = c != '\0' ? std::strchr(digits, small) : nullptr;
+  return found ? static_cast<int>(found - digits) : -1;
 }
 
 /// The folder of a file URI.
-std::string folder_of(const char* uri) {
-  std::string rest = uri ? uri : "";
-  if (rest.compare(0, 5, "file:") == 0) {
-    rest = rest.substr(5);
-    if (rest.compare(0, 2, "//") == 0) {
-      const std::size_t path = rest.find('/', 2);
-      rest = path == std::string::npos ? "" : rest.substr(path);
-    }
-    if (rest.size() > 2 && rest[0] == '/' && rest[2] == ':') rest = rest.substr(1);  // /C:/
+Text folder_of(const char* uri) {
+  const char* rest = uri ? uri : "";
+  if (std::strncmp(rest, "file:", 5) == 0) {
+    rest += 5;
+    if (std::strncmp(rest, "//", 2) == 0) rest += 2 + std::strcspn(rest + 2, "/");
+    if (rest[0] == '/' && rest[1] != '\0' && rest[2] == ':') ++rest;  // /C:/
   }
-  std::string path;
-  for (std::size_t i = 0; i < rest.size(); ++i) {
-    if (rest[i] == '%' && i + 2 < rest.size()) {
-      path += static_cast<char>(std::stoi(rest.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      path += rest[i];
-    }
+  Text path;
+  for (; *rest; ++rest) {
+    const int high = *rest == '%' ? digit(rest[1]) : -1, low = high < 0 ? -1 : digit(rest[2]);
+    if (low >= 0) rest += 2;
+    path.push_back(low < 0 ? *rest : static_cast<char>(16 * high + low));
   }
+  path.push_back('\0');
   return path;
 }
 
@@ -73,52 +86,43 @@ fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, size_t, const fmi2Str
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* functions, fmi2Boolean, fmi2Boolean) {
-  std::string why = "a drive is for co-simulation: it solves its own equations";
-  if (type == fmi2CoSimulation) try {
-      auto made = std::make_unique<Component>(
-          Component{Instance(folder_of(resources), guid ? guid : ""), name ? name : "",
-                    functions ? functions->logger : nullptr,
-                    functions ? functions->componentEnvironment : nullptr});
-      return made.release();
-    } catch (const std::exception& error) {
-      why = error.what();
-    }
-  if (functions && functions->logger)
-    functions->logger(functions->componentEnvironment, name, fmi2Error, "logStatusError", "%s",
-                      why.c_str());
-  return nullptr;
+  auto made = std::make_unique<Component>();
+  made->name = text(name ? name : "");
+  made->log = functions ? functions->logger : nullptr;
+  made->environment = functions ? functions->componentEnvironment : nullptr;
+  const pindrive_error error =
+      type == fmi2CoSimulation
+          ? made->instance.begin(folder_of(resources).data(), guid ? guid : "")
+          : fail(PINDRIVE_UNSUPPORTED,
+                 "a drive is for co-simulation: it solves its own equations");
+  return made->told(error) == fmi2OK ? made.release() : nullptr;
 }
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean, fmi2Real, fmi2Real start, fmi2Boolean,
                                fmi2Real) {
-  return attempt(c, [&](Instance& i) { i.set_start_time(start); });
+  return attempt(c, [&](Instance& i) { return i.set_start_time(start); });
 }
 fmi2Status fmi2EnterInitializationMode(fmi2Component) { return fmi2OK; }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return attempt(c, [](Instance& i) { i.initialise(); });
+  return attempt(c, [](Instance& i) { return i.initialise(); });
 }
 fmi2Status fmi2Terminate(fmi2Component) { return fmi2OK; }
 fmi2Status fmi2Reset(fmi2Component c) {
-  return attempt(c, [](Instance& i) { i.reset(); });
+  at(c).instance.reset();
+  return fmi2OK;
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) value[k] = i.number(vr[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.number(vr[k], value[k]); });
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                           fmi2Integer value[]) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) value[k] = i.whole(vr[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.whole(vr[k], value[k]); });
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                        const fmi2Real value[]) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) i.set(vr[k], value[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.set(vr[k], value[k]); });
 }
 fmi2Status fmi2GetBoolean(fmi2Component, const fmi2ValueReference[], size_t n, fmi2Boolean[]) {
   return n == 0 ? fmi2OK : fmi2Error;
@@ -140,11 +144,15 @@ fmi2Status fmi2SetString(fmi2Component, const fmi2ValueReference[], size_t n, co
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return attempt(c, [&](Instance& i) {
-    delete static_cast<Instance::State*>(std::exchange(*state, i.keep()));
+    std::unique_ptr<Instance::State> kept;
+    const pindrive_error error = i.keep(kept);
+    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, kept.release()));
+    return error;
   });
 }
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return attempt(c, [&](Instance& i) { i.go_back(*static_cast<Instance::State*>(state)); });
+  return attempt(c,
+                 [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
 }
 fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
   delete static_cast<Instance::State*>(*state);
@@ -153,40 +161,49 @@ fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
 }
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
   return attempt(c, [&](Instance&) {
-    *size = Instance::written(*static_cast<Instance::State*>(state)).size();
+    std::vector<unsigned char> all;
+    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
+    *size = all.size();
+    return error;
   });
 }
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
                                  size_t size) {
-  return attempt(c, [&](Instance&) {
-    const auto all = Instance::written(*static_cast<Instance::State*>(state));
-    if (size != all.size()) throw Failure("the size must be that of the state");
+  return attempt(c, [&](Instance&) -> pindrive_error {
+    std::vector<unsigned char> all;
+    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
+    if (error) return error;
+    if (size != all.size())
+      return fail(PINDRIVE_BAD_VALUE, "the size must be that of the state, %zu, not %zu",
+                  all.size(), size);
     std::memcpy(bytes, all.data(), size);
+    return PINDRIVE_OK;
   });
 }
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate* state) {
   return attempt(c, [&](Instance& i) {
-    Instance::State* const found = i.read(reinterpret_cast<const unsigned char*>(bytes), size);
-    delete static_cast<Instance::State*>(std::exchange(*state, found));
+    std::unique_ptr<Instance::State> found;
+    const pindrive_error error = i.read(reinterpret_cast<const unsigned char*>(bytes), size, found);
+    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, found.release()));
+    return error;
   });
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
                                         size_t unknowns, const fmi2ValueReference known[],
                                         size_t knowns, const fmi2Real seed[], fmi2Real found[]) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < unknowns; ++k) found[k] = i.derivative(unknown[k], known, seed, knowns);
+  return each(c, unknowns, [&](Instance& i, size_t k) {
+    return i.derivative(unknown[k], known, seed, knowns, found[k]);
   });
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                        const fmi2Integer order[], const fmi2Real value[]) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) {
-      if (order[k] != 1) throw Failure("an input has a first derivative, and no higher one");
-      i.set_rate(vr[k], value[k]);
-    }
+  return each(c, n, [&](Instance& i, size_t k) {
+    if (order[k] == 1) return i.set_rate(vr[k], value[k]);
+    return fail(PINDRIVE_BAD_VALUE, "an input has a first derivative, and none of order %d",
+                order[k]);
   });
 }
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component, const fmi2ValueReference[], size_t n,
@@ -194,13 +211,14 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component, const fmi2ValueReference[
   return n == 0 ? fmi2OK : fmi2Error;
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real size, fmi2Boolean) {
-  return attempt(c, [&](Instance& i) { i.step(from, size, false); });
+  bool happens = false;
+  return attempt(c, [&](Instance& i) { return i.step(from, size, false, happens); });
 }
 fmi2Status fmi2CancelStep(fmi2Component) { return fmi2Error; }
 fmi2Status fmi2GetStatus(fmi2Component, const fmi2StatusKind, fmi2Status*) { return fmi2Discard; }
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
-  return attempt(c, [&](Instance& i) { *value = i.now(); });
+  return attempt(c, [&](Instance& i) { return i.now(*value); });
 }
 fmi2Status fmi2GetIntegerStatus(fmi2Component, const fmi2StatusKind, fmi2Integer*) {
   return fmi2Discard;

@@ -1,17 +1,17 @@
 // FMI 3.0 co-simulation with event mode and early return: names of the standard over an Instance.
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "fmi3Functions.h"
 #include "instance.hpp"
+#include "interface.hpp"
 
 namespace {
 
-using pindrive_fmu::Failure;
+using pindrive_c::fail;
 using pindrive_fmu::Instance;
 
 struct Component {
@@ -19,25 +19,33 @@ struct Component {
   fmi3LogMessageCallback log;
   fmi3InstanceEnvironment environment;
   bool events, may_end_early;
+
+  fmi3Status told(pindrive_error error) const {
+    if (!error) return fmi3OK;
+    if (log) log(environment, fmi3Error, "logStatusError", pindrive_last_error());
+    return fmi3Error;
+  }
 };
 Component& at(fmi3Instance c) { return *static_cast<Component*>(c); }
 
 /// Runs what may be refused; the importer is told why.
 template <class Function>
 fmi3Status attempt(fmi3Instance c, Function&& function) {
-  std::string why;
-  try {
-    function(at(c).instance);
-    return fmi3OK;
-  } catch (const std::exception& error) {
-    why = error.what();
-  }
-  if (at(c).log) at(c).log(at(c).environment, fmi3Error, "logStatusError", why.c_str());
-  return fmi3Error;
+  return at(c).told(function(at(c).instance));
+}
+
+/// The same for each of several numbers.
+template <class Function>
+fmi3Status each(fmi3Instance c, size_t count, Function&& function) {
+  return attempt(c, [&](Instance& i) {
+    pindrive_error error = PINDRIVE_OK;
+    for (size_t k = 0; k < count && !error; ++k) error = function(i, k);
+    return error;
+  });
 }
 
 fmi3Status unsupported(fmi3Instance c, const char* what) {
-  return attempt(c, [&](Instance&) { throw Failure(std::string("a drive has no ") + what); });
+  return at(c).told(fail(PINDRIVE_UNSUPPORTED, "a drive has no %s", what));
 }
 
 }  // namespace
@@ -70,53 +78,45 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3Strin
                                          size_t, fmi3InstanceEnvironment environment,
                                          fmi3LogMessageCallback log,
                                          fmi3IntermediateUpdateCallback) {
-  std::string why;
-  try {
-    auto made = std::make_unique<Component>(
-        Component{Instance(resources ? resources : "", token ? token : ""), log, environment,
-                  events, may_end_early});
-    return made.release();
-  } catch (const std::exception& error) {
-    why = error.what();
-  }
-  if (log) log(environment, fmi3Error, "logStatusError", why.c_str());
-  return nullptr;
+  auto made = std::make_unique<Component>();
+  made->log = log;
+  made->environment = environment;
+  made->events = events;
+  made->may_end_early = may_end_early;
+  const pindrive_error error =
+      made->instance.begin(resources ? resources : "", token ? token : "");
+  return made->told(error) == fmi3OK ? made.release() : nullptr;
 }
 void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean, fmi3Float64, fmi3Float64 start,
                                        fmi3Boolean, fmi3Float64) {
-  return attempt(c, [&](Instance& i) { i.set_start_time(start); });
+  return attempt(c, [&](Instance& i) { return i.set_start_time(start); });
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-  return attempt(c, [](Instance& i) { i.initialise(); });
+  return attempt(c, [](Instance& i) { return i.initialise(); });
 }
 fmi3Status fmi3EnterEventMode(fmi3Instance) { return fmi3OK; }
 fmi3Status fmi3EnterStepMode(fmi3Instance) { return fmi3OK; }
 fmi3Status fmi3Terminate(fmi3Instance) { return fmi3OK; }
 fmi3Status fmi3Reset(fmi3Instance c) {
-  return attempt(c, [](Instance& i) { i.reset(); });
+  at(c).instance.reset();
+  return fmi3OK;
 }
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance) { return fmi3OK; }
 fmi3Status fmi3ExitConfigurationMode(fmi3Instance) { return fmi3OK; }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
                           fmi3Float64 value[], size_t) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) value[k] = i.number(vr[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.number(vr[k], value[k]); });
 }
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
                           const fmi3Float64 value[], size_t) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) i.set(vr[k], value[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.set(vr[k], value[k]); });
 }
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Int32 value[],
                         size_t) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < n; ++k) value[k] = i.whole(vr[k]);
-  });
+  return each(c, n, [&](Instance& i, size_t k) { return i.whole(vr[k], value[k]); });
 }
 
 #define PINDRIVE_NO_VARIABLES(type)                                                            \
@@ -169,11 +169,15 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference, size_
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
   return attempt(c, [&](Instance& i) {
-    delete static_cast<Instance::State*>(std::exchange(*state, i.keep()));
+    std::unique_ptr<Instance::State> kept;
+    const pindrive_error error = i.keep(kept);
+    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, kept.release()));
+    return error;
   });
 }
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-  return attempt(c, [&](Instance& i) { i.go_back(*static_cast<Instance::State*>(state)); });
+  return attempt(c,
+                 [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
 }
 fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
   delete static_cast<Instance::State*>(*state);
@@ -182,22 +186,32 @@ fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
 }
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t* size) {
   return attempt(c, [&](Instance&) {
-    *size = Instance::written(*static_cast<Instance::State*>(state)).size();
+    std::vector<unsigned char> all;
+    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
+    *size = all.size();
+    return error;
   });
 }
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[],
                                  size_t size) {
-  return attempt(c, [&](Instance&) {
-    const auto all = Instance::written(*static_cast<Instance::State*>(state));
-    if (size != all.size()) throw Failure("the size must be that of the state");
+  return attempt(c, [&](Instance&) -> pindrive_error {
+    std::vector<unsigned char> all;
+    const pindrive_error error = Instance::write(*static_cast<Instance::State*>(state), all);
+    if (error) return error;
+    if (size != all.size())
+      return fail(PINDRIVE_BAD_VALUE, "the size must be that of the state, %zu, not %zu",
+                  all.size(), size);
     std::memcpy(bytes, all.data(), size);
+    return PINDRIVE_OK;
   });
 }
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
                                    fmi3FMUState* state) {
   return attempt(c, [&](Instance& i) {
-    Instance::State* const found = i.read(bytes, size);
-    delete static_cast<Instance::State*>(std::exchange(*state, found));
+    std::unique_ptr<Instance::State> found;
+    const pindrive_error error = i.read(bytes, size, found);
+    if (!error) delete static_cast<Instance::State*>(std::exchange(*state, found.release()));
+    return error;
   });
 }
 
@@ -205,8 +219,8 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
                                         size_t unknowns, const fmi3ValueReference known[],
                                         size_t knowns, const fmi3Float64 seed[], size_t,
                                         fmi3Float64 found[], size_t) {
-  return attempt(c, [&](Instance& i) {
-    for (size_t k = 0; k < unknowns; ++k) found[k] = i.derivative(unknown[k], known, seed, knowns);
+  return each(c, unknowns, [&](Instance& i, size_t k) {
+    return i.derivative(unknown[k], known, seed, knowns, found[k]);
   });
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference[], size_t,
@@ -253,9 +267,11 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* needs_update,
                                     fmi3Boolean* states, fmi3Boolean* defined, fmi3Float64* next) {
   return attempt(c, [&](Instance& i) {
     *needs_update = *terminate = *nominals = *states = false;
-    const double event = i.next_event();
-    *defined = std::isfinite(event);
+    double event = 0;
+    const pindrive_error error = i.next_event(event);
+    *defined = !error && std::isfinite(event);
     if (*defined) *next = event;
+    return error;
   });
 }
 
@@ -269,10 +285,12 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 size, fmi3Bo
   const Component& own = at(c);
   *event = *terminate = *early = false;
   return attempt(c, [&](Instance& i) {
-    const bool happens = i.step(from, size, own.events && own.may_end_early);
-    *last = i.now();
+    bool happens = false;
+    pindrive_error error = i.step(from, size, own.events && own.may_end_early, happens);
+    if (!error) error = i.now(*last);
     *event = own.events && happens;
-    *early = *last < from + size;
+    *early = !error && *last < from + size;
+    return error;
   });
 }
 

@@ -2,30 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <utility>
-#ifdef _WIN32
-#include <filesystem>
-#endif
+
+#include "interface.hpp"
 
 namespace pindrive_fmu {
 
 namespace {
 
-constexpr const char* inputs[] = {"mouse_velocity", "mouse_velocity_rate", "plate_load",
-                                  "plate_load_rate"};
-constexpr const char* outputs[] = {"position",     "velocity",    "acceleration", "plate_force",
-                                   "finger_force", "stretch",     "stretch_rate", "next_event_time",
-                                   "plate_state",  "finger_state"};
-static_assert(sizeof outputs / sizeof *outputs == output_count);
+using pindrive_c::fail;
 
-[[noreturn]] void refuse(const std::string& message) { throw Failure(message); }
-
-void need(pindrive_error error) {
-  if (error != PINDRIVE_OK) refuse(pindrive_last_error());
+bool begins(const char* text, const char* with) {
+  return std::strncmp(text, with, std::strlen(with)) == 0;
 }
 
 struct FreeDrive {
@@ -37,111 +28,55 @@ struct FreeRelease {
 using Drive = std::unique_ptr<pindrive_drive, FreeDrive>;
 using Release = std::unique_ptr<pindrive_release, FreeRelease>;
 
-std::string content_of(const std::string& path) {
-#ifdef _WIN32
-  std::FILE* file = _wfopen(std::filesystem::u8path(path).c_str(), L"rb");
-#else
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-#endif
-  if (!file) refuse(path + " cannot be read");
-  std::string content;
-  char part[1024];
-  std::size_t got = sizeof part;
-  while (got == sizeof part) {
-    got = std::fread(part, 1, sizeof part, file);
-    content.append(part, got);
-  }
-  std::fclose(file);
-  return content;
-}
-
-/// The words of a text, one after the other; empty at its end.
-class Words {
- public:
-  explicit Words(std::string text) : text_(std::move(text)) {}
-  std::string next() {
-    constexpr const char* space = " \r\n";
-    const std::size_t begin = text_.find_first_not_of(space, at_);
-    if (begin == std::string::npos) return {};
-    at_ = std::min(text_.find_first_of(space, begin), text_.size());
-    return text_.substr(begin, at_ - begin);
-  }
-
- private:
-  std::string text_;
-  std::size_t at_{0};
-};
-
-/// A list of variables as `drive.txt` has it: a head with the token, then a line for each: kind, name and the
-/// bits of its start value, which no locale changes.
-std::vector<Variable> read_variables(const std::string& folder, const std::string& token) {
-  const std::string path = folder + "/drive.txt";
-  Words words(content_of(path));
-  if (words.next() != "pindrive-fmu-1")
-    refuse(path + " must be the list of variables of a unit of this version");
-  const std::string own = words.next();
-  if (token != own) refuse("the token must be " + own + ", not " + token);
-  std::vector<Variable> found;
-  for (std::string kind = words.next(); !kind.empty(); kind = words.next()) {
-    Variable variable{};
-    variable.kind = kind == "parameter" ? Variable::parameter
-                    : kind == "input"   ? Variable::input
-                                        : Variable::output;
-    variable.name = words.next();
-    const std::string bits = words.next();
-    if (bits.size() != 16) refuse(path + " must have a start value for " + variable.name);
-    const std::uint64_t number = std::strtoull(bits.c_str(), nullptr, 16);
-    std::memcpy(&variable.start, &number, sizeof number);
-    found.push_back(std::move(variable));
-  }
-  return found;
-}
-
 /// The rows of friction curves by the names of their parameters, "plate.curve.speed[1]".
 struct Curve {
   const char* contact;
   std::vector<double> speeds, forces;
 
-  bool take(const std::string& name, double value) {
-    const std::string begin = std::string(contact) + ".curve.";
-    if (name.compare(0, begin.size(), begin) != 0) return false;
-    (name[begin.size()] == 's' ? speeds : forces).push_back(value);
+  bool take(const char* name, double value) {
+    const std::size_t length = std::strlen(contact);
+    if (!begins(name, contact) || !begins(name + length, ".curve.")) return false;
+    (begins(name + length, ".curve.s") ? speeds : forces).push_back(value);
     return true;
   }
 };
 
 /// Gives a drive and a release the values of parameters and inputs; kinetic friction before static friction,
 /// which it sets.
-void fill(pindrive_drive* drive, pindrive_release* release, const std::vector<Variable>& variables,
-          const double* values) {
+pindrive_error fill(pindrive_drive* drive, pindrive_release* release,
+                    const std::vector<Variable>& variables, const double* values) {
   Curve curves[] = {{"plate", {}, {}}, {"finger", {}, {}}};
+  pindrive_error error = PINDRIVE_OK;
   for (std::size_t i = 0; i < variables.size(); ++i)
     if (!curves[0].take(variables[i].name, values[i])) curves[1].take(variables[i].name, values[i]);
   for (const Curve& curve : curves)
-    if (!curve.speeds.empty())
-      need(pindrive_drive_set_curve(drive, curve.contact, curve.speeds.data(), curve.forces.data(),
-                                    curve.speeds.size()));
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    const std::string& name = variables[i].name;
-    if (variables[i].kind == Variable::output || name.find(".curve.") != std::string::npos)
-      continue;
-    const auto after = [&](const char* begin) { return name.c_str() + std::strlen(begin); };
-    if (name.compare(0, 6, "drive.") == 0)
-      need(pindrive_drive_set(drive, after("drive."), values[i]));
-    else if (name.compare(0, 7, "motion.") == 0)
-      need(pindrive_release_set(release, after("motion."), values[i]));
-    else if (variables[i].kind == Variable::parameter)
-      need(pindrive_drive_set(drive, name.c_str(), values[i]));
-    else if (name == inputs[mouse_velocity] || name == inputs[plate_load])
-      need(pindrive_release_set(release, name.c_str(), values[i]));
+    if (!curve.speeds.empty() && !error)
+      error = pindrive_drive_set_curve(drive, curve.contact, curve.speeds.data(),
+                                       curve.forces.data(), curve.speeds.size());
+  for (std::size_t i = 0; i < variables.size() && !error; ++i) {
+    const auto& [kind, name, start, place] = variables[i];
+    if (kind == Variable::input && place % 2 == 0)
+      error = pindrive_release_set(release, name, values[i]);
+    if (kind != Variable::parameter || std::strstr(name, ".curve.")) continue;
+    if (begins(name, "drive."))
+      error = pindrive_drive_set(drive, name + std::strlen("drive."), values[i]);
+    else if (begins(name, "motion."))
+      error = pindrive_release_set(release, name + std::strlen("motion."), values[i]);
+    else
+      error = pindrive_drive_set(drive, name, values[i]);
   }
+  return error;
 }
 
 }  // namespace
 
-Instance::Instance(const std::string& folder, const std::string& token)
-    : variables_(read_variables(folder, token)) {
-  reset();
+pindrive_error Instance::begin(const char* folder, const char* token) {
+  constexpr const char file[] = "/drive.txt";
+  std::vector<char> path(folder, folder + std::strlen(folder));
+  path.insert(path.end(), std::begin(file), std::end(file));
+  const pindrive_error error = read_variables(path.data(), token, list_, variables_);
+  if (!error) reset();
+  return error;
 }
 
 void Instance::reset() {
@@ -150,208 +85,262 @@ void Instance::reset() {
   stepper_.reset();
 }
 
-void Instance::set_start_time(double time) {
-  if (!std::isfinite(time)) refuse("the start time must be finite");
+pindrive_error Instance::set_start_time(double time) {
+  if (!std::isfinite(time)) return fail(PINDRIVE_BAD_VALUE, "the start time must be finite");
   values_.begin = time;
   stepper_.reset();
+  return PINDRIVE_OK;
+}
+
+double Instance::value_of_input(std::size_t place, const double* values) const {
+  for (std::size_t i = 0; i < variables_.size(); ++i)
+    if (variables_[i].kind == Variable::input && variables_[i].place == static_cast<int>(place))
+      return values[i];
+  return 0;
 }
 
 /// A stepper at its start; with seeds its derivatives along them.
-Stepper Instance::made(const std::vector<double>& numbers, const double* seeds) const {
+pindrive_error Instance::make(const double* seeds, Stepper& stepper) const {
   const Drive drive(pindrive_drive_new());
   const Release release(pindrive_release_new());
-  pindrive_stepper* begun = nullptr;
-  fill(drive.get(), release.get(), variables_, numbers.data());
-  const auto rate_of = [&](const double* values, Input which) {
-    for (std::size_t i = 0; i < variables_.size(); ++i)
-      if (variables_[i].name == inputs[which]) return values[i];
-    return 0.0;
-  };
+  const double* const values = values_.start.data();
+  pindrive_stepper* made = nullptr;
+  pindrive_error error = fill(drive.get(), release.get(), variables_, values);
+  if (error) return error;
   if (seeds) {
     const Drive along(pindrive_drive_rate_new(drive.get()));
     const Release of_release(pindrive_release_rate_new(release.get()));
-    fill(along.get(), of_release.get(), variables_, seeds);
-    need(pindrive_stepper_differentiate(drive.get(), release.get(), along.get(), of_release.get(),
-                                        values_.begin, &begun));
+    error = fill(along.get(), of_release.get(), variables_, seeds);
+    if (!error)
+      error = pindrive_stepper_differentiate(drive.get(), release.get(), along.get(),
+                                             of_release.get(), values_.begin, &made);
   } else {
-    need(pindrive_stepper_new(drive.get(), release.get(), values_.begin, &begun));
+    error = pindrive_stepper_new(drive.get(), release.get(), values_.begin, &made);
   }
-  Stepper found(begun);
-  for (const Input which : {mouse_velocity, plate_load}) {
-    const auto rate = static_cast<Input>(which + 1);
-    const double slope = rate_of(numbers.data(), rate);
-    if (slope != 0)
-      need(pindrive_stepper_set(begun, inputs[which], rate_of(numbers.data(), which), slope));
-    if (seeds && (slope != 0 || rate_of(seeds, rate) != 0))
-      need(pindrive_stepper_set_along(begun, inputs[which], rate_of(seeds, which),
-                                      rate_of(seeds, rate)));
+  stepper.reset(made);
+  std::size_t place = 0;
+  for (const Input& input : inputs) {
+    const double rate = value_of_input(place + 1, values);
+    if (rate != 0 && !error)
+      error = pindrive_stepper_set(made, input.name, value_of_input(place, values), rate);
+    if (seeds && !error && (rate != 0 || value_of_input(place + 1, seeds) != 0))
+      error = pindrive_stepper_set_along(made, input.name, value_of_input(place, seeds),
+                                         value_of_input(place + 1, seeds));
+    place += 2;
   }
-  return found;
+  if (error) stepper.reset();
+  return error;
 }
 
-/// Before the initialisation has ended it is made where something is asked of it.
-pindrive_stepper* Instance::stepper() {
-  if (!stepper_) stepper_ = made(values_.start, nullptr);
-  return stepper_.get();
+/// Before the initialisation has ended the stepper is made where something is asked of it.
+pindrive_error Instance::followed() { return stepper_ ? PINDRIVE_OK : make(nullptr, stepper_); }
+
+pindrive_error Instance::initialise() {
+  const pindrive_error error = followed();
+  if (!error) values_.initialised = true;
+  return error;
 }
 
-void Instance::initialise() {
-  stepper();
-  values_.initialised = true;
-}
-
-const Variable& Instance::variable(std::size_t reference) const {
+pindrive_error Instance::variable(std::size_t reference, const Variable*& found) const {
   if (reference < 1 || reference > variables_.size())
-    refuse("a value reference must be from 0 to " + std::to_string(variables_.size()) + ", not " +
-           std::to_string(reference));
-  return variables_[reference - 1];
+    return fail(PINDRIVE_BAD_VALUE, "a value reference must be from 0 to %zu, not %zu",
+                variables_.size(), reference);
+  found = &variables_[reference - 1];
+  return PINDRIVE_OK;
 }
 
-/// Where a variable of a kind stands in the list of its kind; −1 for another kind.
+/// Where a variable of a kind stands in the list of its kind; −1 for another kind, and for none.
 int Instance::place(std::size_t reference, Variable::Kind kind) const {
-  const Variable& asked = variable(reference);
-  if (asked.kind != kind) return -1;
-  const char* const* const list = kind == Variable::input ? inputs : outputs;
-  int at = 0;
-  while (asked.name != list[at]) ++at;
-  return at;
+  if (reference < 1 || reference > variables_.size()) return -1;
+  const Variable& asked = variables_[reference - 1];
+  return asked.kind == kind ? asked.place : -1;
 }
 
-pindrive_instant Instance::instant() {
+const char* Instance::name(std::size_t reference) const {
+  return reference >= 1 && reference <= variables_.size() ? variables_[reference - 1].name : "time";
+}
+
+pindrive_error Instance::instant(pindrive_instant& now) {
+  const pindrive_error error = followed();
+  return error ? error : pindrive_stepper_now(stepper_.get(), &now);
+}
+
+pindrive_error Instance::now(double& time) {
+  time = values_.begin;
+  if (!values_.initialised) return PINDRIVE_OK;
   pindrive_instant now;
-  need(pindrive_stepper_now(stepper(), &now));
-  return now;
+  const pindrive_error error = instant(now);
+  if (!error) time = now.time;
+  return error;
 }
 
-double Instance::now() { return values_.initialised ? instant().time : values_.begin; }
-double Instance::next_event() { return instant().next_event; }
+pindrive_error Instance::next_event(double& time) {
+  pindrive_instant now;
+  const pindrive_error error = instant(now);
+  if (!error) time = now.next_event;
+  return error;
+}
 
-double Instance::number(std::size_t reference) {
-  if (reference == 0) return now();
-  switch (variable(reference).kind) {
-    case Variable::parameter:
-      return values_.start[reference - 1];
-    case Variable::input: {
-      if (!values_.initialised) return values_.start[reference - 1];
-      const pindrive_instant now = instant();
-      const double all[] = {now.mouse_velocity, now.mouse_velocity_rate, now.plate_load,
-                            now.plate_load_rate};
-      return all[place(reference, Variable::input)];
-    }
-    default:
-      break;
+pindrive_error Instance::number(std::size_t reference, double& value) {
+  if (reference == 0) return now(value);
+  const Variable* asked = nullptr;
+  pindrive_error error = variable(reference, asked);
+  if (error) return error;
+  if (asked->kind == Variable::parameter ||
+      (asked->kind == Variable::input && !values_.initialised)) {
+    value = values_.start[reference - 1];
+    return PINDRIVE_OK;
   }
+  pindrive_instant now;
+  error = instant(now);
+  if (error) return error;
+  if (asked->kind == Variable::input) {
+    const Input& input = inputs[asked->place / 2];
+    value = now.*(asked->place % 2 == 0 ? input.value : input.rate);
+    return PINDRIVE_OK;
+  }
+  if (asked->place > next_event_time)
+    return fail(PINDRIVE_BAD_VALUE, "%s is a whole number", asked->name);
+  if (asked->place < next_event_time)
+    return pindrive_stepper_evaluate(stepper_.get(), asked->place, &value);
+  value = std::min(now.next_event, std::numeric_limits<double>::max());
+  return PINDRIVE_OK;
+}
+
+pindrive_error Instance::whole(std::size_t reference, int& value) {
   const int which = place(reference, Variable::output);
-  if (which == next_event_time) return std::min(next_event(), std::numeric_limits<double>::max());
-  if (which > next_event_time) refuse(variable(reference).name + " is a whole number");
-  double value = 0;
-  need(pindrive_stepper_evaluate(stepper(), which, &value));
-  return value;
-}
-
-int Instance::whole(std::size_t reference) {
-  const int which = reference == 0 ? -1 : place(reference, Variable::output);
   if (which < plate_state)
-    refuse((reference == 0 ? "time" : variable(reference).name) + " is no whole number");
-  return which == plate_state ? instant().plate : instant().finger;
+    return fail(PINDRIVE_BAD_VALUE, "%s is no whole number", name(reference));
+  pindrive_instant now;
+  const pindrive_error error = instant(now);
+  if (!error) value = which == plate_state ? now.plate : now.finger;
+  return error;
 }
 
-void Instance::set(std::size_t reference, double value) {
-  const Variable& given = variable(reference);
-  if (given.kind == Variable::output) refuse(given.name + " is an output, which cannot be set");
+pindrive_error Instance::set(std::size_t reference, double value) {
+  const Variable* given = nullptr;
+  pindrive_error error = variable(reference, given);
+  if (error) return error;
+  if (given->kind == Variable::output)
+    return fail(PINDRIVE_BAD_VALUE, "%s is an output, which cannot be set", given->name);
   if (!values_.initialised) {
     values_.start[reference - 1] = value;
     stepper_.reset();
-    return;
+    return PINDRIVE_OK;
   }
-  if (given.kind == Variable::parameter)
-    refuse(given.name + " is a fixed parameter: it is set before the initialisation ends");
-  const pindrive_instant now = instant();
-  const bool load = place(reference, Variable::input) >= plate_load;
-  const bool rate = place(reference, Variable::input) % 2 == 1;
-  const double value_now = load ? now.plate_load : now.mouse_velocity;
-  const double rate_now = load ? now.plate_load_rate : now.mouse_velocity_rate;
-  need(pindrive_stepper_set(stepper(), inputs[load ? plate_load : mouse_velocity],
-                            rate ? value_now : value, rate ? value : rate_now));
+  if (given->kind == Variable::parameter)
+    return fail(PINDRIVE_BAD_VALUE,
+                "%s is a fixed parameter: it is set before the initialisation ends", given->name);
+  pindrive_instant now;
+  error = instant(now);
+  if (error) return error;
+  const Input& input = inputs[given->place / 2];
+  const bool rate = given->place % 2 == 1;
+  return pindrive_stepper_set(stepper_.get(), input.name, rate ? now.*input.value : value,
+                              rate ? value : now.*input.rate);
 }
 
-void Instance::set_rate(std::size_t reference, double rate) {
-  const int which = reference == 0 ? -1 : place(reference, Variable::input);
-  if (which != mouse_velocity && which != plate_load)
-    refuse((reference == 0 ? "time" : variable(reference).name) + " has no rate that can be set");
-  for (std::size_t i = 0; i < variables_.size(); ++i)
-    if (variables_[i].name == inputs[which + 1]) set(i + 1, rate);
+pindrive_error Instance::set_rate(std::size_t reference, double rate) {
+  const int which = place(reference, Variable::input);
+  for (std::size_t i = 0; i < variables_.size() && which >= 0 && which % 2 == 0; ++i)
+    if (place(i + 1, Variable::input) == which + 1) return set(i + 1, rate);
+  return fail(PINDRIVE_BAD_VALUE, "%s has no rate that can be set", name(reference));
 }
 
-bool Instance::step(double from, double size, bool may_end_early) {
-  if (!values_.initialised) refuse("a step must follow the initialisation");
-  const pindrive_instant before = instant();
+pindrive_error Instance::step(double from, double size, bool may_end_early, bool& happens) {
+  if (!values_.initialised)
+    return fail(PINDRIVE_BAD_VALUE, "a step must follow the initialisation");
+  pindrive_instant at;
+  pindrive_error error = instant(at);
+  if (error) return error;
   const double tolerance = 1e-9 * (std::abs(from) + std::abs(size));
-  if (!(std::abs(from - before.time) <= tolerance))
-    refuse("a step must begin where the last one ended, at " + std::to_string(before.time) +
-           " s, not at " + std::to_string(from) + " s");
-  if (!(size >= 0) || !std::isfinite(size)) refuse("a step must be finite and at least 0 s long");
-  need(pindrive_stepper_step(stepper(), std::max(from + size, before.time), may_end_early));
-  const pindrive_instant after = instant();
-  return after.plate_event != PINDRIVE_NONE || after.finger_event != PINDRIVE_NONE;
+  if (!(std::abs(from - at.time) <= tolerance))
+    return fail(PINDRIVE_BAD_VALUE,
+                "a step must begin where the last one ended, at %.9g s, not at %.9g s", at.time,
+                from);
+  if (!(size >= 0) || !std::isfinite(size))
+    return fail(PINDRIVE_BAD_VALUE, "a step must be finite and at least 0 s long, not %.9g s",
+                size);
+  error = pindrive_stepper_step(stepper_.get(), std::max(from + size, at.time), may_end_early);
+  if (!error) error = instant(at);
+  happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
+  return error;
 }
 
-double Instance::derivative(std::size_t unknown, const unsigned* knowns, const double* seeds,
-                            std::size_t count) {
-  const int which = unknown == 0 ? -1 : place(unknown, Variable::output);
+pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
+                                    const double* seeds, std::size_t count, double& value) {
+  const int which = place(unknown, Variable::output);
   if (which < 0 || which >= next_event_time)
-    refuse("a derivative is had of outputs that are real, but not of the next event");
+    return fail(PINDRIVE_BAD_VALUE,
+                "a derivative is had of outputs that are real, but not of the next event");
   std::vector<double> along(variables_.size(), 0.0);
   for (std::size_t i = 0; i < count; ++i) {
-    const Variable& known = variable(knowns[i]);
-    if (known.kind == Variable::output ||
-        (known.kind == Variable::parameter && values_.initialised))
-      refuse("a derivative is had along inputs and, before the initialisation ends, parameters: " +
-             known.name + " is none");
+    const Variable* known = nullptr;
+    if (const pindrive_error error = variable(knowns[i], known)) return error;
+    if (known->kind == Variable::output ||
+        (known->kind == Variable::parameter && values_.initialised))
+      return fail(PINDRIVE_BAD_VALUE,
+                  "a derivative is had along inputs and, before the initialisation ends, "
+                  "parameters: %s is none",
+                  known->name);
     along[knowns[i] - 1] = seeds[i];
   }
   Stepper changing;
+  pindrive_error error = PINDRIVE_OK;
   if (!values_.initialised) {
-    changing = made(values_.start, along.data());
+    error = make(along.data(), changing);
   } else {
     pindrive_stepper* made = nullptr;
-    need(pindrive_stepper_derivative(stepper(), &made));
+    error = followed();
+    if (!error) error = pindrive_stepper_derivative(stepper_.get(), &made);
     changing.reset(made);
-    double slopes[4] = {};
-    for (std::size_t i = 0; i < variables_.size(); ++i)
-      if (const int which = place(i + 1, Variable::input); which >= 0) slopes[which] = along[i];
-    for (const Input each : {mouse_velocity, plate_load})
-      need(pindrive_stepper_set_along(made, inputs[each], slopes[each], slopes[each + 1]));
+    std::size_t place = 0;
+    for (const Input& input : inputs) {
+      if (!error)
+        error =
+            pindrive_stepper_set_along(made, input.name, value_of_input(place, along.data()),
+                                       value_of_input(place + 1, along.data()));
+      place += 2;
+    }
   }
-  double value = 0;
-  need(pindrive_stepper_evaluate(changing.get(), which, &value));
-  return value;
+  return error ? error : pindrive_stepper_evaluate(changing.get(), which, &value);
 }
 
 // ---- states ------------------------------------------------------------------------------------
 
 namespace {
 
-Stepper copied(const Stepper& stepper) {
-  if (!stepper) return {};
-  pindrive_stepper* copy = nullptr;
-  need(pindrive_stepper_copy(stepper.get(), &copy));
-  return Stepper(copy);
+pindrive_error copy(const Stepper& stepper, Stepper& copied) {
+  copied.reset();
+  if (!stepper) return PINDRIVE_OK;
+  pindrive_stepper* made = nullptr;
+  const pindrive_error error = pindrive_stepper_copy(stepper.get(), &made);
+  copied.reset(made);
+  return error;
 }
 
 }  // namespace
 
-Instance::State* Instance::keep() { return new State{values_, copied(stepper_)}; }
+pindrive_error Instance::keep(std::unique_ptr<State>& state) const {
+  auto kept = std::make_unique<State>();
+  kept->values = values_;
+  const pindrive_error error = copy(stepper_, kept->stepper);
+  if (!error) state = std::move(kept);
+  return error;
+}
 
-void Instance::go_back(const State& state) {
-  Stepper stepper = copied(state.stepper);
+pindrive_error Instance::go_back(const State& state) {
+  Stepper stepper;
+  const pindrive_error error = copy(state.stepper, stepper);
+  if (error) return error;
   values_ = state.values;
   stepper_ = std::move(stepper);
+  return PINDRIVE_OK;
 }
 
 /// The numbers as they stand in memory, whether it is initialised, then the stepper if there is one.
-std::vector<unsigned char> Instance::written(const State& state) {
-  std::vector<unsigned char> bytes;
+pindrive_error Instance::write(const State& state, std::vector<unsigned char>& bytes) {
+  bytes.clear();
   const auto add = [&](const auto& number) {
     const auto* const from = reinterpret_cast<const unsigned char*>(&number);
     bytes.insert(bytes.end(), from, from + sizeof number);
@@ -359,36 +348,37 @@ std::vector<unsigned char> Instance::written(const State& state) {
   for (const double number : state.values.start) add(number);
   add(state.values.begin);
   add(static_cast<unsigned char>(state.values.initialised));
-  if (!state.stepper) return bytes;
+  if (!state.stepper) return PINDRIVE_OK;
   const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
   bytes.resize(before + size);
-  need(pindrive_stepper_write(state.stepper.get(), &bytes[before], size));
-  return bytes;
+  return pindrive_stepper_write(state.stepper.get(), &bytes[before], size);
 }
 
-Instance::State* Instance::read(const unsigned char* bytes, std::size_t size) const {
-  auto state = std::make_unique<State>();
-  const unsigned char* const end = bytes + size;
-  const auto take = [&](auto& number) {
-    if (static_cast<std::size_t>(end - bytes) < sizeof number)
-      refuse("the bytes must be those of a state of this unit, not " + std::to_string(size));
-    std::memcpy(&number, bytes, sizeof number);
-    bytes += sizeof number;
+pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
+                              std::unique_ptr<State>& state) const {
+  const std::size_t numbers = variables_.size() * sizeof(double) + sizeof(double) + 1;
+  const auto refused = [&] {
+    return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit, not %zu",
+                size);
   };
-  state->values.start.resize(variables_.size());
-  for (double& number : state->values.start) take(number);
-  take(state->values.begin);
-  unsigned char initialised = 0;
-  take(initialised);
-  state->values.initialised = initialised != 0;
-  if (bytes < end) {
+  if (size < numbers) return refused();
+  auto found = std::make_unique<State>();
+  Values& values = found->values;
+  values.start.resize(variables_.size());
+  std::memcpy(values.start.data(), bytes, variables_.size() * sizeof(double));
+  std::memcpy(&values.begin, bytes + variables_.size() * sizeof(double), sizeof(double));
+  values.initialised = bytes[numbers - 1] != 0;
+  if (size > numbers) {
     pindrive_stepper* stepper = nullptr;
-    need(pindrive_stepper_read(bytes, static_cast<std::size_t>(end - bytes), &stepper));
-    state->stepper.reset(stepper);
-  } else if (state->values.initialised) {
-    refuse("the bytes must be those of a state of this unit, not " + std::to_string(size));
+    if (const pindrive_error error =
+            pindrive_stepper_read(bytes + numbers, size - numbers, &stepper))
+      return error;
+    found->stepper.reset(stepper);
+  } else if (values.initialised) {
+    return refused();
   }
-  return state.release();
+  state = std::move(found);
+  return PINDRIVE_OK;
 }
 
 }  // namespace pindrive_fmu
