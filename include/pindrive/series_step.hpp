@@ -61,7 +61,10 @@ class SeriesStep {
     each([&](Polynomial<T>& p) {
       p.span *= part;
       Real factor{1};
-      for (int n = 0; n <= p.degree; ++n, factor *= part) p.c[n] *= factor;
+      for (T& c : p.c) {
+        c *= factor;
+        factor *= part;
+      }
     });
   }
 
