@@ -520,8 +520,10 @@ class Certifier {
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
-    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still && !oblique;
-    const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
+    // What slid before it, and goes on, rests only where its speed is zero.
+    const T u = s.v - stage.plate_velocity.value;
+    const bool on_plate = (plate ? abs(u) <= still : u == 0) && !oblique;
+    const bool on_finger = (finger ? abs(s.v) <= still : s.v == 0) && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
     const Beginning<T> now{s.x,
                            s.v,
