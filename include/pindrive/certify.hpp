@@ -230,8 +230,25 @@ class Certifier {
     const T part = -force / strength, along = std::clamp(part, T(-1), T(1));
     const T beside = abs(u * sqrt((1 - along) * (1 + along)) - abs(across) * along);
     const T too_large = strength * abs(part - along);
-    const T by_velocity = beside / v_scale_ * force_scale_ + too_large;
+    // Without a scale nothing moves, and nothing pulls.
+    const T by_velocity = (v_scale_ > 0 ? beside / v_scale_ * force_scale_ : beside) + too_large;
     return speed > 0 ? std::min(by_velocity, abs(force + strength * u / speed)) : by_velocity;
+  }
+
+  /// What the force of a plate that slides across too is unsure by, N: it turns with the velocity, which is
+  /// known to its rounding and to that of the time.
+  template <class Stage>
+  T unsure(const Stage& stage, const Numbers& s) const {
+    using std::abs;
+    using std::hypot;
+    if (stage.segment.mode.plate != ContactState::slip_oblique) return T(0);
+    const T u = s.v - stage.plate_velocity.at(s.tau), w = stage.across.at(s.tau);
+    const T speed = hypot(u, w), time = stage.segment.begin + s.tau;
+    const T strength = stage.load.at(s.tau) * kinetic(drive_.plate, speed);
+    const T moves = v_scale_ + time * (abs(s.a) + abs(stage.plate_velocity.rate));
+    if (!(speed > 0)) return T(0);
+    const T turns = w / speed;
+    return 4 * detail::rounding<T> * moves * strength * turns * turns / speed;
   }
 
   bool soft() const { return drive_.finger.present() && !drive_.finger.rigid(); }
@@ -315,13 +332,15 @@ class Certifier {
 
   /// The same for a step of a series, of which all is smooth.
   Numbers walk(const Stage<BySeries<T>>& stage) {
-    for (int i = 0; i < stage.count; ++i) {
-      const auto& [guard, law, scale] = stage.watches[i];
-      const T least = lowest(guard, unseen * scale);
-      if (!(least >= 0)) worst(result_.*law, least, scale);
-    }
     Errors errors;
     const auto from = state(stage, T(0)), to = state(stage, stage.span);
+    const T known = std::max(unsure(stage, from), unsure(stage, to));
+    for (int i = 0; i < stage.count; ++i) {
+      const auto& [guard, law, scale] = stage.watches[i];
+      const T least =
+          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : T(0));
+      if (!(least >= 0)) worst(result_.*law, least, scale);
+    }
     laws(stage, from, errors);
     Sums sums;
     gauss_nodes(gauss16, T(0), stage.span, [&](T tau, T weight) {
@@ -420,9 +439,10 @@ class Certifier {
     raise(errors.velocity, along.at(stage.x_rate, s.moment) - s.v);
     if (mode.finger == ContactState::elastic_stick)
       raise(errors.velocity, along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
-    raise(errors.law, drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
-                          drive_.stiffness * s.x - s.plate_force - s.finger_force -
-                          stage.force.at(s.tau));
+    const T missed = drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
+                     drive_.stiffness * s.x - s.plate_force - s.finger_force -
+                     stage.force.at(s.tau);
+    raise(errors.law, std::max(abs(missed) - unsure(stage, s), T(0)));
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
       if (does == ContactState::slip_oblique)
         raise(errors.friction, oblique_error(u, stage.across.at(s.tau), force, load));
@@ -504,8 +524,10 @@ class Certifier {
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
-    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still && !oblique;
-    const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
+    // What slid before it, and goes on, rests only where its speed is zero.
+    const T u = s.v - stage.plate_velocity.value;
+    const bool on_plate = (plate ? abs(u) <= still : u == 0) && !oblique;
+    const bool on_finger = (finger ? abs(s.v) <= still : s.v == 0) && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
     const Beginning<T> now{s.x,
                            s.v,
@@ -519,7 +541,8 @@ class Certifier {
                            on_finger,
                            plate,
                            finger};
-    worst(result_.transitions, spare_stick_limit(drive_, segment.mode, now), force_scale_);
+    const T spare = spare_stick_limit(drive_, segment.mode, now) - unsure(stage, s);
+    worst(result_.transitions, std::max(spare, T(0)), force_scale_);
   }
 
   static constexpr T never = std::numeric_limits<T>::infinity();

@@ -36,6 +36,7 @@ class CreepFlow : public SeriesStep<T> {
     this->creeps = true;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
+    acceleration_[0] = e.plate_velocity.rate;  // the first guess is that it moves as the plate
     if (e.held || e.side != 0 || !(e.load.value * e.plate_force > 0) || !balance(e, start)) return;
     Real farthest = plain(limit);
     if (e.across.rate < 0)
@@ -47,16 +48,25 @@ class CreepFlow : public SeriesStep<T> {
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
       // What the rounds still change is less than what they changed.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
-      if (round > 1 && abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off))) return;
+      if (!within_step && round > 1 &&
+          abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
+        return;
       before = v;
       expand(e, start, step);
       const Real left = farthest / step;
-      const Real part = within_step ? left : std::min(this->suggested_part(), left);
+      Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
       converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
-      if (!converged) continue;  // the derivatives of a dual number converge one round later
+      // The derivatives of a dual number converge one round later.
+      if (!converged && !(within_step && round + 1 == most_rounds)) continue;
+      if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
-      holds_ = within_step || (bound(e, plain(e.mass) * change(part)) && starts_from(start));
+      holds_ = within_step || bound(e, plain(e.mass) * change(part));
+      for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
+        part *= shorter;
+        this->rescale(shorter);
+        holds_ = bound(e, plain(e.mass) * change(part));
+      }
       break;
     }
     if (holds_) this->trim();
@@ -68,7 +78,8 @@ class CreepFlow : public SeriesStep<T> {
  private:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
-  static constexpr int most_rounds = 16;
+  static constexpr int most_rounds = 16, most_tries = 40;
+  static constexpr Real shorter = 0.75;
   /// Where the force needed is so near the most that friction gives, the layer is never thin.
   static constexpr Real steepest = 1e4;
 
@@ -85,16 +96,19 @@ class CreepFlow : public SeriesStep<T> {
     const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
     T t = t_;
     for (int tries = 0; tries < 60; ++tries) {
-      const T root = sqrt(1 + t * t);
+      const T root = sqrt(1 + t * t), direct = e.plate_force * t / root;
       const T slope = e.plate_force / (root * root * root) + linear;
-      const T move = (needed - e.plate_force * t / root - linear * t) / slope;
+      const T missing = needed - direct - linear * t, move = missing / slope;
+      const bool balanced =
+          abs(missing) <= 4 * unit * (abs(needed) + abs(direct) + abs(linear * t));
       const T most = 1 + abs(t);  // a longer move overshoots where friction is nearly all used
       t += move > most ? most : move < -most ? -most : move;
-      if (!(abs(t) < steepest)) return false;
-      if (abs(move) <= unit * abs(t)) break;
+      if (!(slope > 0 && abs(t) < steepest)) return false;  // falling friction balances nothing
+      if (!balanced) continue;
+      t_ = t;
+      return true;
     }
-    t_ = t;
-    return true;
+    return false;
   }
 
   /// About the time in which creep changes.
@@ -178,14 +192,15 @@ class CreepFlow : public SeriesStep<T> {
     return sum;
   }
 
-  /// Bounds what the series leave out, as SeriesFlow does, with friction that takes energy by the slope γ
-  /// of its force: d(2 E²)/dτ <= 2 (missed e_v − γ e_v²) <= missed²/(2 γ). Whether it is rounding.
+  /// Bounds what the series leave out. The error of the velocity falls where the slope γ of friction times it
+  /// is more than what is missed and what the errors of position and skin, h and g h times it, pull.
+  /// Whether it is rounding.
   bool bound(const SeriesEquation<T>& e, Real missed) {
     using detail::exp;
     using std::abs;
     using std::max;
     using std::sqrt;
-    const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
+    const Real h = span(), k = plain(e.stiffness), b = plain(e.damping);
     const Real f = plain(e.skin_factor), g = plain(e.skin_gain), decay = plain(e.skin_decay);
     const Real F = plain(e.plate_force), S = plain(e.plate_slope);
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
@@ -200,25 +215,35 @@ class CreepFlow : public SeriesStep<T> {
               abs(f) * last(skin, N) + most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
               abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
     const Real missed_skin = abs(g) * last(velocity, N) + abs(decay) * last(skin, N);
-    const Real steep = sqrt(1 + t[0] * t[0]), ratio = g != 0 ? f / g : Real(0);
+    const Real steep = sqrt(1 + t[0] * t[0]);
     const Real gamma = b + least_load * F / (most_w * steep * steep * steep) +
                        std::min(S * load, S * (load + load_change));
-    if (!(gamma > 0)) return false;
-    const Real growth = exp(max(Real(0), -decay) * h);
-    const Real error =  // sqrt(2 E²)
-        growth * (missed * sqrt(h / (2 * gamma)) + h * sqrt(ratio) * missed_skin);
-    v_bound = error / sqrt(m);
-    x_bound = std::min(h * v_bound, error / sqrt(k));
-    skin_bound = ratio > 0 ? error / sqrt(ratio) : Real(0);
+    const Real grown = exp(max(Real(0), -decay) * h) * h;
+    const Real left = gamma - k * h - abs(f * g) * grown;
+    if (!(left > 0)) return false;
+    v_bound = (missed + abs(f) * grown * missed_skin) / left;
+    x_bound = h * v_bound;
+    skin_bound = grown * (abs(g) * v_bound + missed_skin);
     speed_bound = v_bound + most_w * root;
-    return v_bound <= rounding_of(v) && (ratio == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
+    return v_bound <= rounding_of(v) && (f == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
   }
   static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
 
   /// Whether the pin has the velocity of creep: what it is off by, less than rounding, fades at once.
-  bool starts_from(const SeriesState<T>& start) const {
+  bool starts_from(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     using std::abs;
-    return abs(plain(start.v - velocity.c[0])) <= 16 * unit * sums_of(velocity.c)[0];
+    return abs(plain(start.v - velocity.c[0])) <=
+           16 * unit * sums_of(velocity.c)[0] + unsure(e, start);
+  }
+  /// What the rounding of the forces makes of that velocity, where friction is steepest.
+  Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
+    using std::abs;
+    const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
+                       abs(plain(e.damping) * plain(start.v)) +
+                       plain(e.stiffness) * abs(plain(start.x)) +
+                       abs(plain(e.skin_factor) * plain(start.skin));
+    return 16 * unit * sizes * plain(e.across.value) /
+           (plain(e.load.value) * plain(e.plate_force));
   }
 
   T t_{0};                               // at the start

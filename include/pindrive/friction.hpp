@@ -180,7 +180,9 @@ struct Touch {
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (does.at == Bound::none) return true;
     if (oblique()) {
-      const T faster = slides(s.v, surface.rate + first).closing();
+      const ObliqueSlip<T> slip = slides(s.v, surface.rate + first);
+      const T closing = slip.closing(), known = slip.rounding_of(surface.value);
+      const T faster = touches(closing, slip.parting(), known) ? slip.parting() : closing;
       return (does.at == Bound::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;

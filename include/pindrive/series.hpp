@@ -68,20 +68,23 @@ class SeriesFlow : public SeriesStep<T> {
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
            abs(plain(e.skin_decay)) + sqrt((plain(e.stiffness) + abs(coupling)) / m);
   }
-  /// … and the one at which that turns the direction of sliding.
+  /// … and the one at which the direction of sliding turns.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     using detail::hypot;
     using std::abs;
     if (e.side != 0) return Real(0);
-    const Real m = plain(e.mass), load = abs(plain(e.load.value));
+    const Real m = plain(e.mass), friction = abs(plain(e.load.value) * plain(e.plate_force));
     const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
-    const Real pull = abs(plain(e.force.value)) + abs(plain(e.stiffness) * plain(s.x)) +
-                      abs(plain(e.damping) * plain(s.v)) +
-                      abs(plain(e.skin_factor) * plain(s.skin)) +
-                      load * (abs(plain(e.plate_slope) * u) + abs(plain(e.plate_force)));
+    const Real pull = plain(e.force.value) - plain(e.stiffness) * plain(s.x) -
+                      plain(e.damping) * plain(s.v) - plain(e.skin_factor) * plain(s.skin) -
+                      plain(e.load.value) * plain(e.plate_slope) * u;
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
-    const Real rates = e.held ? turns : pull / m + turns;
-    return sets_out(e, s) ? rates / turns * linear_rate(e) : rates / hypot(u, w);
+    if (sets_out(e, s))
+      return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
+    const Real speed = hypot(u, w), along = u / speed, across = w / speed;
+    // What friction takes from the pull, and how fast it turns with the velocity.
+    const Real left = abs(pull - friction * along) + friction * across * across;
+    return (e.held ? turns : left / m + turns) / speed;
   }
 
   /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
@@ -225,7 +228,8 @@ class SeriesFlow : public SeriesStep<T> {
       const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
       const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
       const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
-      if (!(least > 0)) return false;
+      // The square of r is known to the rounding of its largest.
+      if (!(least > r[0] / 16)) return false;
       root = (beyond(r, r) + beyond(p, p)) / least;
       direction = (beyond(r, d) + d[0] * root) / least;
     }

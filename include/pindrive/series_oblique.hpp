@@ -18,8 +18,15 @@ template <class T>
 struct ObliqueSlip {
   Line<T> u, w;  ///< m/s
 
-  /// ρ ρ': positive where the plate slides ever faster.
+  /// ρ ρ': positive where the plate slides ever faster, …
   T closing() const { return u.value * u.rate + w.value * w.rate; }
+  /// … and its rate, where that is zero to rounding: then the pin has its least speed.
+  T parting() const { return u.rate * u.rate + w.rate * w.rate; }
+  /// What ρ²/2 is known to beside a surface of this velocity.
+  T rounding_of(T surface) const {
+    using std::abs;
+    return rounding<T> * speed() * (speed() + abs(surface));
+  }
   T force_rate(const Branch<T>& branch, const Line<T>& load) const {
     const T strength = at_rest(branch);
     return -load.rate * (strength * along() + branch.slope * u.value) -
@@ -62,6 +69,7 @@ bool asks_across(Side& side, T u, Bound& at) {
   const auto& contact = side.contact;
   if (side.across.value == 0 && side.across.rate == 0) {
     if (!side.oblique()) return false;
+    at = Bound::none;  // that of another speed
     side.does = {ContactState::stick, Bound::none, 0, T(0)};
     if (u != 0)
       side.does = Side::slip(u < 0 ? T(-1) : T(1), Bound::none, contact.branch_of(u < 0 ? -u : u));
@@ -69,8 +77,10 @@ bool asks_across(Side& side, T u, Bound& at) {
   }
   if (!contact.present()) return false;
   const T speed = hypot(u, side.across.value);
-  if (!side.oblique())
+  if (!side.oblique()) {
+    at = Bound::none;
     side.does = {ContactState::slip_oblique, Bound::none, contact.branch_of(speed), T(0)};
+  }
   const Branch<T> range = side.branch();
   if (at == Bound::none && speed >= range.to) at = Bound::upper;
   if (at == Bound::none && !(speed > range.from || side.does.branch == 0)) at = Bound::lower;

@@ -62,7 +62,10 @@ class SeriesStep {
     each([&](Polynomial<T>& p) {
       p.span *= part;
       Real factor{1};
-      for (int n = 0; n <= p.degree; ++n, factor *= part) p.c[n] *= factor;
+      for (T& c : p.c) {
+        c *= factor;
+        factor *= part;
+      }
     });
   }
 
@@ -80,13 +83,14 @@ class SeriesStep {
     return sum;
   }
 
-  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer.
+  /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer: of
+  /// the velocity those that are rounding of the acceleration.
   void trim() {
     using std::abs;
     int needed = 1;
     Real dropped{0};
     for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {
-      const auto size = [&](int n) { return abs(plain(p->c[n])); };
+      const auto size = [&](int n) { return abs(plain(p->c[n])) * (p == &velocity ? n : 1); };
       Real total{0}, tail{0};
       for (int n = 0; n <= N; ++n) total += size(n);
       int n = N;

@@ -1,4 +1,4 @@
-/// Random drives and inputs over many decades. Each is drawn from its seed and number alone, so
+/// Random drives and inputs over many decades. Each is drawn from its family, seed and number alone, so
 /// that any of them can be drawn again.
 #pragma once
 
@@ -30,9 +30,13 @@ class Random {
   std::uint64_t counter_;
 };
 
+/// Of the hands: along the axis, across it too, or one in ten across.
+enum class Family { any, aligned, oblique };
+
 class Draw {
  public:
-  Draw(std::uint64_t seed, std::uint64_t number) : random_(seed, number) {}
+  Draw(std::uint64_t seed, std::uint64_t number, Family family = Family::any)
+      : random_(seed, number), family_(family) {}
 
   Case next() {
     Case c;
@@ -72,6 +76,9 @@ class Draw {
     const auto touch = [&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); };
     if (coulomb && chance(0.2))
       c.finger_load = std::isinf(c.skin) ? profile(touch, last, 0.3) : Rows{{0}, {touch()}};
+    // Last, so that what an aligned hand has does not depend on the family.
+    const bool oblique = chance(0.1);
+    if (family_ == Family::oblique || (family_ == Family::any && oblique)) c.across = across();
     return c;
   }
 
@@ -107,6 +114,13 @@ class Draw {
     return rows;
   }
 
+  /// From far below the speeds, where creep is thin, to beyond them; one in three rows is zero.
+  Rows across() {
+    const double size = speed_ * decade(chance(0.5) ? -2 : -8, 0.5);
+    double last = 0;
+    return profile([&] { return chance(0.3) ? 0 : tidy(size * uniform(-1, 1)); }, last);
+  }
+
   /// Now and then a load steps: two rows at one time.
   template <class Value>
   Rows profile(Value&& value, double& last, double steps = 0) {
@@ -124,6 +138,7 @@ class Draw {
   }
 
   Random random_;
+  Family family_;
   bool round_{false}, long_{false};
   double force_{}, speed_{}, period_{};
 };

@@ -1,6 +1,6 @@
 // Draws drives and inputs over many decades, runs each and judges it by the laws of motion alone.
 //
-//   fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]
+//   fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE] [--family NAME]
 //   fuzz --replay FILE…
 //
 // The cases NUMBER … NUMBER + COUNT − 1 of a seed; the result does not depend on the threads. The
@@ -19,7 +19,6 @@
 #include <thread>
 #include <vector>
 
-#include "draw.hpp"
 #include "judge.hpp"
 #include "totals.hpp"
 
@@ -38,9 +37,7 @@ struct Options {
 // ---- one stretch of cases ------------------------------------------------------------------------
 
 Verdict judged(const Range& range, long long number, std::vector<pd::Segment<double>>& segments) {
-  const Case c =
-      Draw(static_cast<std::uint64_t>(range.seed), static_cast<std::uint64_t>(number)).next();
-  return judge(c, number % 64 == 0, segments);
+  return judge(range.at(number), number % 64 == 0, segments);
 }
 
 /// The cases begin … end − 1, taken by the threads a few at a time.
@@ -75,9 +72,7 @@ void report(const Options& options, const Totals& before, const Totals& found) {
     const std::string name =
         "fuzz-" + std::to_string(options.range.seed) + "-" + std::to_string(number) + ".txt";
     std::ofstream file(name);
-    write(file,
-          Draw(static_cast<std::uint64_t>(options.range.seed), static_cast<std::uint64_t>(number))
-              .next());
+    write(file, options.range.at(number));
     print(name.c_str(), judged(options.range, number, segments));
     std::fflush(stdout);
   }
@@ -98,8 +93,9 @@ bool take_up(const Options& options, Totals& totals) {
   if (options.log.empty() || !in) return true;
   Range range;
   if (read(in, range, totals) && range == options.range) return true;
-  std::fprintf(stderr, "fuzz: %s is not the log of seed %lld from %lld\n", options.log.c_str(),
-               options.range.seed, options.range.from);
+  std::fprintf(stderr, "fuzz: %s is not the log of seed %lld from %lld, family %s\n",
+               options.log.c_str(), options.range.seed, options.range.from,
+               families[static_cast<std::size_t>(options.range.family)]);
   return false;
 }
 
@@ -174,6 +170,7 @@ bool parse(const std::vector<std::string>& words, Options& options) {
     const std::string& value = words[i + 1];
     long long threads = 1;
     if (words[i] == "--from" && whole(value, options.range.from)) continue;
+    if (words[i] == "--family" && read(value, options.range.family)) continue;
     if (words[i] == "--threads" && whole(value, threads) && threads >= 1 && threads <= 1024)
       options.threads = static_cast<int>(threads);
     else if (words[i] == "--log" && !value.empty())
@@ -196,6 +193,7 @@ int main(int argc, char** argv) {
   if (!parse(words, options)) {
     std::fprintf(stderr,
                  "usage: fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]\n"
+                 "                       [--family any|aligned|oblique]\n"
                  "       fuzz --replay FILE...\n");
     return 2;
   }

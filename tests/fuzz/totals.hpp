@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "draw.hpp"
 #include "judge.hpp"
 
 namespace fuzz {
@@ -76,17 +77,32 @@ struct Totals {
   }
 };
 
+inline constexpr std::array<const char*, 3> families{"any", "aligned", "oblique"};
+
+/// The family of a name; false if there is none.
+inline bool read(const std::string& name, Family& family) {
+  const auto found = std::find(families.begin(), families.end(), name);
+  family = static_cast<Family>(found - families.begin());
+  return found != families.end();
+}
+
 /// Which cases of which seed.
 struct Range {
   long long count{0}, seed{0}, from{0};
+  Family family{Family::any};
 
+  Case at(long long number) const {
+    return Draw(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(number), family)
+        .next();
+  }
   friend bool operator==(const Range& a, const Range& b) {
-    return a.seed == b.seed && a.from == b.from;
+    return a.seed == b.seed && a.from == b.from && a.family == b.family;
   }
 };
 
 inline void write(std::ostream& out, const Range& range, const Totals& totals) {
-  out << "seed " << range.seed << " from " << range.from << '\n'
+  out << "seed " << range.seed << " from " << range.from << " family "
+      << families[static_cast<std::size_t>(range.family)] << '\n'
       << "drives " << totals.drives << " of " << range.count << '\n'
       << "segments " << totals.segments << '\n'
       << "of_zero_length " << totals.instants << '\n'
@@ -103,16 +119,16 @@ inline void write(std::ostream& out, const Range& range, const Totals& totals) {
 
 /// False if the text is no such log.
 inline bool read(std::istream& in, Range& range, Totals& totals) {
-  std::string word;
+  std::string word, family;
   std::size_t failures = 0;
-  in >> word >> range.seed >> word >> range.from >> word >> totals.drives >> word >> range.count >>
+  in >> word >> range.seed >> word >> range.from >> word >> family >> word >> totals.drives >> word >> range.count >>
       word >> totals.segments >> word >> totals.instants >> word >> totals.inconsistent >> word >>
       totals.most_segments.value >> word >> totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
   for (long long number = 0; failures > 0 && in >> number; --failures)
     totals.failed.push_back(number);
-  return static_cast<bool>(in);
+  return in && read(family, range.family);
 }
 
 /// Replaces the log whole, so that it is never half-written.
