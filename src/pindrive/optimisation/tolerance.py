@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.optimisation.goals import Variable, Wish
 from pindrive.optimisation.problem import Problem
-from pindrive.optimisation.wish import Variable, Wish
+from pindrive.study.compliance import Share
 from pindrive.study.distributions import Sample, implied_links
-from pindrive.study.robustness import Share
 from pindrive.study.spec import plan_of
 
 if TYPE_CHECKING:

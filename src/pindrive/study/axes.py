@@ -8,13 +8,11 @@ from math import inf
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.files.device import keys_meant, not_known
-from pindrive.files.schema import number, written
+from pindrive.files.keys import has_part, keys_meant, not_known, number, written
 from pindrive.files.template import DRIVE, NUMBERS, TABLES, usual
 from pindrive.quantities import budgets
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
-from pindrive.study.design import has_part
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
 
 if TYPE_CHECKING:

@@ -8,22 +8,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.device.reading import Page
-from pindrive.files.device import (
-    ConfigError,
-    Setting,
-    device_of,
-    keys_meant,
-    read_tables,
-    settings_of,
-)
+from pindrive.device.page_description import Page
+from pindrive.files.device import ConfigError, Setting, device_of, read_tables, settings_of
+from pindrive.files.keys import keys_meant, variable
 from pindrive.files.recording import is_file
 from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.quantities import budgets
-from pindrive.quantities.table import hint, refusal
+from pindrive.quantities.refusal import hint, refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import AxisReader, sweepable, written_axes
-from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page, variable
+from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page
 from pindrive.study.distributions import (
     MOST_SOBOL,
     Axis,
@@ -280,7 +274,10 @@ class _Reader:
         """The variables to keep, each once, with the status of every point."""
         given = self._tables.get("outputs")
         if given is None:
-            return usual_outputs(self._device, set(self._swept), self.among)
+            rigid = self._device.drive.finger.rigid and "finger.stiffness" not in self._swept
+            whole = self._device.whole
+            coil = whole is not None and whole.magnet().coil is not None
+            return usual_outputs(self.among, rigid=rigid, coil=coil)
         if not isinstance(given, list) or not given:
             required = 'a list of numbers, like ["settling_time", "swing"]'
             self._problems.append(refusal("outputs", required, quoted(given), self._file))

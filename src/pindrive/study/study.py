@@ -10,11 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.device.reading import Page
+from pindrive.device.page_description import Page
 from pindrive.files.device import DeviceFile
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.study.axes import as_written
 from pindrive.study.design import Plan
 from pindrive.study.runner import Work, on_cluster, on_threads, sweep
