@@ -27,7 +27,7 @@ from pindrive.files.schema import (
     release_of,
     table_of,
 )
-from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES, WHOLE
+from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES
 from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
@@ -153,6 +153,10 @@ class DeviceFile:
 
         What changes is its rows: (speed, force) or (time, value).
         """
+        return self.values_of_drive() | (self.whole.in_si() if self.whole else {})
+
+    def values_of_drive(self) -> dict[str, float | Rows | None]:
+        """The same of the drive and its motion alone."""
         drive = self.drive
         contacts = {"plate": drive.plate, "finger": drive.finger}
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
@@ -164,8 +168,6 @@ class DeviceFile:
             return getattr(self.release if table == "motion" else drive, name)
 
         values = {key: own[key] if key in own else value(key, q) for key, q in DRIVE.items()}
-        if self.whole:
-            values |= {key: self.whole.value(key) for key in WHOLE}
         return {
             key: value.rows if isinstance(value, Profile) else None if value == inf else value
             for key, value in values.items()
@@ -454,6 +456,6 @@ def _text_problems(given: Mapping[str, Any], place: Place) -> list[str]:
 
 def _warn(device: DeviceFile, place: Place) -> None:
     """Warn of values that no such device has, with the place where each was written."""
-    for key, value in device.values().items():
-        if key in DRIVE and value is not None:
+    for key, value in device.values_of_drive().items():
+        if value is not None:
             warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, cast
 
 from pindrive.files.template import DRIVE, KEYS, NUMBERS, TABLES
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
@@ -53,15 +53,22 @@ def not_known(key: str, *, tables: bool = True) -> str:
     return f"unknown key {said}; there are {', '.join(known)}"
 
 
-def number(value: object, quantity: Quantity, example: str, label: str, place: str) -> float:
-    """What TOML gave, in SI: text with a unit, or a bare number where the quantity has no unit."""
+def number(
+    value: object, quantity: Quantity, example: str, label: str, place: str, *, si: bool = False
+) -> float:
+    """A value in SI: text with a unit, or a bare number where the quantity has no unit.
+
+    With `si`, of what Python gave, a bare number is SI whatever the unit.
+    """
     bare = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if bare and si:
+        return check(quantity.name, float(cast(float, value)), where=place, label=label)
     text = value if isinstance(value, str) else repr(value) if bare else ""
     try:
-        si = to_si(text, quantity.unit, example)
+        found = to_si(text, quantity.unit, example)
     except UnitError as error:
         raise ValueError(refusal(label, str(error), quoted(value), place)) from None
-    return check(quantity.name, si, where=place, label=label, given=quoted(value))
+    return check(quantity.name, found, where=place, label=label, given=quoted(value))
 
 
 def written(key: str, value: float) -> str | float:

@@ -18,7 +18,7 @@ from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
 from pindrive.files.keys import Tables, friction_parts, number, written
-from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
+from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual, usual_rows
 from pindrive.motion.drive import (
     SLOPES,
     Contact,
@@ -292,16 +292,15 @@ class Whole:
         """What counts as felt."""
         return Criteria(**table_of(self.values, "judge"))
 
-    def value(self, key: str) -> Value:
-        """The value of a key, SI, given or not; None where nothing was given and nothing holds."""
-        table, _, name = key.partition(".")
-        value = self.values[key]
-        if table == "magnet" and name in (*COIL, *DIRECT):
-            magnet = self.magnet()
-            if name in COIL:
-                return None if magnet.coil is None else getattr(magnet.coil, name)
-            return value if magnet.coil is None else getattr(magnet, name)
-        return None if name in _GRID and self.values["array.places"] is not None else value
+    def in_si(self) -> dict[str, Value]:
+        """The value of each key, given or not; None where nothing was given and nothing holds."""
+        magnet, found = self.magnet(), {key: self.values[key] for key in WHOLE}
+        found |= {f"magnet.{name}": getattr(magnet.coil, name, None) for name in COIL}
+        if magnet.coil is not None:
+            found |= {f"magnet.{name}": getattr(magnet, name) for name in DIRECT}
+        if found["array.places"] is not None:
+            found |= dict.fromkeys((f"array.{name}" for name in _GRID), None)
+        return found
 
     def problems(self, given: dict[str, Any], place: Place) -> list[str]:
         """What does not fit together; `given` is the file's tables."""

@@ -94,6 +94,7 @@ class Wish:
             None: none is demanded.
         goals: one to three, the first the most important.
         catalogues: whose parts are chosen.
+        si: whether bare numbers in `tables` are SI, as from Python.
     """
 
     plan: Plan
@@ -104,6 +105,7 @@ class Wish:
     least_yield: float | None
     goals: tuple[Goal, ...]
     catalogues: tuple[Catalogue, ...]
+    si: bool
 
     @property
     def inputs(self) -> tuple[Path, ...]:

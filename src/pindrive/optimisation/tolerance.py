@@ -42,7 +42,8 @@ def excess_as_built(
     tables = {"tolerances": wish.tables["tolerances"]}
     if wish.plan.page:
         tables["page"] = wish.plan.page.page
-    plan = plan_of(tables, device, path=wish.plan.path, place=str(wish.plan.path), text="")
+    file = wish.plan.path
+    plan = plan_of(tables, device, path=file, place=str(file), text="", si=wish.si)
     keys = [*plan.tolerances]
     varied = {*keys, *(key for condition in problem.conditions for key in condition.axes)}
     parts = Sample(tuple(keys), draws, seed).parts(np.arange(draws)).T

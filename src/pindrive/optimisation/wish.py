@@ -26,7 +26,7 @@ from pindrive.optimisation.goals import PRICE, SPEED, YIELD, Goal, Variable, Wis
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import quoted
-from pindrive.study.axes import as_written, written_axes
+from pindrive.study.axes import as_read, written_axes
 from pindrive.study.design import COUNTS, Dimension, Plan, read_page
 from pindrive.study.distributions import Distribution
 from pindrive.study.outputs import (
@@ -76,7 +76,7 @@ def read_wish(
         raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
     problems = [*_unknown(tables, file)]
     own, text = device_in(tables, file, overrides, problems)
-    return _wish(tables, device or own, file, str(file), text, problems)
+    return _wish(tables, device or own, file, str(file), text, problems, si=False)
 
 
 def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
@@ -97,7 +97,7 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     problems = [*_unknown(given, Path("wish"))]
     for name in ("axes", "conditions", "tolerances"):
         if name in given:
-            given[name] = as_written(given[name])
+            given[name] = as_read(given[name], name)
     if isinstance(given.get("page"), str):
         given["page"] = Page(text=given["page"])
     if isinstance(given.get("page"), Mapping):
@@ -105,7 +105,7 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     if isinstance(given.get("page"), Page):
         given["page"].check("page.{}")
     text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
-    return _wish(given, device, device.path, "wish", text, problems)
+    return _wish(given, device, device.path, "wish", text, problems, si=True)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
@@ -128,6 +128,8 @@ def _wish(
     place: str,
     text: str,
     problems: list[str],
+    *,
+    si: bool,
 ) -> Wish:
     scans = "page" in tables
     for name in (*_BESIDE, "axes", "tolerances", "specification"):
@@ -165,7 +167,7 @@ def _wish(
     study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
     chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
     study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
-    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems)
+    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems, si=si)
     problems += _contradictions(plan, demanded, goals, catalogues, place)
     problems += _no_ranges(plan, conditions, place)
     if problems:
@@ -180,6 +182,7 @@ def _wish(
         least_yield=least,
         goals=goals,
         catalogues=catalogues,
+        si=si,
     )
 
 

@@ -82,6 +82,7 @@ def plan_of(
     place: str,
     text: str,
     problems: Iterable[str] = (),
+    si: bool = False,
 ) -> Plan:
     """The study of a device that the tables of a study file describe.
 
@@ -93,6 +94,7 @@ def plan_of(
         place: where the tables were written, for messages.
         text: the same as text, to be kept with the numbers.
         problems: what was found wrong before.
+        si: whether bare numbers are SI, as from Python.
 
     Raises:
         ConfigError: anything unknown, malformed, out of bounds or contradictory.
@@ -102,7 +104,7 @@ def plan_of(
     if isinstance(tables.get("page"), Page):
         page = _gathered(tables["page"], place, problems)
         device = device if device.whole else device.with_whole()
-    reader = _Reader(place, tables, device, problems)
+    reader = _Reader(place, tables, device, problems, si)
     demanded = demands(reader.table("specification"), place, problems, reader.among)
     plan = Plan(
         path=path,
@@ -224,10 +226,15 @@ class _Reader:
     """Reads the tables of one study file; what is wrong is appended to `problems`."""
 
     def __init__(
-        self, file: str, tables: Mapping[str, Any], device: DeviceFile, problems: list[str]
+        self,
+        file: str,
+        tables: Mapping[str, Any],
+        device: DeviceFile,
+        problems: list[str],
+        si: bool,
     ) -> None:
         self._file, self._tables, self._device = file, tables, device
-        self._problems, self._scans = problems, "page" in tables
+        self._problems, self._scans, self._si = problems, "page" in tables, si
         self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
         axes = self._axes("axes") | self._axes("conditions")
         self.links = self._links(axes)
@@ -310,7 +317,9 @@ class _Reader:
                 names[key] = given
                 base = base_value(self._device, key)
                 number = base if isinstance(base, float) else None
-                found[key] = AxisReader(self._file, table, key, number, self._scans).read(spec)
+                found[key] = AxisReader(
+                    self._file, table, key, number, scans=self._scans, si=self._si
+                ).read(spec)
             except ValueError as error:
                 self._problems.append(str(error))
         return found
