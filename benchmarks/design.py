@@ -25,6 +25,7 @@ from scipy import optimize
 import pindrive as pd
 from pindrive.optimisation import Design, Wish, line_speed, read_wish
 from pindrive.optimisation.effort import Count
+from pindrive.optimisation.line_speed import speeds
 from pindrive.optimisation.problem import Problem, worst_cases
 from pindrive.optimisation.search import Population, non_dominated
 from pindrive.optimisation.wish import wish_of
@@ -69,6 +70,7 @@ def problem_of(wish: Wish, cases: Array) -> Problem:
         links=wish.plan.links,
         demands=wish.demands,
         goals=wish.goals,
+        line_speeds=speeds,
         count=Count(),
     )
 

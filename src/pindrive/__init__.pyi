@@ -3,7 +3,7 @@
 from pindrive.device.device import Device as Device
 from pindrive.device.hand import HandPath as HandPath
 from pindrive.device.page import Scene as Scene
-from pindrive.device.reading import Page as Page
+from pindrive.device.page_description import Page as Page
 from pindrive.device.scanning import Scan as Scan
 from pindrive.device.scanning import scan as scan
 from pindrive.files.device import load_device as load_device
@@ -12,9 +12,9 @@ from pindrive.fitting.friction_curve import fit_friction as fit_friction
 from pindrive.fitting.recording import Recording as Recording
 from pindrive.fitting.recording import read_recording as read_recording
 from pindrive.motion.batch import simulate_batch as simulate_batch
-from pindrive.motion.contact import Contact as Contact
+from pindrive.motion.drive import Contact as Contact
 from pindrive.motion.drive import Drive as Drive
-from pindrive.motion.drive import Profile as Profile
+from pindrive.motion.profile import Profile as Profile
 from pindrive.motion.motion import Motion as Motion
 from pindrive.motion.release import Release as Release
 from pindrive.motion.simulate import simulate as simulate

@@ -108,7 +108,7 @@ def changed(**tables: Any) -> dict[str, Any]:
         (changed(condition={}), 'wish: unknown key "condition"; did you mean conditions?'),
         (
             changed(conditions=[1.0]),
-            'axes must be a mapping, like {"mass": [0.01, 0.02]}, got [1.0]',
+            'conditions must be a mapping, like {"mass": [0.01, 0.02]}, got [1.0]',
         ),
     ],
 )

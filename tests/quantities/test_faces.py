@@ -15,13 +15,13 @@ from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray
 from pindrive.device.reading import Reading
 from pindrive.evaluation import Criteria
+from pindrive.files.keys import variable
 from pindrive.files.template import NUMBERS
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.table import QUANTITIES
-from pindrive.study.design import variable
 from pindrive.study.outputs import OUTPUTS, known_output
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "pindrive"

@@ -24,7 +24,8 @@ from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
 from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL as MADE_OF
-from pindrive.device.reading import Page, Reading
+from pindrive.device.page_description import Page
+from pindrive.device.reading import Reading
 from pindrive.evaluation import Criteria, Judgement, judge
 from pindrive.files.output import OutputError
 from pindrive.files.template import NUMBERS

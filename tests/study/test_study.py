@@ -178,7 +178,7 @@ def test_draws_that_cannot_exist_are_said_in_the_status(mouse: DeviceFile) -> No
     [
         (
             {"axes": {"mass": [0.01, -0.01]}},
-            'Study: axes.drive.mass[1] must be finite and greater than 0 kg, got "-0.01 kg"',
+            "Study: axes.drive.mass[1] must be finite and greater than 0 kg, got -0.01 kg",
         ),
         ({"axes": {"mass": ["1 s"]}}, "Study: axes.drive.mass[0] must be in kg or a unit alike"),
         ({"axes": {"stiffness": [1.0]}}, "Study: axes: give the key in full, drive.stiffness or"),

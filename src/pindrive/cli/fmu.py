@@ -37,7 +37,7 @@ def fmu(
     from pindrive.files.device import load_device
     from pindrive.files.fmu import variables_of, write_fmu
     from pindrive.files.output import FMU, Output, naming, writing
-    from pindrive.motion.drive import Profile
+    from pindrive.motion.profile import Profile
 
     with refusing():
         device = load_device(file, overrides or ())

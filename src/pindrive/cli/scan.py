@@ -88,7 +88,7 @@ def scan(
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
 
-        from pindrive.device.reading import Page
+        from pindrive.device.page_description import Page
         from pindrive.device.scanning import scan as follow
         from pindrive.evaluation.perception import judge
 

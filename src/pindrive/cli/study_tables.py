@@ -13,7 +13,7 @@ from rich.console import Group
 
 from pindrive.cli.tables import new_table, whole_lines
 from pindrive.files import template
-from pindrive.files.device import keys_meant
+from pindrive.files.keys import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
@@ -32,10 +32,11 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
+    from pindrive.study.compliance import Share
     from pindrive.study.design import Plan
     from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
-    from pindrive.study.robustness import Robustness, Share, WorstCase
+    from pindrive.study.robustness import Robustness, WorstCase
     from pindrive.study.runner import Result
     from pindrive.study.sensitivity import Influence
 

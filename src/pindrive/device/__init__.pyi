@@ -1,7 +1,7 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
 from pindrive.device.coil import Coil as Coil
-from pindrive.device.controller import Commands as Commands
+from pindrive.device.current import Commands as Commands
 from pindrive.device.controller import ControlBlock as ControlBlock
 from pindrive.device.controller import Decision as Decision
 from pindrive.device.current import CoilState as CoilState
@@ -14,7 +14,7 @@ from pindrive.device.hand import lines as lines
 from pindrive.device.hand import strokes as strokes
 from pindrive.device.page import Scene as Scene
 from pindrive.device.pin_array import PinArray as PinArray
-from pindrive.device.reading import Page as Page
+from pindrive.device.page_description import Page as Page
 from pindrive.device.reading import Reading as Reading
 from pindrive.device.recording import Recording as Recording
 from pindrive.device.recording import read_csv as read_csv

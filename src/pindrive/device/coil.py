@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 from pindrive.device.current import VoltageSteps
 from pindrive.device.heating import Heat
-from pindrive.motion.contact import check_increasing
-from pindrive.quantities.table import check, checked, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_increasing
+from pindrive.quantities.table import check, checked, default
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

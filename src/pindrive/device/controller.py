@@ -8,35 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pindrive.device.current import Commands
 from pindrive.quantities import budgets
-from pindrive.quantities.table import checked, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import checked, default
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from pindrive.quantities.table import Number
-
-
-@dataclass(frozen=True, slots=True)
-class Commands:
-    """On and off of one coil over time."""
-
-    times: NDArray[np.float64]
-    """When it is switched, s, shape (n,), increasing."""
-    at_first: bool = False
-    """Whether it is on before the first."""
-
-    def on(self, t: ArrayLike) -> NDArray[np.bool_]:
-        """Whether it is on at time t (s), any shape; at a switching, as switched."""
-        count = np.searchsorted(self.times, np.asarray(t, np.float64), "right")
-        on: NDArray[np.bool_] = (count % 2 == 1) ^ self.at_first
-        return on
-
-    def spans(self, begin: float, end: float) -> list[tuple[float, float]]:
-        """From when to when (s) it is on between two times."""
-        inside = self.times[(self.times > begin) & (self.times < end)].tolist()
-        edges = [begin, *inside] if self.on(begin) else inside
-        return list(zip(edges[::2], [*edges[1::2], end], strict=False))
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from pindrive.quantities import budgets
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from pindrive.device.controller import Commands
     from pindrive.device.heating import Heat
 
 
@@ -215,3 +214,25 @@ def current_after(start: float, target: float, constants: float) -> float:
     """A current that tends to `target`, so many time constants later."""
     left = exp(-constants)
     return 1.0 - (1.0 - start) * left if target == 1.0 else target + (start - target) * left
+
+
+@dataclass(frozen=True, slots=True)
+class Commands:
+    """On and off of one coil over time."""
+
+    times: NDArray[np.float64]
+    """When it is switched, s, shape (n,), increasing."""
+    at_first: bool = False
+    """Whether it is on before the first."""
+
+    def on(self, t: ArrayLike) -> NDArray[np.bool_]:
+        """Whether it is on at time t (s), any shape; at a switching, as switched."""
+        count = np.searchsorted(self.times, np.asarray(t, np.float64), "right")
+        on: NDArray[np.bool_] = (count % 2 == 1) ^ self.at_first
+        return on
+
+    def spans(self, begin: float, end: float) -> list[tuple[float, float]]:
+        """From when to when (s) it is on between two times."""
+        inside = self.times[(self.times > begin) & (self.times < end)].tolist()
+        edges = [begin, *inside] if self.on(begin) else inside
+        return list(zip(edges[::2], [*edges[1::2], end], strict=False))

@@ -10,7 +10,8 @@ from pindrive.device.electromagnet import Electromagnet
 from pindrive.device.pin_array import PinArray
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Contact, Drive
-from pindrive.quantities.table import checked, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import checked, default
 
 if TYPE_CHECKING:
     import numpy as np

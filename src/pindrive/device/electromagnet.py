@@ -17,14 +17,15 @@ import numpy as np
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil, check_poles
 from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
 from pindrive.quantities import budgets
-from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES, check, checked, default
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from pindrive.device.controller import Commands
+    from pindrive.device.current import Commands
     from pindrive.quantities.table import Number, OptionalNumber
 
 AT_ONCE: Final = 0.01

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.motion.contact import check_increasing
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_increasing
+from pindrive.quantities.table import check, default
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

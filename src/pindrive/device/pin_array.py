@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import check, default
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -26,10 +26,11 @@ import numpy as np
 
 from pindrive.device.hand import HandPath
 from pindrive.lazy import signal
-from pindrive.motion.contact import check_increasing
 from pindrive.quantities import budgets
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.table import QUANTITIES, check, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_increasing
+from pindrive.quantities.table import QUANTITIES, check, default
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -11,32 +11,35 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from os import PathLike, fspath
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
 from pindrive import lazy
-from pindrive.device.controller import Commands, Decision
-from pindrive.device.current import CoilState, Current, commanded_spans
+from pindrive.device.controller import Decision
+from pindrive.device.current import CoilState, Commands, Current, commanded_spans
 from pindrive.device.device import Criteria, Device
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
+from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
-from pindrive.device.reading import Page, Reading
+from pindrive.device.reading import Reading
 from pindrive.device.trajectory import Way, check_vibration, peak_displacement
 from pindrive.lazy import xr
-from pindrive.motion.drive import Drive, Profile
+from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import SimulationError, Status
-from pindrive.quantities.table import check, default, refusal
+from pindrive.quantities.table import check, default
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -414,7 +417,7 @@ def scan(
             else page.hand(reading, scene, whole.array)
         )
     else:
-        path = hand if isinstance(hand, HandPath) else reading.record(fspath(hand))
+        path = hand if isinstance(hand, HandPath) else recorded(hand, reading)
     if start is not None and len(start) != len(whole.array):
         required = f"one state for each pin, {len(whole.array)}"
         raise ValueError(refusal("start", required, str(len(start))))

@@ -38,7 +38,8 @@ from pindrive.evaluation.perception import JudgedPin
 from pindrive.evaluation.results import Line
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import check, default
 
 PHASES: Final = 4
 TRIED: Final = 32

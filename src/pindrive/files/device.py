@@ -5,17 +5,16 @@ Whatever is wrong is found in one pass and said in lines that name file, key, va
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import inf
 from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pindrive.files.keys import keys_meant, nearest, not_known, written
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
@@ -27,14 +26,15 @@ from pindrive.files.schema import (
     read_values,
     release_of,
     table_of,
-    written,
 )
-from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES, WHOLE
-from pindrive.motion.drive import Drive, Profile
+from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES
+from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Quantity, Rows, counted
-from pindrive.quantities.table import refusal, warn_of
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -153,6 +153,10 @@ class DeviceFile:
 
         What changes is its rows: (speed, force) or (time, value).
         """
+        return self.values_of_drive() | (self.whole.in_si() if self.whole else {})
+
+    def values_of_drive(self) -> dict[str, float | Rows | None]:
+        """The same of the drive and its motion alone."""
         drive = self.drive
         contacts = {"plate": drive.plate, "finger": drive.finger}
         own = {"motion.duration": self.duration, "motion.settling_band": self.settling_band}
@@ -164,8 +168,6 @@ class DeviceFile:
             return getattr(self.release if table == "motion" else drive, name)
 
         values = {key: own[key] if key in own else value(key, q) for key, q in DRIVE.items()}
-        if self.whole:
-            values |= {key: self.whole.value(key) for key in WHOLE}
         return {
             key: value.rows if isinstance(value, Profile) else None if value == inf else value
             for key, value in values.items()
@@ -428,41 +430,6 @@ def _unknown_keys(tables: Mapping[str, Any]) -> list[str]:
     return unknown + [key for key in full if key not in KEYS]
 
 
-def keys_meant(given: str) -> list[str]:
-    """The keys that may be meant by one in full, or by its last part."""
-    return [key for key in KEYS if given in (key, key.partition(".")[2])]
-
-
-def nearest(key: str, *, tables: bool = True) -> str | None:
-    """The known table or key most like `key`; a known name in the wrong table finds its table."""
-    names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
-    if tables and "." not in key:
-        names |= {table: table for table in TABLES}
-    table, _, name = key.rpartition(".")
-    here = [known for known in names if f"{table}.{known}" in KEYS]
-    near = (
-        get_close_matches(key, KEYS, 1, cutoff=0.8)
-        or get_close_matches(name, here, 1)
-        or get_close_matches(name, names, 1, cutoff=0.7)
-    )
-    return names.get(near[0], near[0]) if near else None
-
-
-def not_known(key: str, *, tables: bool = True) -> str:
-    """What to say of an unknown key; without `tables` where only a key can stand."""
-    if key == "plate.stiffness":
-        return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
-    near = nearest(key, tables=tables) if tables or key not in TABLES else None
-    said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
-    if near:
-        return f"unknown key {said}; did you mean {near}?"
-    table = key.partition(".")[0]
-    known = [known for known in KEYS if known.startswith(f"{table}.")] or (
-        TABLES if tables else KEYS
-    )
-    return f"unknown key {said}; there are {', '.join(known)}"
-
-
 # ---- its values ----------------------------------------------------------------------------------
 
 
@@ -489,6 +456,6 @@ def _text_problems(given: Mapping[str, Any], place: Place) -> list[str]:
 
 def _warn(device: DeviceFile, place: Place) -> None:
     """Warn of values that no such device has, with the place where each was written."""
-    for key, value in device.values().items():
-        if key in DRIVE and value is not None:
+    for key, value in device.values_of_drive().items():
+        if value is not None:
             warn_of(DRIVE[key].name, value, label=f"{place(key)}: {key}", stacklevel=4)

@@ -19,7 +19,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from pindrive.files.device import DeviceFile
-from pindrive.motion.drive import Contact, Profile
+from pindrive.motion.drive import Contact
+from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import DISPLAY, Quantity
 from pindrive.quantities.results import SERIES

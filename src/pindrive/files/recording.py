@@ -6,14 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.files.schema import Tables, number
+from pindrive.files.keys import Tables, number
 from pindrive.files.template import NUMBERS, usual
-from pindrive.motion.contact import check_slopes
-from pindrive.motion.drive import check_times
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
-from pindrive.quantities.table import QUANTITIES, default, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_slopes, check_times
+from pindrive.quantities.table import QUANTITIES, default
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
         why=why,
     )
     rows = tuple(zip(times, values, strict=True))
-    check_slopes(rows, "profile.rate", where=table.file, label=name)
+    check_slopes(rows, QUANTITIES["profile.rate"], where=table.file, label=name)
     return rows
 
 

@@ -17,42 +17,36 @@ from pindrive.device.device import Criteria, Device, check_holds
 from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
 from pindrive.device.reading import Reading
-from pindrive.files.template import DRIVE, NUMBERS, line, usual, usual_rows
-from pindrive.motion.contact import (
+from pindrive.files.keys import Tables, friction_parts, number, written
+from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual, usual_rows
+from pindrive.motion.drive import (
     SLOPES,
     Contact,
-    check_curve,
-    check_increasing,
-    check_one_kind,
-    check_slopes,
-    check_static,
-)
-from pindrive.motion.drive import (
     Drive,
-    Profile,
-    check_finger_load,
+    check_curve,
+    check_one_kind,
     check_skin,
+    check_static,
     check_stretch,
-    check_times,
     check_touch,
 )
 from pindrive.motion.friction import (
     COEFFICIENT_OF,
     COEFFICIENTS,
-    PRESSED_BY,
     friction_force,
     normal_force,
 )
-from pindrive.motion.release import CONTINUOUS, INPUTS, Release, initial
+from pindrive.motion.profile import Profile
+from pindrive.motion.release import CONTINUOUS, INPUTS, Release, check_finger_load, initial
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.refusal import Refusal, refusal
+from pindrive.quantities.rows import check_increasing, check_slopes, check_times
+from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.units import quoted
 
 _GRID: Final = ("columns", "rows", "pitch")
 
-Tables = Mapping[str, Any]
-"""The tables of a device file as TOML has them: text with units."""
 Place = Callable[..., str]
 """Where keys were written: on the command line if one of them was, else in the file."""
 Value = float | Rows | None
@@ -126,17 +120,6 @@ def read_value(value: object, key: str, place: str) -> float | Rows:
     return number(value, quantity, usual(quantity), key, place)
 
 
-def number(value: object, quantity: Quantity, example: str, label: str, place: str) -> float:
-    """What TOML gave, in SI: text with a unit, or a bare number where the quantity has no unit."""
-    bare = isinstance(value, (int, float)) and not isinstance(value, bool)
-    text = value if isinstance(value, str) else repr(value) if bare else ""
-    try:
-        si = to_si(text, quantity.unit, example)
-    except UnitError as error:
-        raise ValueError(refusal(label, str(error), quoted(value), place)) from None
-    return check(quantity.name, si, where=place, label=label, given=quoted(value))
-
-
 def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     """Rows in SI, each checked and in order; a mistake is said with its row, counted from 0."""
     if isinstance(value, tuple):  # read from a file of their own, and checked there
@@ -163,11 +146,11 @@ def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:
     firsts = [first for first, _ in rows]
     if quantity.rows_of in SLOPES:
         check_increasing(firsts, across.unit, where=place, label=label)
-        check_slopes(rows, SLOPES[quantity.rows_of], where=place, label=key)
+        check_slopes(rows, QUANTITIES[SLOPES[quantity.rows_of]], where=place, label=key)
     else:
         no_step = " (a jump would take an infinite force)" if quantity.name in CONTINUOUS else ""
         check_times(firsts, where=place, label=label, steps=not no_step, why=no_step)
-        check_slopes(rows, "profile.rate", where=place, label=key)
+        check_slopes(rows, QUANTITIES["profile.rate"], where=place, label=key)
     return tuple(rows)
 
 
@@ -314,16 +297,15 @@ class Whole:
         """What counts as felt."""
         return Criteria(**table_of(self.values, "judge"))
 
-    def value(self, key: str) -> Value:
-        """The value of a key, SI, given or not; None where nothing was given and nothing holds."""
-        table, _, name = key.partition(".")
-        value = self.values[key]
-        if table == "magnet" and name in (*COIL, *DIRECT):
-            magnet = self.magnet()
-            if name in COIL:
-                return None if magnet.coil is None else getattr(magnet.coil, name)
-            return value if magnet.coil is None else getattr(magnet, name)
-        return None if name in _GRID and self.values["array.places"] is not None else value
+    def in_si(self) -> dict[str, Value]:
+        """The value of each key, given or not; None where nothing was given and nothing holds."""
+        magnet, found = self.magnet(), {key: self.values[key] for key in WHOLE}
+        found |= {f"magnet.{name}": getattr(magnet.coil, name, None) for name in COIL}
+        if magnet.coil is not None:
+            found |= {f"magnet.{name}": getattr(magnet, name) for name in DIRECT}
+        if found["array.places"] is not None:
+            found |= dict.fromkeys((f"array.{name}" for name in _GRID), None)
+        return found
 
     def problems(self, given: dict[str, Any], place: Place) -> list[str]:
         """What does not fit together; `given` is the file's tables."""
@@ -395,20 +377,6 @@ def keep_ratios(tables: dict[str, Any], before: Tables, placed: Container[str]) 
             tables[table][name] = written(key, given / old * new)
         elif rows := scaled_rows(given, new):
             tables[table][name] = written_rows(key, rows)
-
-
-def friction_parts(key: str) -> tuple[str, ...]:
-    """The keys from which a friction force follows where a coefficient gives it; of others none."""
-    if key not in COEFFICIENT_OF:
-        return ()
-    own, pressing = COEFFICIENT_OF[key], PRESSED_BY[key.partition(".")[0]]
-    return (own, *DRIVE[own].follows, *(QUANTITIES[name].key for name in pressing))
-
-
-def written(key: str, value: float) -> str | float:
-    """A value in SI as a device file has it, to the last bit."""
-    unit = NUMBERS[key].unit
-    return value if unit == "1" else f"{value!r} {unit}"
 
 
 def _quotient(tables: Tables, keys: tuple[str, ...]) -> float | None:

@@ -10,7 +10,7 @@ import numpy as np
 from pindrive.fitting.model import Model
 from pindrive.lazy import qmc
 from pindrive.motion.batch import simulate_batch
-from pindrive.motion.release import PLACES, ROWS, entry
+from pindrive.motion.core_numbers import PLACES, ROWS, entry
 from pindrive.quantities.table import ImplausibleValueWarning
 
 if TYPE_CHECKING:

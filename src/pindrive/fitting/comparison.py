@@ -13,7 +13,8 @@ from pindrive import lazy
 from pindrive.fitting.estimation import fit
 from pindrive.fitting.results import Fit
 from pindrive.lazy import xr
-from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.profile import Profile
 from pindrive.quantities.status import Status
 
 if TYPE_CHECKING:

@@ -6,10 +6,11 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from pindrive.files.device_text import device_text
-from pindrive.files.schema import written, written_rows
+from pindrive.files.keys import written
+from pindrive.files.schema import written_rows
 from pindrive.fitting.parameters import key_of
 from pindrive.fitting.results import Estimate, is_of_sensor
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.quantities.quantity import significant
 
 if TYPE_CHECKING:

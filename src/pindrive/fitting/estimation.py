@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive.fitting.identifiability import Identifiability, rank, untouched
+from pindrive.fitting.least_squares import Optimum, Problem
 from pindrive.fitting.model import Model
 from pindrive.fitting.parameters import parameters
 from pindrive.fitting.profiles import BetterOptimum, Profile, profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
-from pindrive.fitting.search import Optimum, Problem, polished, search
+from pindrive.fitting.search import polished, search
 from pindrive.lazy import stats
 from pindrive.motion.release import Release, check_fits
-from pindrive.quantities.table import check_whole, refusal
+from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.study.cluster import Cluster, Here, crew
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from pindrive import lazy
 from pindrive.lazy import optimize, xr
 from pindrive.motion.drive import Contact
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import check_whole, refusal
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

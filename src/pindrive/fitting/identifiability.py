@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.fitting.search import RANK, Problem
+from pindrive.fitting.least_squares import RANK, Problem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

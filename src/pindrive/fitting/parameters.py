@@ -16,11 +16,14 @@ from typing import Any, Final
 import numpy as np
 
 from pindrive.fitting.recording import CHANNELS, Recording
-from pindrive.motion.drive import Contact, Drive, Profile
-from pindrive.motion.release import PLACES, ROWS, CoreNumbers, Release, core_numbers, entry
+from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.profile import Profile
+from pindrive.motion.release import Release, core_numbers
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
-from pindrive.quantities.table import QUANTITIES, check, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES, check
 
 DRIVE: Final = (
     *("mass", "stiffness", "damping", "plate.kinetic", "plate.static"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.fitting.search import BETTER, Optimum, Problem
+from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import check
 from pindrive.quantities.units import quoted, to_si
 
 if TYPE_CHECKING:

@@ -1,16 +1,15 @@
-"""The least squares of a model: from many candidates to the best one, by trust regions."""
+"""The search for the best least squares of a model: from many candidates to one."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from pindrive.fitting.candidates import candidates
+from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Model
-from pindrive.lazy import optimize
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,127 +34,14 @@ FINISHED: Final = 3
 """Of those, how many are refined on all samples."""
 FEW: Final = 25
 """The most evaluations of the refinement of a candidate."""
-MANY: Final = 200
-"""Those of the last one."""
 ROUNDS: Final = 10
 """Better optima beyond kinks that are followed."""
 DRAWN: Final = 60
 """Points around an optimum."""
 SIZES: Final = (0.5, 2.0, 8.0)
 """How far they lie, in standard errors."""
-BETTER: Final = 1e-2
-"""A cost that is lower by so much is better; the end of an interval lies 3.84 higher."""
-RANK: Final = 1e-9
-"""A singular value so much smaller than the largest is zero, of columns of length one."""
-_FAR: Final = 1e3
-"""A sample that a motion does not reach is off by so many times its channel's extent."""
 APART: Final = 0.02
 """Two candidates this part of their range apart in every parameter are one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Optimum:
-    """Where a refinement ended."""
-
-    theta: Array
-    cost: float
-    """Weighted sum of squares."""
-    converged: bool
-
-
-class Problem:
-    """A model with the weights of its samples, one over the noise of each."""
-
-    def __init__(self, model: Model, weights: Array) -> None:
-        self.model, self.weights = model, weights
-        self.lower = np.array([p.lower for p in model.parameters])
-        self.upper = np.array([p.upper for p in model.parameters])
-        self._extent = np.concatenate(
-            [
-                np.full(block.size, size)
-                for block, size in zip(model.blocks, model.range, strict=True)
-            ]
-        )
-        self._last: tuple[bytes, Array, Array] | None = None
-
-    def residuals(self, theta: Array) -> Array:
-        """Computed less recorded over the noise, shape (n,)."""
-        return self._whole(theta)[0]
-
-    def cost(self, theta: Array) -> float:
-        """The sum of their squares."""
-        off = self._whole(theta)[0]
-        return float(off @ off)
-
-    def slopes(self, theta: Array) -> Array:
-        """The derivatives of the residuals, shape (n, k)."""
-        return self._whole(theta)[1]
-
-    def _whole(self, theta: Array) -> tuple[Array, Array]:
-        key = np.asarray(theta, float).tobytes()
-        if self._last is None or self._last[0] != key:
-            values, slopes = self.model.linearise(theta)
-            slopes = np.where(np.isfinite(slopes), slopes, 0.0)
-            self._last = key, self._off(values), slopes * self.weights[:, None]
-        return self._last[1:]
-
-    def plain_cost(self, theta: Array) -> float:
-        """The sum of their squares, without the derivatives."""
-        off = self._off(self.model.predict(theta))
-        return float(off @ off)
-
-    def _off(self, values: Array) -> Array:
-        off = np.where(np.isfinite(values), values - self.model.data, _FAR * self._extent)
-        weighted: Array = off * self.weights
-        return weighted
-
-    def refined(
-        self, theta: Array, free: Sequence[int] | None = None, most: int = MANY, tol: float = 1e-8
-    ) -> Optimum:
-        """The optimum that is reached from `theta`, varying the parameters `free` alone."""
-        places = np.arange(len(theta)) if free is None else np.asarray(free, np.intp)
-        theta = np.clip(theta, self.lower, self.upper)
-        if not len(places):
-            return Optimum(theta, self.cost(theta), True)
-        low, high = self.lower[places], self.upper[places]
-        margin = 1e-9 * (high - low)
-        size = np.maximum(np.abs(theta[places]), 1e-3 * (high - low))
-
-        def full(part: Array) -> Array:
-            whole = theta.copy()
-            whole[places] = part * size
-            return whole
-
-        found = optimize.least_squares(
-            lambda part: self.residuals(full(part)),
-            np.clip(theta[places], low + margin, high - margin) / size,
-            lambda part: self.slopes(full(part))[:, places] * size,
-            (low / size, high / size),
-            x_scale="jac",
-            ftol=tol,
-            xtol=tol,
-            gtol=tol,
-            max_nfev=most,
-        )
-        best = full(found.x)
-        cost = 2.0 * float(found.cost)
-        # A trust region keeps clear of the bounds; what lies on one is set on it.
-        near = (best - self.lower <= 1e-6 * (self.upper - self.lower)) & np.isin(
-            np.arange(len(best)), places
-        )
-        if near.any():
-            on = np.where(near, self.lower, best)
-            at = self.cost(on)
-            if at <= cost * (1.0 + 1e-12):
-                best, cost = on, at
-        return Optimum(best, cost, bool(found.status > 0) or self._flat(best, places))
-
-    def _flat(self, theta: Array, places: NDArray[np.intp]) -> bool:
-        """Whether a Gauss-Newton step would change the cost by next to nothing."""
-        inner = places[(theta > self.lower)[places] & (theta < self.upper)[places]]
-        slopes = self.slopes(theta)[:, inner]
-        part, *_ = np.linalg.lstsq(slopes, self.residuals(theta), rcond=RANK)
-        return float(np.sum((slopes @ part) ** 2)) < BETTER
 
 
 def polished(problem: Problem, best: Optimum, covariance: Array, seed: int) -> Optimum:

@@ -1,9 +1,9 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
 from pindrive.motion.coefficients import Coefficients as Coefficients
-from pindrive.motion.contact import Contact as Contact
+from pindrive.motion.drive import Contact as Contact
 from pindrive.motion.drive import Drive as Drive
-from pindrive.motion.drive import Profile as Profile
+from pindrive.motion.profile import Profile as Profile
 from pindrive.motion.motion import Motion as Motion
 from pindrive.motion.release import Release as Release
 from pindrive.motion.results import Certificate as Certificate

@@ -9,16 +9,17 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.lazy import xr
-from pindrive.motion.contact import check_one_kind
-from pindrive.motion.drive import Profile
+from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
+from pindrive.quantities.refusal import hint, refusal
 from pindrive.quantities.results import ENDING, ENERGY, FINAL, TRANSIENT
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
-from pindrive.quantities.table import QUANTITIES, check, hint, refusal, warn_of
+from pindrive.quantities.table import QUANTITIES, check, warn_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pindrive.lazy import xr
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import outcome_attributes

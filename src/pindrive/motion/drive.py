@@ -1,100 +1,141 @@
-"""A pin drive as data: the drive, its two contacts, and inputs that change over time. SI units."""
+"""A pin drive as data: the drive and its two contacts, by forces or by coefficients. SI units."""
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
-from math import isnan, sqrt
-from typing import TYPE_CHECKING, Any, overload
+from math import inf, isinf, nan, sqrt
+from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.motion.contact import Contact, check_increasing, check_slopes, slopes_of
-from pindrive.motion.friction import normal_force
+from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.table import QUANTITIES, check, checked, default, refusal
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
+from pindrive.quantities.table import QUANTITIES, check, checked, default
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
-
     from pindrive.quantities.table import Number, OptionalNumber
 
-__all__ = ["Contact", "Drive", "Profile"]
+__all__ = ["Contact", "Drive"]
 
 
-def check_times(
-    times: Sequence[float],
-    *,
-    where: str = "",
-    label: str | Callable[[int], str] = "[{}]",
-    steps: bool = True,
-    why: str = "",
-) -> None:
-    """Refuse times (s) of rows out of order; with `steps` two may be the same, never three.
+@dataclass(frozen=True, slots=True, init=False)
+class Contact:
+    """Dry friction between the pin drive and a surface: the plate or the fingertip.
 
-    `label` is of the index of the one that is wrong, `why` says why there may be no step.
+    Every number may also be text with a unit, such as "20 mN"; a bare number is SI. Friction is
+    given by forces, or by coefficients: friction over the force that presses, which a `Drive`
+    knows. The forces of such a contact are NaN until it is part of one.
+
+    Args:
+        kinetic: friction force while sliding, N, from 0 to 1e12; 0 with no static friction is no
+            contact at all. None with a curve: its first force.
+        static: largest friction force without sliding, N, from `kinetic` to 1e12; `kinetic` if
+            None.
+        curve: kinetic friction over sliding speed as rows (speed in m/s, force in N), speeds
+            increasing from 0, linear between rows and on beyond the last; its first force is
+            `kinetic`. None: `kinetic` at every speed (Coulomb).
+        stiffness: tangential stiffness of the surface, N/m, from 1e-12 to 1e12; infinite: rigid.
+        coefficient: kinetic friction over the force that presses, from 0 to 1e12, in place of
+            `kinetic`. None with a curve of coefficients: its first.
+        static_coefficient: the same at rest, in place of `static`; `coefficient` if None.
+        coefficient_curve: rows (speed in m/s, coefficient), in place of `curve`.
+
+    Raises:
+        ValueError: a value is no number or out of its range, static friction is below kinetic,
+            neither kinetic friction nor a curve is given, they disagree, or there are both forces
+            and coefficients.
     """
-    if not steps:
-        check_increasing(times, "s", where=where, label=label, why=why)
-        return
-    named = label.format if isinstance(label, str) else label
-    for i in range(1, len(times)):
-        before, given = f"the one before, {times[i - 1]!r} s", f"{times[i]!r} s"
-        if not times[i - 1] <= times[i]:
-            raise ValueError(refusal(named(i), f"at least {before}", given, where))
-        if i > 1 and times[i - 2] == times[i]:
-            required = f"greater than {before}: two rows at one time are a step, a third is none"
-            raise ValueError(refusal(named(i), required, given, where))
 
+    kinetic: float
+    static: float | None
+    curve: tuple[tuple[float, float], ...] | None
+    stiffness: float
+    coefficient: float | None
+    static_coefficient: float | None
+    coefficient_curve: tuple[tuple[float, float], ...] | None
 
-def check_continuous(name: str, velocity: Profile) -> None:
-    """Refuse a velocity of the hand with a step: it would take an infinite force."""
-    for t in velocity.steps:
-        i = bisect_right(velocity.times, t)
-        y, z = velocity.values[i - 2 : i]
-        required = "without a step (a jump would take an infinite force)"
-        given = f"one from {y!r} m/s to {z!r} m/s at {t!r} s"
-        raise ValueError(refusal(name, required, given))
+    def __init__(
+        self,
+        kinetic: float | str | None = None,
+        static: float | str | None = None,
+        curve: Iterable[tuple[float | str, float | str]] | None = None,
+        stiffness: float | str = inf,
+        *,
+        coefficient: float | str | None = None,
+        static_coefficient: float | str | None = None,
+        coefficient_curve: Iterable[tuple[float | str, float | str]] | None = None,
+    ) -> None:
+        """Validate, and keep plain floats and tuples."""
+        forces = {"kinetic": kinetic, "static": static, "curve": curve}
+        coefficients = {
+            "coefficient": coefficient,
+            "static_coefficient": static_coefficient,
+            "coefficient_curve": coefficient_curve,
+        }
+        given = forces | coefficients
+        by_coefficient = check_one_kind([name for name in given if given[name] is not None])
+        chosen = coefficients if by_coefficient else forces
+        found = dict(zip(chosen, _checked_friction(*chosen, *chosen.values()), strict=True))
+        if by_coefficient:
+            found["kinetic"] = nan  # the force that presses is not known yet
+        for name in given:
+            object.__setattr__(self, name, found.get(name))
+        object.__setattr__(
+            self, "stiffness", check("contact.stiffness", stiffness, label="stiffness")
+        )
 
+    def pressed_by(self, normal_force: float) -> Contact:
+        """The same, given by coefficients, with the friction forces under a normal force (N).
 
-def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
-    """Refuse a coefficient of the finger without a touch force (N), or that without the other."""
-    if by_coefficient and touch_force is None:
-        required = "given where a coefficient gives the finger's friction"
-        raise ValueError(refusal("touch_force", required, "none"))
-    if not by_coefficient and touch_force is not None:
-        required = "left out where the finger's friction is given as a force"
-        raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
+        Raises:
+            ValueError: a force is out of its range.
+        """
+        mu, at_rest, rows = self.coefficient, self.static_coefficient, self.coefficient_curve
+        assert mu is not None
+        forces = Contact(
+            mu * normal_force,
+            None if at_rest is None else at_rest * normal_force,
+            None if rows is None else [(speed, each * normal_force) for speed, each in rows],
+            self.stiffness,
+        )
+        for name in COEFFICIENTS.values():
+            object.__setattr__(forces, name, getattr(self, name))
+        return forces
 
+    @property
+    def static_friction(self) -> float:
+        """Largest friction force without sliding, N."""
+        return self.kinetic if self.static is None else self.static
 
-def check_skin(finger: Contact) -> None:
-    """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
-    if finger.curved and not finger.rigid:
-        required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
+    @property
+    def frictionless(self) -> bool:
+        """Whether the contact carries no force at all."""
+        return self.static_friction == 0.0 and (
+            self.curve is None or not any(force for _, force in self.curve)
+        )
 
+    @property
+    def curved(self) -> bool:
+        """Whether friction depends on the sliding speed."""
+        return self.curve is not None and len(self.curve) > 1
 
-def check_finger_load(load: float | Profile, finger: Contact) -> None:
-    """Refuse a load that changes on a finger with a stiffness or a curve."""
-    if not isinstance(load, Profile) or not load.changes or (finger.rigid and not finger.curved):
-        return
-    required = "constant for a finger with " + ("a curve" if finger.rigid else "a stiffness")
-    raise ValueError(refusal("finger_load", required, f"a Profile of {len(load.times)} rows"))
+    def largest(self, speed: float) -> float:
+        """Largest friction force at sliding speeds up to `speed` (m/s) and without sliding, N."""
+        rows = self.curve or ()
+        if len(rows) < 2:
+            return self.static_friction
+        forces = [force for u, force in rows if u <= speed]
+        i = min(len(forces), len(rows) - 1)
+        (u0, f0), (u1, f1) = rows[i - 1 : i + 1]
+        forces.append(f0 + (f1 - f0) / (u1 - u0) * (speed - u0))
+        return max([self.static_friction, *forces])
 
-
-def check_stretch(stretch: float, finger: Contact, load: float) -> None:
-    """Refuse a stretch (m) that the finger's skin cannot have under a load."""
-    given = f"{stretch!r} m"
-    if finger.rigid:
-        raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
-    largest = finger.static_friction * load / finger.stiffness
-    if abs(stretch) > largest:
-        required = f"at most static friction over stiffness, {largest!r} m, either way"
-        raise ValueError(refusal("skin_stretch", required, given))
+    @property
+    def rigid(self) -> bool:
+        """Whether the surface gives way by sliding alone."""
+        return isinf(self.stiffness)
 
 
 @checked
@@ -215,108 +256,119 @@ class Drive:
         return 2.0 * sqrt(self.mass) * sqrt(self.stiffness)
 
 
-@dataclass(frozen=True, slots=True, init=False)
-class Profile:
-    """A quantity over time: linear between its rows, constant before the first and after the last.
+def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
+    """Refuse a coefficient of the finger without a touch force (N), or that without the other."""
+    if by_coefficient and touch_force is None:
+        required = "given where a coefficient gives the finger's friction"
+        raise ValueError(refusal("touch_force", required, "none"))
+    if not by_coefficient and touch_force is not None:
+        required = "left out where the finger's friction is given as a force"
+        raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
 
-    Two rows at one time are a step: from that time on the later one holds. A load may have steps, a
-    velocity may not.
+
+def check_skin(finger: Contact) -> None:
+    """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
+    if finger.curved and not finger.rigid:
+        required = "one row for a compliant finger, whose skin would lag behind it"
+        raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
+
+
+def check_stretch(stretch: float, finger: Contact, load: float) -> None:
+    """Refuse a stretch (m) that the finger's skin cannot have under a load."""
+    given = f"{stretch!r} m"
+    if finger.rigid:
+        raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
+    largest = finger.static_friction * load / finger.stiffness
+    if abs(stretch) > largest:
+        required = f"at most static friction over stiffness, {largest!r} m, either way"
+        raise ValueError(refusal("skin_stretch", required, given))
+
+
+def check_one_kind(
+    given: Sequence[str], table: str = "", where: Callable[[str], str] = lambda _: ""
+) -> bool:
+    """Refuse friction given both by forces and by coefficients; whether it is by coefficients.
 
     Args:
-        times: s, or text with a unit, from -1e12 to 1e12, none less than the one before, no three
-            alike; at least one.
-        values: one for each time, SI, or text with a unit, such as "60 mm/s", from -1e12 to 1e12,
-            as is the rate between two rows.
-
-    Attributes:
-        unit: the SI unit of values that were text, empty where none was: `Release` refuses those of
-            another quantity.
-
-    Raises:
-        ValueError: lengths differ, times decrease, a number or a rate is out of range, or a text is
-            in no unit of a quantity that may change over time.
+        given: which of them are.
+        table: of the device file, for the message.
+        where: where a key was written, for the message.
     """
-
-    times: tuple[float, ...]
-    values: tuple[float, ...]
-    unit: str = field(compare=False, repr=False)
-
-    def __init__(self, times: Iterable[float | str], values: Iterable[float | str]) -> None:
-        """Validate, and keep tuples of plain floats."""
-        unit, numbers = _in_si(_listed(values))
-        t = _column(_listed(times), "profile.time", "times")
-        y = _column(numbers, "profile.value", "values")
-        if not t:
-            raise ValueError(refusal("times", "at least one", "none"))
-        if len(t) != len(y):
-            raise ValueError(refusal("values", f"as many as times, {len(t)}", len(y)))
-        check_times(t, label="times[{}]")
-        check_slopes(list(zip(t, y, strict=True)), "profile.rate", label="profile")
-        object.__setattr__(self, "times", t)
-        object.__setattr__(self, "values", y)
-        object.__setattr__(self, "unit", unit)
-
-    @property
-    def changes(self) -> bool:
-        """Whether it takes more than one value."""
-        return any(value != self.values[0] for value in self.values)
-
-    @property
-    def steps(self) -> tuple[float, ...]:
-        """The times at which its value jumps, s."""
-        return tuple(t for (t, y), (after, z) in pairwise(self.rows) if t == after and y != z)
-
-    @property
-    def rows(self) -> tuple[tuple[float, float], ...]:
-        """Its rows (time, value), SI."""
-        return tuple(zip(self.times, self.values, strict=True))
-
-    @overload
-    def __call__(self, t: float) -> float: ...
-    @overload
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
-    def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
-        """The value at time t (s): a float for a float, an array of the same shape for an array.
-
-        At a step it is the value after it.
-        """
-        if not isinstance(t, (float, int)):
-            import numpy as np
-
-            return np.interp(np.asarray(t, dtype=np.float64), self.times, self.values)
-        i = bisect_right(self.times, t)
-        if i == 0 or i == len(self.times):
-            return self.values[max(i - 1, 0)]
-        (t0, t1), (y0, y1) = self.times[i - 1 : i + 1], self.values[i - 1 : i + 1]
-        return y0 + (y1 - y0) * ((t - t0) / (t1 - t0))
+    forces, coefficients = (
+        [name for name in names if name in given]
+        for names in zip(*COEFFICIENTS.items(), strict=True)
+    )
+    if not (forces and coefficients):
+        return bool(coefficients)
+    one, other = (f"{table}.{names[0]}".removeprefix(".") for names in (coefficients, forces))
+    required, both = f"left out where {other} gives the friction as a force", [one, other]
+    if where(one) != where(other):
+        both = [f"{key} ({where(key)})" for key in both]
+    raise ValueError(refusal(one, required, f"both, {' and '.join(both)}"))
 
 
-def _listed(values: Iterable[float | str]) -> list[Any]:
+def check_static(static: float, kinetic: float, name: str = "static") -> None:
+    """Refuse static friction below kinetic friction, both forces (N) or coefficients."""
+    unit = _unit_of(name)
+    if static < kinetic:
+        required = f"at least the kinetic {_NOUN[unit]}, {kinetic!r}{unit}"
+        raise ValueError(refusal(name, required, f"{static!r}{unit}"))
+
+
+def check_curve(rows: Sequence[tuple[float, float]], kinetic: float, name: str = "curve") -> None:
+    """Refuse rows (m/s, N or coefficients) that do not start at speed 0 with the kinetic one."""
+    unit = _unit_of(name)
+    (speed, value), what = rows[0], "force" if unit else "coefficient"
+    if speed != 0.0:
+        raise ValueError(refusal(f"{name}[0] speed", "0 m/s", f"{speed!r} m/s"))
+    if value != kinetic:
+        required = f"the kinetic {_NOUN[unit]}, {kinetic!r}{unit}"
+        raise ValueError(refusal(f"{name}[0] {what}", required, f"{value!r}{unit}"))
+
+
+_NOUN: Final = {" N": "friction", "": "friction coefficient"}
+
+
+def _unit_of(name: str) -> str:
+    return "" if "coefficient" in name else " N"
+
+
+def _checked_friction(
+    of_kinetic: str, of_static: str, of_curve: str, kinetic: Any, static: Any, curve: Any
+) -> tuple[float, float | None, tuple[tuple[float, float], ...] | None]:
+    """Kinetic and static friction and a curve, by their names, forces or coefficients."""
+    rows = None if curve is None else _checked_curve(curve, of_curve)
+    if kinetic is None and rows is None:
+        kind = "a number in N" if of_kinetic == "kinetic" else "a plain number"
+        raise ValueError(refusal(of_kinetic, f"{kind} unless a curve is given", "None"))
+    at_rest = rows[0][1] if kinetic is None and rows else check(of_kinetic, kinetic)
+    if rows:
+        check_curve(rows, at_rest, of_curve)
+    if static is not None:
+        static = check(of_static, static)
+        check_static(static, at_rest, of_static)
+    return at_rest, static, rows
+
+
+def _checked_curve(
+    curve: Iterable[tuple[float | str, float | str]], name: str
+) -> tuple[tuple[float, float], ...]:
+    what = "force" if name == "curve" else "coefficient"
     try:
-        return values.tolist() if hasattr(values, "tolist") else list(values)
-    except TypeError:
-        raise ValueError(refusal("a profile", "sequences of numbers", repr(values))) from None
+        rows = [(speed, value) for speed, value in curve]
+    except (TypeError, ValueError):
+        raise ValueError(refusal(name, f"rows of (speed, {what})", repr(curve))) from None
+    if not rows:
+        raise ValueError(refusal(name, f"at least one row of (speed, {what})", "none"))
+    speeds, values = (
+        [check(f"curve.{part}", row[j], label=f"{name}[{i}] {part}") for i, row in enumerate(rows)]
+        for j, part in enumerate(("speed", what))
+    )
+    check_increasing(speeds, "m/s", label=f"{name}[{{}}] speed")
+    found = tuple(zip(speeds, values, strict=True))
+    check_slopes(found, QUANTITIES[SLOPES[name]], label=name)
+    return found
 
 
-def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
-    """The SI unit of values of which some are text, empty where none is, and all of them in SI."""
-    if str not in set(map(type, values)):
-        return "", values
-    over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
-    first = {quantity.unit: quantity for quantity in reversed(over_time)}  # of each unit
-    units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
-    for unit in units:
-        with suppress(UnitError):
-            return unit, [to_si(y, unit, "") if isinstance(y, str) else y for y in values]
-    usual = " or all like ".join(quoted(first[unit].usual) for unit in units)
-    texts = ", ".join(quoted(y) for y in values if isinstance(y, str))
-    raise ValueError(refusal("values", f"numbers in SI, or text all like {usual}", texts))
-
-
-def _column(values: list[Any], name: str, label: str) -> tuple[float, ...]:
-    """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
-    bounds = QUANTITIES[name].limits
-    plain = set(map(type, values)) == {float} and not any(map(isnan, values))
-    if plain and min(values) in bounds and max(values) in bounds:
-        return tuple(values)
-    return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(values))
+SLOPES: Final = {"curve": "curve.slope", "coefficient_curve": "curve.coefficient_slope"}
+"""What the slopes between the rows of a curve are."""

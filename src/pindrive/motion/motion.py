@@ -12,8 +12,8 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
-from pindrive.motion.drive import Profile
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, core_numbers
 from pindrive.motion.results import (
     Certificate,
@@ -36,9 +36,10 @@ from pindrive.motion.results import (
 )
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.status import End, Status
-from pindrive.quantities.table import check, default, refusal
+from pindrive.quantities.table import check, default
 
 if TYPE_CHECKING:
     from collections.abc import Callable

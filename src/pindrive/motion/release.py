@@ -2,93 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nan
-from typing import Any, Final
+from typing import Final
 
-from pindrive.motion.drive import (
-    Drive,
-    Profile,
-    check_continuous,
-    check_finger_load,
-    check_skin,
-    check_stretch,
-)
-from pindrive.quantities.table import QUANTITIES, check, default, refusal
+from pindrive.motion.core_numbers import CoreNumbers, Rows
+from pindrive.motion.drive import Contact, Drive, check_skin, check_stretch
+from pindrive.motion.profile import Profile, check_continuous
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES, check, default
 
-Rows = Sequence[tuple[float, float]]
-ContactNumbers = tuple[float, float, float, Rows]
-CoreNumbers = tuple[
-    float,
-    float,
-    float,
-    ContactNumbers,
-    ContactNumbers,
-    Rows,
-    Rows,
-    float,
-    float,
-    float,
-    Rows,
-    Rows,
-    Rows,
-    float,
-]
-"""In the order of `Numbers` in _core.cpp."""
-PLACES: Final[dict[str, tuple[int, ...]]] = {
-    "mass": (0,),
-    "stiffness": (1,),
-    "damping": (2,),
-    "plate.kinetic": (3, 0),
-    "plate.static": (3, 1),
-    "finger.kinetic": (4, 0),
-    "finger.static": (4, 1),
-    "finger.stiffness": (4, 2),
-    "mouse_velocity": (5,),
-    "plate_load": (6,),
-    "displacement": (7,),
-    "velocity": (8,),
-    "skin_stretch": (9,),
-    "force": (10,),
-    "across_velocity": (11,),
-    "finger_load": (12,),
-}
-"""Where each number, or the rows of an input, stands among them."""
-ROWS: Final[dict[str, tuple[int, ...]]] = {
-    "plate_curve": (3, 3),
-    "finger_curve": (4, 3),
-    "mouse_velocity": (5,),
-    "plate_load": (6,),
-    "force": (10,),
-    "across_velocity": (11,),
-    "finger_load": (12,),
-}
-"""Where all rows of a table stand."""
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
 """What a release has over time: a number or a `Profile` each."""
 
 CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
 """Those of them that may not have steps."""
-
-__all__ = [
-    "CONTINUOUS",
-    "INPUTS",
-    "PLACES",
-    "ROWS",
-    "CoreNumbers",
-    "Release",
-    "Rows",
-    "core_numbers",
-    "entry",
-]
-
-
-def entry(numbers: Any, place: tuple[int, ...]) -> Any:
-    """What stands at a place among the core's numbers."""
-    for i in place:
-        numbers = numbers[i]
-    return numbers
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -180,6 +108,14 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
         for i, y in enumerate(given.values):
             check(name, y, label=f"{name} values[{i}]")
     return given
+
+
+def check_finger_load(load: float | Profile, finger: Contact) -> None:
+    """Refuse a load that changes on a finger with a stiffness or a curve."""
+    if not isinstance(load, Profile) or not load.changes or (finger.rigid and not finger.curved):
+        return
+    required = "constant for a finger with " + ("a curve" if finger.rigid else "a stiffness")
+    raise ValueError(refusal("finger_load", required, f"a Profile of {len(load.times)} rows"))
 
 
 def check_fits(drive: Drive, release: Release) -> None:

@@ -12,13 +12,14 @@ import numpy as np
 
 from pindrive import _core, lazy
 from pindrive.lazy import xr
+from pindrive.motion.core_numbers import PLACES, ROWS, entry
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
-from pindrive.motion.release import PLACES, ROWS, entry
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.motion.core_numbers import CoreNumbers, Rows
     from pindrive.motion.drive import Drive
-    from pindrive.motion.release import CoreNumbers, Release, Rows
     from pindrive.motion.results import Side
 
 __all__ = ["Sensitivity"]
@@ -52,6 +53,13 @@ _ROW = re.compile(
 )
 
 
+class Start(Protocol):
+    """What is asked of a `Release`."""
+
+    @property
+    def velocity(self) -> float | None: ...
+
+
 class Simulated(Protocol):
     """What is asked of a `Motion`, which itself hands out sensitivities."""
 
@@ -59,7 +67,9 @@ class Simulated(Protocol):
     settling_band: float
     core_numbers: CoreNumbers
     drive: Drive
-    release: Release
+
+    @property
+    def release(self) -> Start: ...
 
     def position(self, t: ArrayLike, side: Side) -> object: ...
     def velocity(self, t: ArrayLike, side: Side) -> object: ...
@@ -400,9 +410,9 @@ def _start_slope(rows: Rows, along: Rows) -> float:
 def _natural_size(motion: Simulated, place: Place) -> float:
     """A size, in this motion, for a parameter that is zero."""
     drive, omega = motion.drive, motion.drive.natural_frequency
-    speeds = (abs(v) for _, v in motion.core_numbers[5])
-    fastest = max(abs(motion.release.initial_velocity), *speeds)
-    length = max(abs(motion.release.displacement), fastest / omega) or 1e-3
+    at_first, speeds = motion.core_numbers[7:9], (abs(v) for _, v in motion.core_numbers[5])
+    displacement, velocity = map(abs, at_first)
+    length = max(displacement, max(velocity, *speeds) / omega) or 1e-3
     match place:
         case (0 | 1 | 2,):
             return drive.mass * omega

@@ -10,11 +10,13 @@ from pindrive.motion.motion import Motion
 from pindrive.motion.release import check_fits, oblique_at_last
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
-from pindrive.quantities.table import QUANTITIES, check, refusal, warn_of
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES, check, warn_of
 
 if TYPE_CHECKING:
+    from pindrive.motion.core_numbers import CoreNumbers
     from pindrive.motion.drive import Drive
-    from pindrive.motion.release import CoreNumbers, Release
+    from pindrive.motion.release import Release
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (

@@ -8,8 +8,8 @@ from pindrive.optimisation.results import Design as Design
 from pindrive.optimisation.results import Front as Front
 from pindrive.optimisation.results import Map as Map
 from pindrive.optimisation.results import Reached as Reached
-from pindrive.optimisation.wish import Goal as Goal
-from pindrive.optimisation.wish import Wish as Wish
+from pindrive.optimisation.goals import Goal as Goal
+from pindrive.optimisation.goals import Wish as Wish
 from pindrive.optimisation.wish import read_wish as read_wish
 
 __all__: list[str]

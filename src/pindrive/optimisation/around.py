@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.optimisation.goals import Variable
 from pindrive.optimisation.problem import Problem
 from pindrive.optimisation.results import Alternative, Map
-from pindrive.optimisation.wish import Variable
 
 Array = NDArray[np.float64]
 MAPPED: Final = 3

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.files.device import keys_meant
+from pindrive.files.keys import keys_meant
 from pindrive.files.template import NUMBERS
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import sweepable
 

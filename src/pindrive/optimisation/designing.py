@@ -15,6 +15,8 @@ from pindrive.evaluation.resolution import largest_speeds
 from pindrive.lazy import qmc
 from pindrive.optimisation.around import alternatives, at_ends, maps
 from pindrive.optimisation.effort import Count, Effort, usual_effort
+from pindrive.optimisation.goals import PRICE, SPEED, Goal, Wish
+from pindrive.optimisation.line_speed import speeds
 from pindrive.optimisation.problem import (
     Problem,
     first_cases,
@@ -24,8 +26,8 @@ from pindrive.optimisation.problem import (
 from pindrive.optimisation.results import Demanded, Design, Front, Reached
 from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
-from pindrive.optimisation.wish import PRICE, SPEED, Goal, Wish, read_wish, wish_of
-from pindrive.quantities.table import check_whole
+from pindrive.optimisation.wish import read_wish, wish_of
+from pindrive.quantities.refusal import check_whole
 from pindrive.study.cluster import Cluster, crew
 from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
@@ -133,6 +135,7 @@ class _Optimisation:
             links=wish.plan.links,
             demands=wish.demands,
             goals=wish.goals,
+            line_speeds=speeds,
             threads=threads,
             count=Count(),
         )

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
 from pindrive.optimisation.effort import Count
-from pindrive.optimisation.line_speed import speeds
+from pindrive.optimisation.goals import PRICE, SPEED, Goal, Variable
 from pindrive.optimisation.search import Population
-from pindrive.optimisation.wish import PRICE, SPEED, Goal, Variable
 from pindrive.quantities.budgets import worker_count
 from pindrive.study.distributions import Linked, with_links
 from pindrive.study.evaluate import evaluate, exist, is_slow
@@ -22,12 +21,14 @@ from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Demand
 from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from pindrive.study.cluster import Cluster
     from pindrive.study.design import Plan
 
 Array = NDArray[np.float64]
+Asked = tuple["Mapping[str, float]", float]
+"""The values of keys, SI, and the speed to beat; NaN: there is none."""
 POINTS: Final = 1 << 18
 """Motions that are simulated together."""
 PORTION: Final = 4
@@ -54,6 +55,8 @@ class Problem:
         links: keys that follow others.
         demands: limits on numbers.
         goals: at least one.
+        line_speeds: the largest hand speeds of some devices, with the trials that they took, as
+            `pindrive.optimisation.line_speed.speeds` finds them.
         threads: how many work.
         count: of what was simulated.
         tell: called after each part of the work.
@@ -66,6 +69,7 @@ class Problem:
     links: Mapping[str, Linked]
     demands: tuple[Demand, ...]
     goals: tuple[Goal, ...]
+    line_speeds: Callable[[Plan, Sequence[Asked]], list[tuple[float, int]]]
     threads: int | None = None
     crew: Cluster | None = None
     """Workers elsewhere, which take scans, and motions by the ten thousand; None: none are."""
@@ -189,11 +193,11 @@ class Problem:
         portions = [asked[i : i + PORTION] for i in range(0, len(asked), PORTION)]
         processes = worker_count(self.threads)
         if self.crew is not None:
-            rows = [*self.crew.spread(speeds, self.plan, portions)]
+            rows = [*self.crew.spread(self.line_speeds, self.plan, portions)]
         elif processes == 1 or len(portions) == 1:
-            rows = [speeds(self.plan, portion) for portion in portions]
+            rows = [self.line_speeds(self.plan, portion) for portion in portions]
         else:
-            rows = standing(processes).spread(speeds, self.plan, portions)
+            rows = standing(processes).spread(self.line_speeds, self.plan, portions)
         every = [row for portion in rows for row in portion]
         self.count.scans += sum(trials for _, trials in every)
         return np.array([speed for speed, _ in every]).reshape(shape)

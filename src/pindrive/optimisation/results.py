@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import lazy
+from pindrive.files.keys import variable
 from pindrive.files.template import NUMBERS as KEYS
 from pindrive.lazy import xr
-from pindrive.optimisation.wish import Goal, Variable, Wish, unit_of
+from pindrive.optimisation.goals import Goal, Variable, Wish, unit_of
 from pindrive.quantities.quantity import significant
 from pindrive.quantities.status import Status
-from pindrive.study.design import variable
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
 from pindrive.study.outputs import NUMBERS, Demand, attributes, label
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
     from pindrive.optimisation.effort import Count
-    from pindrive.study.robustness import Share
+    from pindrive.study.compliance import Share
 
 __all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
 

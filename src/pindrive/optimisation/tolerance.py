@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.optimisation.goals import Variable, Wish
 from pindrive.optimisation.problem import Problem
-from pindrive.optimisation.wish import Variable, Wish
+from pindrive.study.compliance import Share
 from pindrive.study.distributions import Sample, implied_links
-from pindrive.study.robustness import Share
 from pindrive.study.spec import plan_of
 
 if TYPE_CHECKING:
@@ -42,7 +42,8 @@ def excess_as_built(
     tables = {"tolerances": wish.tables["tolerances"]}
     if wish.plan.page:
         tables["page"] = wish.plan.page.page
-    plan = plan_of(tables, device, path=wish.plan.path, place=str(wish.plan.path), text="")
+    file = wish.plan.path
+    plan = plan_of(tables, device, path=file, place=str(file), text="", si=wish.si)
     keys = [*plan.tolerances]
     varied = {*keys, *(key for condition in problem.conditions for key in condition.axes)}
     parts = Sample(tuple(keys), draws, seed).parts(np.arange(draws)).T

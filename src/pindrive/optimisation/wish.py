@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import combinations
 from os import PathLike
@@ -18,20 +17,20 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.device.reading import Page
-from pindrive.files.device import ConfigError, DeviceFile, keys_meant, read_tables
-from pindrive.files.schema import written
+from pindrive.device.page_description import Page
+from pindrive.files.device import ConfigError, DeviceFile, read_tables
+from pindrive.files.keys import keys_meant, written
 from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
+from pindrive.optimisation.goals import PRICE, SPEED, YIELD, Goal, Variable, Wish
 from pindrive.quantities import budgets
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import quoted
-from pindrive.study.axes import as_written, written_axes
+from pindrive.study.axes import as_read, written_axes
 from pindrive.study.design import COUNTS, Dimension, Plan, read_page
-from pindrive.study.distributions import Distribution, Grid
+from pindrive.study.distributions import Distribution
 from pindrive.study.outputs import (
     DESIGN_OUTPUTS,
-    NUMBERS,
     OUTPUTS,
     SCAN_OUTPUTS,
     Demand,
@@ -42,12 +41,7 @@ from pindrive.study.outputs import (
 )
 from pindrive.study.spec import device_in, plan_of
 
-__all__ = ["Goal", "Variable", "Wish", "read_wish", "wish_of"]
-
 Array = NDArray[np.float64]
-PRICE: Final = "design_price"
-YIELD: Final = "design_yield"
-SPEED: Final = "design_distinct_speed"
 MOST_GOALS: Final = 3
 _DIRECTIONS: Final = ("minimise", "maximise")
 _BESIDE: Final = ("conditions", "catalogues", "goals")
@@ -59,95 +53,6 @@ _TEMPLATE: Final = (
     'a wish names its device, base = "device.toml", what may vary in [axes], what is demanded in '
     "[specification] and what is best in [goals]"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Goal:
-    """A number that is to be small, or large.
-
-    Attributes:
-        name: of the number.
-        maximise: whether it is to be large.
-    """
-
-    name: str
-    maximise: bool
-
-    def minimised(self, values: Array) -> Array:
-        """Values (SI) so that the best is the least; infinite where there is none."""
-        return np.where(np.isnan(values), np.inf, -values if self.maximise else values)
-
-    def text(self) -> str:
-        """For display: "least settling_time"."""
-        return f"{'largest' if self.maximise else 'least'} {label(self.name)}"
-
-
-@dataclass(frozen=True, slots=True)
-class Variable:
-    """What may be chosen, or what may occur: one key over a range, or keys with rows of values.
-
-    Attributes:
-        name: the first of its keys, or that of its catalogue.
-        axes: how each of its keys is written.
-        choices: how many rows there are; 0 for a range.
-        catalogue: of which the rows are the parts.
-    """
-
-    name: str
-    axes: Mapping[str, Grid | Distribution]
-    choices: int = 0
-    catalogue: Catalogue | None = None
-
-    def index(self, parts: Array) -> NDArray[np.int64]:
-        """The rows that parts from 0 to 1 stand for."""
-        return np.clip((parts * self.choices).astype(np.int64), 0, self.choices - 1)
-
-    def columns(self, parts: Array) -> dict[str, Array]:
-        """The values of its keys, SI, at parts from 0 to 1."""
-        return {
-            key: axis.ppf(parts) if isinstance(axis, Distribution) else axis.at(self.index(parts))
-            for key, axis in self.axes.items()
-        }
-
-    def part(self, row: int) -> float:
-        """The part that stands for a row."""
-        return (row + 0.5) / self.choices
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
-    """What is wanted of a design.
-
-    Attributes:
-        plan: the device, what follows what, and the page; its axes are variables and conditions.
-        tables: as they were written.
-        variables: what may be chosen.
-        conditions: under which each demand must be met, and each goal counts by its worst.
-        demands: limits on numbers.
-        least_yield: the part of the devices built within the tolerances that must meet them all;
-            None: none is demanded.
-        goals: one to three, the first the most important.
-        catalogues: whose parts are chosen.
-    """
-
-    plan: Plan
-    tables: Mapping[str, Any]
-    variables: tuple[Variable, ...]
-    conditions: tuple[Variable, ...]
-    demands: tuple[Demand, ...]
-    least_yield: float | None
-    goals: tuple[Goal, ...]
-    catalogues: tuple[Catalogue, ...]
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """The files that it was read from."""
-        return (*self.plan.inputs, *(catalogue.path for catalogue in self.catalogues))
-
-    def __repr__(self) -> str:
-        """What varies and what is best, in a line."""
-        what = ", ".join(variable.name for variable in self.variables)
-        return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
 
 
 def read_wish(
@@ -171,7 +76,7 @@ def read_wish(
         raise ConfigError([f"{file}: {what}; {_TEMPLATE}"])
     problems = [*_unknown(tables, file)]
     own, text = device_in(tables, file, overrides, problems)
-    return _wish(tables, device or own, file, str(file), text, problems)
+    return _wish(tables, device or own, file, str(file), text, problems, si=False)
 
 
 def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
@@ -192,7 +97,7 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     problems = [*_unknown(given, Path("wish"))]
     for name in ("axes", "conditions", "tolerances"):
         if name in given:
-            given[name] = as_written(given[name])
+            given[name] = as_read(given[name], name)
     if isinstance(given.get("page"), str):
         given["page"] = Page(text=given["page"])
     if isinstance(given.get("page"), Mapping):
@@ -200,7 +105,7 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
     if isinstance(given.get("page"), Page):
         given["page"].check("page.{}")
     text = json.dumps(given, indent=1, ensure_ascii=False, default=repr)
-    return _wish(given, device, device.path, "wish", text, problems)
+    return _wish(given, device, device.path, "wish", text, problems, si=True)
 
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
@@ -223,6 +128,8 @@ def _wish(
     place: str,
     text: str,
     problems: list[str],
+    *,
+    si: bool,
 ) -> Wish:
     scans = "page" in tables
     for name in (*_BESIDE, "axes", "tolerances", "specification"):
@@ -260,7 +167,7 @@ def _wish(
     study = rest | {"axes": axes, "zip": [*tables.get("zip", []), *groups]}
     chunk = (budgets.CHUNK_OF_SCANS if scans else budgets.CHUNK).most
     study |= {"sample": {"count": 1}, "chunk": chunk}  # no points are computed of it
-    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems)
+    plan = plan_of(study, device, path=path, place=place, text=text, problems=problems, si=si)
     problems += _contradictions(plan, demanded, goals, catalogues, place)
     problems += _no_ranges(plan, conditions, place)
     if problems:
@@ -275,6 +182,7 @@ def _wish(
         least_yield=least,
         goals=goals,
         catalogues=catalogues,
+        si=si,
     )
 
 
@@ -434,14 +342,3 @@ def _mixed(dimension: Dimension, conditions: set[str], place: str) -> Iterable[s
     inside = conditions & dimension.axes.keys()
     if not dimension.sample and inside and inside != dimension.axes.keys():
         yield f"{place}: zip: {', '.join(dimension.axes)} are not all of one table"
-
-
-def outputs_of(wish: Wish) -> tuple[str, ...]:
-    """The numbers of motions or scans that it needs."""
-    names = (*(goal.name for goal in wish.goals), *(demand.name for demand in wish.demands))
-    return tuple(name for name in dict.fromkeys(names) if name not in DESIGN_OUTPUTS)
-
-
-def unit_of(name: str) -> tuple[str, float]:
-    """The unit in which a person reads a number, and how many of it make one in SI."""
-    return NUMBERS[name].display_unit, NUMBERS[name].display_scale

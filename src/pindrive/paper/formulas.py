@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper.release import Releases
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

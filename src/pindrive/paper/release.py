@@ -12,7 +12,8 @@ from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import NON_NEGATIVE
-from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

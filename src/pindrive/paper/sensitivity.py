@@ -14,7 +14,7 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from pindrive.motion.batch import batched
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.motion.simulate import simulated
 from pindrive.paper import baseline
 from pindrive.paper.exhibit import Exhibit, listed, page, trend

@@ -26,7 +26,7 @@ from pindrive.evaluation.tactile_image import view
 from pindrive.plot.pin import moment
 from pindrive.plot.style import GREY, MM, PALETTE, SMALL, STYLE, plain
 from pindrive.quantities import budgets
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

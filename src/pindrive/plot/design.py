@@ -10,10 +10,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from pindrive.files.keys import variable
 from pindrive.lazy import matplotlib
 from pindrive.plot.contours import MAP
 from pindrive.plot.style import PALETTE, SMALL, STYLE, Figure, new_figure, plain
-from pindrive.study.design import variable
 from pindrive.study.slices import QUANTITY, axis_label
 
 if TYPE_CHECKING:

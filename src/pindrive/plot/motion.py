@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from pindrive.motion.drive import Profile
+from pindrive.motion.profile import Profile
 from pindrive.plot.style import (
     CONTACTS,
     EVENT_SHAPE,

@@ -23,7 +23,7 @@ from pindrive.plot.style import (
     mark_events,
     shade,
 )
-from pindrive.quantities.table import check_whole
+from pindrive.quantities.refusal import check_whole
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

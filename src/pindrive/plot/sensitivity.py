@@ -11,9 +11,9 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from pindrive.files.keys import variable
 from pindrive.lazy import matplotlib
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
-from pindrive.study.design import variable
 from pindrive.study.slices import elasticity, ranges, symbol, words
 
 if TYPE_CHECKING:

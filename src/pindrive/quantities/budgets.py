@@ -11,7 +11,7 @@ import os
 from dataclasses import dataclass
 from typing import Final
 
-from pindrive.quantities.table import check_whole, refusal
+from pindrive.quantities.refusal import check_whole, refusal
 
 
 @dataclass(frozen=True, slots=True)

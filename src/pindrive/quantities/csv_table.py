@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Final
 
 from pindrive.quantities import budgets
-from pindrive.quantities.table import check, refusal
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import check
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 _HEADING: Final = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")

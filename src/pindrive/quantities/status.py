@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.drive import INPUTS, PARTS
 
 __all__ = ["OUTCOMES", "End", "SimulationError", "Status", "outcome_attributes"]
 
@@ -57,8 +57,9 @@ class Status(IntEnum):
         """What it means and what to do about it, for a person."""
         if self > Status.refused:
             bad = self.name.removeprefix("bad_")
-            name = bad if bad in QUANTITIES else bad.replace("_", ".", 1)
-            return f"{name} is out of its range: {QUANTITIES[name].meaning}"
+            known = {quantity.name: quantity.meaning for quantity in (*INPUTS, *PARTS)}
+            name = bad if bad in known else bad.replace("_", ".", 1)
+            return f"{name} is out of its range: {known[name]}"
         return _EXPLANATIONS[self]
 
 

@@ -6,15 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import inf
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
-from pindrive.files.device import keys_meant, not_known
-from pindrive.files.schema import number, written
+from pindrive.files.keys import has_part, keys_meant, not_known, number
 from pindrive.files.template import DRIVE, NUMBERS, TABLES, usual
 from pindrive.quantities import budgets
-from pindrive.quantities.table import refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
-from pindrive.study.design import has_part
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
 
 if TYPE_CHECKING:
@@ -59,12 +57,17 @@ def sweepable(given: str, place: str, scans: bool) -> str:
 
 
 class AxisReader:
-    """Reads what is written for one key; says mistakes with the file and the key."""
+    """Reads what is written for one key; says mistakes with the file and the key.
 
-    def __init__(self, file: str, table: str, key: str, base: float | None, scans: bool) -> None:
+    With `si`, of what Python gave, bare numbers are SI.
+    """
+
+    def __init__(
+        self, file: str, table: str, key: str, base: float | None, *, scans: bool, si: bool
+    ) -> None:
         self._file, self._label, self._key = file, f"{table}.{key}", key
         self._quantity: Quantity = NUMBERS[key]
-        self._base, self._scans = base, scans
+        self._base, self._scans, self._si = base, scans, si
         self._tolerance = table == "tolerances"
 
     def read(self, spec: object) -> Axis:
@@ -115,7 +118,7 @@ class AxisReader:
     def _value(self, given: object, part: str) -> float:
         """One value in SI, within the key's bounds."""
         quantity, label = self._quantity, f"{self._label}{part}"
-        return number(given, quantity, usual(quantity), label, self._file)
+        return number(given, quantity, usual(quantity), label, self._file, si=self._si)
 
     def _pair(self, given: object, part: str, names: tuple[str, str]) -> list[Any]:
         if not isinstance(given, list) or len(given) != 2:
@@ -219,6 +222,8 @@ class AxisReader:
         try:
             if relative:
                 off = to_si(text, "1", "5 %") * abs(about or 0.0)
+            elif self._si and type(given) in (int, float):
+                off = float(cast(float, given))
             else:
                 off = to_si(text or repr(given), quantity.unit, example)
         except UnitError as error:
@@ -228,12 +233,8 @@ class AxisReader:
         return off
 
 
-_NO_VALUES: Final = ("count", "times", "of")
-"""Parts of an axis that are no values of its key."""
-
-
-def as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Axes as a study file writes them: numbers, which are SI, with their unit.
+def as_read(axes: Mapping[str, Any] | None, label: str) -> dict[str, Any] | None:
+    """Axes from Python with the types that TOML has: arrays are lists, their numbers plain.
 
     Raises:
         ValueError: they are no mapping.
@@ -241,35 +242,18 @@ def as_written(axes: Mapping[str, Any] | None) -> dict[str, Any] | None:
     if axes is None:
         return None
     if not isinstance(axes, Mapping):
-        raise ValueError(refusal("axes", 'a mapping, like {"mass": [0.01, 0.02]}', repr(axes)))
-    return {given: _axis(given, spec) for given, spec in written_axes(axes)}
+        example = 'a mapping, like {"mass": [0.01, 0.02]}'
+        raise ValueError(refusal(label, example, repr(axes)))
+    return {given: _plain(spec) for given, spec in axes.items()}
 
 
-def _axis(given: str, spec: Any) -> Any:
-    keys = [key for key in keys_meant(given) if key in NUMBERS]
-    if len(keys) != 1:
-        return spec  # said where keys are read
-    key = keys[0]
-
-    def value(one: Any) -> Any:
-        if isinstance(one, Real) and not isinstance(one, bool):
-            return written(key, float(one))
-        return str(one) if isinstance(one, str) else one
-
-    def values(many: Any) -> Any:
-        if isinstance(many, str) or not isinstance(many, Iterable):
-            return many
-        return [value(one) for one in many]
-
-    if not isinstance(spec, Mapping):
-        return values(spec)
-    found: dict[str, Any] = {}
-    for part, inner in spec.items():
-        if part in _NO_VALUES:
-            found[part] = int(inner) if isinstance(inner, Integral) else inner
-        elif part == "lognormal":
-            median, *rest = inner
-            found[part] = [value(median), *rest]
-        else:
-            found[part] = values(inner)
-    return found
+def _plain(spec: Any) -> Any:
+    if isinstance(spec, str):
+        return str(spec)
+    if isinstance(spec, Mapping):
+        return {part: _plain(inner) for part, inner in spec.items()}
+    if isinstance(spec, Iterable):
+        return [_plain(inner) for inner in spec]
+    if isinstance(spec, Real) and not isinstance(spec, bool):
+        return int(spec) if isinstance(spec, Integral) else float(spec)
+    return spec

@@ -1,12 +1,13 @@
-"""How many points of a study's file meet its specification."""
+"""How many points or designs meet a specification: counts, and a part with its interval."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.lazy import h5py
+from pindrive.lazy import h5py, stats
 from pindrive.study.outputs import from_attribute, missing
 
 if TYPE_CHECKING:
@@ -17,8 +18,38 @@ if TYPE_CHECKING:
 
     from pindrive.study.outputs import Demand
 
+_CONFIDENCE: Final = 0.95
 _SLICE: Final = 1 << 22
 """Points that are read at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A part of the designs that exist, with its exact 95 % confidence interval.
+
+    The interval is that of Clopper and Pearson 1934.
+    """
+
+    met: int
+    of: int
+    low: float
+    high: float
+    without: int = 0
+    """How many have no number to meet the demand with, such as one that never settles."""
+
+    @property
+    def text(self) -> str:
+        """The part for a person: "97.482 %", never all nor none by rounding."""
+        shown = f"{100.0 * self.met / self.of:.3f}"
+        if shown == "100.000" and self.met < self.of:
+            return "> 99.999 %"
+        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
+
+    @classmethod
+    def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
+        """Of so many independent draws of designs that exist, at least 1."""
+        interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
+        return cls(met, of, float(interval.low), float(interval.high), without)
 
 
 def points_that_meet(path: Path) -> tuple[int, int] | None:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.device.reading import Page, Reading
+from pindrive.device.page_description import Page, recorded
+from pindrive.device.reading import Reading
 from pindrive.files.device import Setting, device_of
-from pindrive.files.schema import number, written
-from pindrive.files.template import DRIVE, NUMBERS
-from pindrive.quantities.table import QUANTITIES, refusal
+from pindrive.files.keys import has_part, number, written
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import quoted
 from pindrive.study.distributions import (
     Axis,
@@ -159,7 +160,7 @@ def _scene(given: StudyPage, reading: Reading, array: PinArray) -> Scene:
 
 @lru_cache(maxsize=_KEPT)
 def _recorded(given: StudyPage, path: Path, reading: Reading) -> HandPath:
-    return reading.record(path)
+    return recorded(path, reading)
 
 
 CHUNK: Final = 1 << 16
@@ -168,16 +169,6 @@ SCANS: Final = 16
 """The same of scans: from a quarter of a second's work with one pin to some with sixteen."""
 COUNTS: Final = ("array.columns", "array.rows")
 """Keys that are whole numbers."""
-
-
-def variable(key: str) -> str:
-    """What a key of the device file is called in Python and in a NetCDF file."""
-    return NUMBERS[key].name.replace(".", "_")
-
-
-def has_part(key: str, scans: bool) -> bool:
-    """Whether a key of the device file has a part in scans, or else in releases."""
-    return not key.startswith("motion.") if scans else key in DRIVE
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,12 @@ import warnings
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, log
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 from zlib import crc32
 
 import numpy as np
 
-from pindrive.files.schema import friction_parts
+from pindrive.files.keys import friction_parts
 from pindrive.files.template import DRIVE
 from pindrive.lazy import qmc, special
 from pindrive.motion.friction import COEFFICIENT_OF, friction_force
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
     from numpy.typing import NDArray
-
-    from pindrive.files.device import DeviceFile
 
     Columns = dict[str, NDArray[np.float64]]
 
@@ -229,7 +227,18 @@ LEFT_OUT: Final = {
 """Keys that are another one's value where a device file leaves them out."""
 
 
-def base_value(device: DeviceFile, key: str) -> Any:
+class Valued(Protocol):
+    """What is asked of a `DeviceFile`: what its keys have, SI, and which of them follow."""
+
+    @property
+    def derived(self) -> tuple[str, ...]:
+        """The keys whose values follow from those of others."""
+
+    def values(self) -> Mapping[str, Any]:
+        """The value of every key, SI; None where it was left out."""
+
+
+def base_value(device: Valued, key: str) -> Any:
     """What the device has for a key, in SI; for what it leaves out, what holds then."""
     value = device.values()[key]
     if value is not None or key not in LEFT_OUT:
@@ -237,7 +246,7 @@ def base_value(device: DeviceFile, key: str) -> Any:
     return device.values()[LEFT_OUT[key]]
 
 
-def implied_links(device: DeviceFile, varied: Collection[str], scans: bool) -> dict[str, Linked]:
+def implied_links(device: Valued, varied: Collection[str], scans: bool) -> dict[str, Linked]:
     """The keys that a device gives and that keep their ratio to varied ones (`Quantity.follows`).
 
     A curve is no single value: it keeps its ratio where a motion is put together. A ratio to zero
@@ -271,7 +280,7 @@ def implied_links(device: DeviceFile, varied: Collection[str], scans: bool) -> d
     return found
 
 
-def with_links(device: DeviceFile, columns: Columns, links: Mapping[str, Linked]) -> Columns:
+def with_links(device: Valued, columns: Columns, links: Mapping[str, Linked]) -> Columns:
     """The columns, and those of the keys that follow them or a value of the device.
 
     The links have no circle (see `circle`).

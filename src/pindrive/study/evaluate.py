@@ -10,20 +10,22 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.device.scanning import scan
-from pindrive.evaluation.perception import judge
 from pindrive.files.device import motion_of
+from pindrive.files.keys import variable
 from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
-from pindrive.motion.drive import Contact, Drive, Profile
+from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
 from pindrive.motion.motion import Motion
+from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.budgets import worker_count
+from pindrive.quantities.refusal import Refusal, refused_by, told_by
+from pindrive.quantities.results import LINE
 from pindrive.quantities.status import End, SimulationError, Status
-from pindrive.quantities.table import Refusal, refused_by, told_by
-from pindrive.study.design import device_at, variable
-from pindrive.study.outputs import MEASURED, SCANNED, scan_numbers, variables
+from pindrive.study.design import device_at
+from pindrive.study.outputs import BAD_WHEN_SMALL, MEASURED, SCANNED, short, variables
 from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
@@ -57,7 +59,29 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     scene = plan.page.scene(reading, device.array)
     path = plan.page.hand(reading, scene, device.array)
     done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
-    return judge(done, file.whole.criteria())
+    judgement: Judgement = done.evaluate(file.whole.criteria())
+    return judgement
+
+
+def scan_numbers(judgement: Judgement) -> dict[str, float]:
+    """The numbers of one scan, SI, by their names; NaN where one does not exist."""
+    counts, path = judgement.counts, judgement.scan.path
+    lines, duration = counts["judged.lines"], path.end - path.begin
+    on = max(sum(end - begin for begin, end in pin.energised) for pin in judgement.scan.pins)
+    coil = judgement.scan.device.magnet.coil
+    found: dict[str, float] = {
+        "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
+        **counts,
+        "hand.duration": duration,
+        "magnet.on_part": on / duration,
+        "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
+    }
+    for quantity in LINE:
+        name = short(quantity)
+        least, median, largest = judgement.spread(quantity.name)
+        found[f"median.{name}"] = median
+        found[f"worst.{name}"] = least if name in BAD_WHEN_SMALL else largest
+    return found
 
 
 def _evaluate_scans(

@@ -10,11 +10,12 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.files.device import motion_of
+from pindrive.files.keys import variable
 from pindrive.lazy import xr
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.study.design import ranges_of, variable
+from pindrive.study.design import ranges_of
 from pindrive.study.distributions import base_value, exponents
 
 if TYPE_CHECKING:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, replace
-from math import inf, nan
+from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pindrive.quantities.quantity import Quantity
+from pindrive.quantities.refusal import hint, refusal
 from pindrive.quantities.results import DESIGNED, ENDING, ENERGY, JUDGED, LINE, TRANSIENT
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
-from pindrive.quantities.table import QUANTITIES, hint, refusal
+from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
@@ -21,26 +22,26 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from pindrive.evaluation.results import Judgement
-    from pindrive.files.device import DeviceFile
     from pindrive.quantities.quantity import Quantity
 
-_BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
+BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
+"""Numbers of a line, by their last parts, whose worst value is the least."""
 
 
-def _short(quantity: Quantity) -> str:
+def short(quantity: Quantity) -> str:
+    """The last part of the name of a line's number."""
     return quantity.name.partition(".")[2]
 
 
 def _median(quantity: Quantity) -> Quantity:
     meaning = f"median of the lines shown: {quantity.meaning}"
-    return replace(quantity, name=f"median.{_short(quantity)}", meaning=meaning)
+    return replace(quantity, name=f"median.{short(quantity)}", meaning=meaning)
 
 
 def _worst(quantity: Quantity) -> Quantity:
-    end = "least" if _short(quantity) in _BAD_WHEN_SMALL else "largest"
+    end = "least" if short(quantity) in BAD_WHEN_SMALL else "largest"
     meaning = f"{end} of the lines shown: {quantity.meaning}"
-    return replace(quantity, name=f"worst.{_short(quantity)}", meaning=meaning)
+    return replace(quantity, name=f"worst.{short(quantity)}", meaning=meaning)
 
 
 SCANNED: Final[tuple[Quantity, ...]] = (
@@ -55,27 +56,6 @@ SCANNED: Final[tuple[Quantity, ...]] = (
 """Medians and worst values are of the lines that have the number: one that does not settle has no
 smear, and is counted as unsettled."""
 COUNTED: Final = tuple(quantity.name for quantity in JUDGED)
-
-
-def scan_numbers(judgement: Judgement) -> dict[str, float]:
-    """The numbers of one scan, SI, by their names; NaN where one does not exist."""
-    counts, path = judgement.counts, judgement.scan.path
-    lines, duration = counts["judged.lines"], path.end - path.begin
-    on = max(sum(end - begin for begin, end in pin.energised) for pin in judgement.scan.pins)
-    coil = judgement.scan.device.magnet.coil
-    found: dict[str, float] = {
-        "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
-        **counts,
-        "hand.duration": duration,
-        "magnet.on_part": on / duration,
-        "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
-    }
-    for quantity in LINE:
-        name = _short(quantity)
-        least, median, largest = judgement.spread(quantity.name)
-        found[f"median.{name}"] = median
-        found[f"worst.{name}"] = least if name in _BAD_WHEN_SMALL else largest
-    return found
 
 
 def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
@@ -120,12 +100,8 @@ def is_stepped(name: str) -> bool:
     return name in _COUNTS or name == "judged_shown_part"
 
 
-def usual_outputs(
-    device: DeviceFile, keys: set[str], among: Sequence[str] = OUTPUTS
-) -> tuple[str, ...]:
-    """All numbers that exist but the ledger's; the skin's only of a skin, the coil's likewise."""
-    rigid = device.drive.finger.rigid and "finger.stiffness" not in keys
-    coil = device.whole and device.whole.magnet().coil
+def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool) -> tuple[str, ...]:
+    """All numbers but those of the ledger; of a skin and of a coil only where there is one."""
     missing = (*LEDGER, *(_SKIN if rigid else ()), *(() if coil else ("coil_warming",)))
     return tuple(name for name in among if name not in missing)
 

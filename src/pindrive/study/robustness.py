@@ -9,10 +9,11 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.files.device import motion_of
-from pindrive.lazy import optimize, stats, xr
+from pindrive.lazy import optimize, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
+from pindrive.study.compliance import Share
 from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
@@ -35,41 +36,11 @@ USUAL_COUNT_OF_SCANS: Final = 1000
 """A scan takes some ten thousand times as long as a release."""
 WATCHED: Final = ("transient_settling_time", "transient_swing")
 WATCHED_OF_SCANS: Final = ("judged_shown_part", "median_lag_on")
-_CONFIDENCE: Final = 0.95
 _POPULATION: Final = 15
 """Members for each key of the search for the worst case."""
 _GENERATIONS: Final = 60
 _POPULATION_OF_SCANS: Final = 5
 _GENERATIONS_OF_SCANS: Final = 10
-
-
-@dataclass(frozen=True, slots=True)
-class Share:
-    """A part of the designs that exist, with its exact 95 % confidence interval.
-
-    The interval is that of Clopper and Pearson 1934.
-    """
-
-    met: int
-    of: int
-    low: float
-    high: float
-    without: int = 0
-    """How many have no number to meet the demand with, such as one that never settles."""
-
-    @property
-    def text(self) -> str:
-        """The part for a person: "97.482 %", never all nor none by rounding."""
-        shown = f"{100.0 * self.met / self.of:.3f}"
-        if shown == "100.000" and self.met < self.of:
-            return "> 99.999 %"
-        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
-
-    @classmethod
-    def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
-        """Of so many independent draws of designs that exist, at least 1."""
-        interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
-        return cls(met, of, float(interval.low), float(interval.high), without)
 
 
 @dataclass(frozen=True, slots=True)

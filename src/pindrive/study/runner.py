@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pindrive.files.keys import variable
 from pindrive.files.output import (
     STUDY_NETCDF,
     Output,
@@ -29,7 +30,6 @@ from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.study import outputs
 from pindrive.study.cluster import check_installed, cluster_executor
-from pindrive.study.design import variable
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
     Journal,

@@ -11,8 +11,8 @@ from pindrive import lazy
 from pindrive.lazy import qmc, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
-from pindrive.quantities.table import refusal
 from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities

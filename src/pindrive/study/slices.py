@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.files import template
-from pindrive.files.device import keys_meant
+from pindrive.files.keys import keys_meant, variable
 from pindrive.files.template import WHOLE, usual
 from pindrive.lazy import xr
-from pindrive.quantities.table import hint, short
+from pindrive.quantities.refusal import hint
+from pindrive.quantities.table import short
 from pindrive.quantities.units import UnitError, quoted, to_si
-from pindrive.study.design import variable
 from pindrive.study.distributions import Linked
 from pindrive.study.outputs import (
     MEASURED,

@@ -8,22 +8,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.device.reading import Page
-from pindrive.files.device import (
-    ConfigError,
-    Setting,
-    device_of,
-    keys_meant,
-    read_tables,
-    settings_of,
-)
+from pindrive.device.page_description import Page
+from pindrive.files.device import ConfigError, Setting, device_of, read_tables, settings_of
+from pindrive.files.keys import keys_meant, variable
 from pindrive.files.recording import is_file
 from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.quantities import budgets
-from pindrive.quantities.table import hint, refusal
+from pindrive.quantities.refusal import hint, refusal
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import AxisReader, sweepable, written_axes
-from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page, variable
+from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page
 from pindrive.study.distributions import (
     MOST_SOBOL,
     Axis,
@@ -88,6 +82,7 @@ def plan_of(
     place: str,
     text: str,
     problems: Iterable[str] = (),
+    si: bool = False,
 ) -> Plan:
     """The study of a device that the tables of a study file describe.
 
@@ -99,6 +94,7 @@ def plan_of(
         place: where the tables were written, for messages.
         text: the same as text, to be kept with the numbers.
         problems: what was found wrong before.
+        si: whether bare numbers are SI, as from Python.
 
     Raises:
         ConfigError: anything unknown, malformed, out of bounds or contradictory.
@@ -108,7 +104,7 @@ def plan_of(
     if isinstance(tables.get("page"), Page):
         page = _gathered(tables["page"], place, problems)
         device = device if device.whole else device.with_whole()
-    reader = _Reader(place, tables, device, problems)
+    reader = _Reader(place, tables, device, problems, si)
     demanded = demands(reader.table("specification"), place, problems, reader.among)
     plan = Plan(
         path=path,
@@ -230,10 +226,15 @@ class _Reader:
     """Reads the tables of one study file; what is wrong is appended to `problems`."""
 
     def __init__(
-        self, file: str, tables: Mapping[str, Any], device: DeviceFile, problems: list[str]
+        self,
+        file: str,
+        tables: Mapping[str, Any],
+        device: DeviceFile,
+        problems: list[str],
+        si: bool,
     ) -> None:
         self._file, self._tables, self._device = file, tables, device
-        self._problems, self._scans = problems, "page" in tables
+        self._problems, self._scans, self._si = problems, "page" in tables, si
         self.among = SCAN_OUTPUTS if self._scans else OUTPUTS
         axes = self._axes("axes") | self._axes("conditions")
         self.links = self._links(axes)
@@ -280,7 +281,10 @@ class _Reader:
         """The variables to keep, each once, with the status of every point."""
         given = self._tables.get("outputs")
         if given is None:
-            return usual_outputs(self._device, set(self._swept), self.among)
+            rigid = self._device.drive.finger.rigid and "finger.stiffness" not in self._swept
+            whole = self._device.whole
+            coil = whole is not None and whole.magnet().coil is not None
+            return usual_outputs(self.among, rigid=rigid, coil=coil)
         if not isinstance(given, list) or not given:
             required = 'a list of numbers, like ["settling_time", "swing"]'
             self._problems.append(refusal("outputs", required, quoted(given), self._file))
@@ -313,7 +317,9 @@ class _Reader:
                 names[key] = given
                 base = base_value(self._device, key)
                 number = base if isinstance(base, float) else None
-                found[key] = AxisReader(self._file, table, key, number, self._scans).read(spec)
+                found[key] = AxisReader(
+                    self._file, table, key, number, scans=self._scans, si=self._si
+                ).read(spec)
             except ValueError as error:
                 self._problems.append(str(error))
         return found

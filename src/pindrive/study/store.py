@@ -22,11 +22,11 @@ import numpy as np
 
 from pindrive.device.coil import COIL
 from pindrive.device.electromagnet import DIRECT
+from pindrive.files.keys import variable
 from pindrive.files.output import OutputError, naming
 from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
-from pindrive.study.design import variable
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,12 +10,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from pindrive.device.reading import Page
+from pindrive.device.page_description import Page
 from pindrive.files.device import DeviceFile
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.table import refusal
-from pindrive.study.axes import as_written
+from pindrive.quantities.refusal import refusal
+from pindrive.study.axes import as_read
 from pindrive.study.design import Plan
 from pindrive.study.runner import Work, on_cluster, on_threads, sweep
 from pindrive.study.spec import plan_of, read_study
@@ -84,8 +84,8 @@ class Study(Plan):
             raise ValueError(refusal("device", "what load_device reads", repr(device)))
         tables: dict[str, Any] = {
             "name": name or None,
-            "axes": as_written(axes),
-            "tolerances": as_written(tolerances),
+            "axes": as_read(axes, "axes"),
+            "tolerances": as_read(tolerances, "tolerances"),
             "outputs": None if outputs is None else list(outputs),
             "sample": None if sample is None else dict(sample),
             "specification": None if specification is None else dict(specification),
@@ -97,7 +97,7 @@ class Study(Plan):
             whole.check("page.{}")
             tables["page"] = whole
         text = json.dumps(tables, indent=1, ensure_ascii=False, default=repr)
-        self._take(plan_of(tables, device, path=device.path, place=_PLACE, text=text))
+        self._take(plan_of(tables, device, path=device.path, place=_PLACE, text=text, si=True))
 
     def _take(self, plan: Plan) -> None:
         """Become the study that a plan says."""

@@ -10,7 +10,7 @@ from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
 from pindrive.files.template import NUMBERS
 from pindrive.motion.coefficients import KINETIC, within
-from pindrive.motion.contact import check_one_kind
+from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES

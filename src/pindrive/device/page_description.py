@@ -1,0 +1,130 @@
+"""What a user says is on a page, what it is made of, and the hand's path over it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pindrive.device.page import in_words
+from pindrive.device.recording import read_csv
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import check
+
+if TYPE_CHECKING:
+    from pindrive.device.hand import HandPath
+    from pindrive.device.page import Scene
+    from pindrive.device.pin_array import PinArray
+    from pindrive.device.reading import Reading
+
+
+def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:
+    """A recorded path, with what a hand's reading says of recordings; errors as for `read_csv`."""
+    return read_csv(
+        file,
+        acceleration=reading.hand_acceleration,
+        resolution=reading.mouse_resolution,
+        cutoff=reading.smoothing_cutoff,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Page:
+    """What is on a page, one of `text`, `image` and `grating`, and how the hand moves over it.
+
+    Args:
+        text: one or more lines.
+        image: a file that Pillow reads.
+        grating: from line to line in each of several groups, m.
+        font: a file for the text; None: DejaVu Sans.
+        path: a CSV of the hand's path; None: strokes.
+
+    Raises:
+        ValueError: a pitch is no number or out of its range.
+    """
+
+    text: str | None
+    image: Path | None
+    grating: tuple[float, ...] | None
+    font: Path | None
+    path: Path | None
+
+    def __init__(
+        self,
+        *,
+        text: str | None = None,
+        image: str | PathLike[str] | None = None,
+        grating: Iterable[float | str] | None = None,
+        font: str | PathLike[str] | None = None,
+        path: str | PathLike[str] | None = None,
+    ) -> None:
+        """Validate the pitches, and keep paths."""
+        if grating is not None:
+            found = [check("pitch", x, label=f"grating[{i}]") for i, x in enumerate(grating)]
+            object.__setattr__(self, "grating", tuple(found))
+        else:
+            object.__setattr__(self, "grating", None)
+        object.__setattr__(self, "text", text)
+        for name, file in (("image", image), ("font", font), ("path", path)):
+            object.__setattr__(self, name, None if file is None else Path(file))
+
+    def check(self, label: str, where: str = "") -> None:
+        """Refuse none or several of them, and a font without text.
+
+        Args:
+            label: how a part is called where it was given, like "--{}".
+            where: the place, said first.
+        """
+        parts = {"text": self.text, "image": self.image, "grating": self.grating}
+        given = [label.format(name) for name, value in parts.items() if value is not None]
+        place = f"{where}: " if where else ""
+        if len(given) != 1:
+            text, image, grating = (label.format(name) for name in parts)
+            found = " and ".join(given) or "none of them"
+            raise ValueError(
+                f"{place}give exactly one of {text}, {image} and {grating}, got {found}"
+            )
+        if self.font and self.text is None:
+            font, text = label.format("font"), label.format("text")
+            raise ValueError(f"{place}{font} {self.font}: goes with {text} alone")
+
+    @property
+    def files(self) -> dict[str, Path]:
+        """The files it is made of, by the names of its parts."""
+        parts = {"image": self.image, "font": self.font, "path": self.path}
+        return {name: file for name, file in parts.items() if file is not None}
+
+    @property
+    def words(self) -> str:
+        """What it is, for a title."""
+        if self.text is not None:
+            shown = in_words(self.text)
+        elif self.image is not None:
+            shown = f"picture {self.image.name}"
+        else:
+            shown = f"lines every {', '.join(f'{1e3 * p:g}' for p in self.grating or ())} mm"
+        return f"{shown} along {self.path.name}" if self.path else shown
+
+    @property
+    def options(self) -> str:
+        """As `pindrive scan` takes it."""
+        pitches = ", ".join(f"{1e3 * pitch:.12g} mm" for pitch in self.grating or ())
+        text = None if self.text is None else self.text.replace("\n", "\\n")
+        given = {"text": text, "grating": pitches or None} | self.files
+        return " ".join(f'--{name} "{part}"' for name, part in given.items() if part is not None)
+
+    def scene(self, reading: Reading, array: PinArray) -> Scene:
+        """What is on it, in a fitting size; errors as for `Reading`'s text, image and grating."""
+        if self.text is not None:
+            return reading.text(self.text, array, self.font)
+        if self.image is not None:
+            return reading.image(self.image)
+        if self.grating is None:
+            raise ValueError(refusal("a page", "of text, an image or a grating", "none"))
+        return reading.grating(self.grating, array)
+
+    def hand(self, reading: Reading, scene: Scene, array: PinArray) -> HandPath:
+        """How the hand moves over it; errors as for `Reading.strokes` and `read_csv`."""
+        return reading.strokes(scene, array) if self.path is None else recorded(self.path, reading)

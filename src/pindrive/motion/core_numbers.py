@@ -1,0 +1,70 @@
+"""A drive and its release as the core has them: one tuple, and where each number stands in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+Rows = Sequence[tuple[float, float]]
+
+
+ContactNumbers = tuple[float, float, float, Rows]
+
+
+CoreNumbers = tuple[
+    float,
+    float,
+    float,
+    ContactNumbers,
+    ContactNumbers,
+    Rows,
+    Rows,
+    float,
+    float,
+    float,
+    Rows,
+    Rows,
+    Rows,
+    float,
+]
+"""In the order of `Numbers` in _core.cpp."""
+
+
+PLACES: Final[dict[str, tuple[int, ...]]] = {
+    "mass": (0,),
+    "stiffness": (1,),
+    "damping": (2,),
+    "plate.kinetic": (3, 0),
+    "plate.static": (3, 1),
+    "finger.kinetic": (4, 0),
+    "finger.static": (4, 1),
+    "finger.stiffness": (4, 2),
+    "mouse_velocity": (5,),
+    "plate_load": (6,),
+    "displacement": (7,),
+    "velocity": (8,),
+    "skin_stretch": (9,),
+    "force": (10,),
+    "across_velocity": (11,),
+    "finger_load": (12,),
+}
+"""Where each number, or the rows of an input, stands among them."""
+
+
+ROWS: Final[dict[str, tuple[int, ...]]] = {
+    "plate_curve": (3, 3),
+    "finger_curve": (4, 3),
+    "mouse_velocity": (5,),
+    "plate_load": (6,),
+    "force": (10,),
+    "across_velocity": (11,),
+    "finger_load": (12,),
+}
+"""Where all rows of a table stand."""
+
+
+def entry(numbers: Any, place: tuple[int, ...]) -> Any:
+    """What stands at a place among the core's numbers."""
+    for i in place:
+        numbers = numbers[i]
+    return numbers

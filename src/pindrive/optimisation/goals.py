@@ -1,0 +1,129 @@
+"""A wish as data: what may vary, under which conditions, what is demanded, and the goals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pindrive.optimisation.catalogue import Catalogue
+from pindrive.study.design import Plan
+from pindrive.study.distributions import Distribution, Grid
+from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Demand, label
+
+Array = NDArray[np.float64]
+
+
+PRICE: Final = "design_price"
+
+
+YIELD: Final = "design_yield"
+
+
+SPEED: Final = "design_distinct_speed"
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A number that is to be small, or large.
+
+    Attributes:
+        name: of the number.
+        maximise: whether it is to be large.
+    """
+
+    name: str
+    maximise: bool
+
+    def minimised(self, values: Array) -> Array:
+        """Values (SI) so that the best is the least; infinite where there is none."""
+        return np.where(np.isnan(values), np.inf, -values if self.maximise else values)
+
+    def text(self) -> str:
+        """For display: "least settling_time"."""
+        return f"{'largest' if self.maximise else 'least'} {label(self.name)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """What may be chosen, or what may occur: one key over a range, or keys with rows of values.
+
+    Attributes:
+        name: the first of its keys, or that of its catalogue.
+        axes: how each of its keys is written.
+        choices: how many rows there are; 0 for a range.
+        catalogue: of which the rows are the parts.
+    """
+
+    name: str
+    axes: Mapping[str, Grid | Distribution]
+    choices: int = 0
+    catalogue: Catalogue | None = None
+
+    def index(self, parts: Array) -> NDArray[np.int64]:
+        """The rows that parts from 0 to 1 stand for."""
+        return np.clip((parts * self.choices).astype(np.int64), 0, self.choices - 1)
+
+    def columns(self, parts: Array) -> dict[str, Array]:
+        """The values of its keys, SI, at parts from 0 to 1."""
+        return {
+            key: axis.ppf(parts) if isinstance(axis, Distribution) else axis.at(self.index(parts))
+            for key, axis in self.axes.items()
+        }
+
+    def part(self, row: int) -> float:
+        """The part that stands for a row."""
+        return (row + 0.5) / self.choices
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wish:
+    """What is wanted of a design.
+
+    Attributes:
+        plan: the device, what follows what, and the page; its axes are variables and conditions.
+        tables: as they were written.
+        variables: what may be chosen.
+        conditions: under which each demand must be met, and each goal counts by its worst.
+        demands: limits on numbers.
+        least_yield: the part of the devices built within the tolerances that must meet them all;
+            None: none is demanded.
+        goals: one to three, the first the most important.
+        catalogues: whose parts are chosen.
+        si: whether bare numbers in `tables` are SI, as from Python.
+    """
+
+    plan: Plan
+    tables: Mapping[str, Any]
+    variables: tuple[Variable, ...]
+    conditions: tuple[Variable, ...]
+    demands: tuple[Demand, ...]
+    least_yield: float | None
+    goals: tuple[Goal, ...]
+    catalogues: tuple[Catalogue, ...]
+    si: bool
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return (*self.plan.inputs, *(catalogue.path for catalogue in self.catalogues))
+
+    def __repr__(self) -> str:
+        """What varies and what is best, in a line."""
+        what = ", ".join(variable.name for variable in self.variables)
+        return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
+
+
+def outputs_of(wish: Wish) -> tuple[str, ...]:
+    """The numbers of motions or scans that it needs."""
+    names = (*(goal.name for goal in wish.goals), *(demand.name for demand in wish.demands))
+    return tuple(name for name in dict.fromkeys(names) if name not in DESIGN_OUTPUTS)
+
+
+def unit_of(name: str) -> tuple[str, float]:
+    """The unit in which a person reads a number, and how many of it make one in SI."""
+    return NUMBERS[name].display_unit, NUMBERS[name].display_scale

@@ -1,0 +1,74 @@
+"""The words of a value that is refused, and the check of a count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from operator import index
+from typing import SupportsIndex, cast
+
+
+class Refusal(str):
+    """The words of a refused value, which know the quantity that they refuse."""
+
+    label: str
+    """What the message calls the quantity."""
+    said: str
+    """The words without the place where the value was written."""
+
+    @classmethod
+    def of(cls, label: str, said: str, where: str) -> Refusal:
+        """These words, with the place said first."""
+        words = cls(f"{where}: {said}" if where else said)
+        words.label, words.said = label, said
+        return words
+
+    def at(self, where: str, key: str) -> Refusal:
+        """The same of a value written at a place; its label is the key if that is its last part."""
+        own = self.label.partition("[")[0]
+        full = key if key.endswith(f".{own}") else own
+        label, said = (full + words.removeprefix(own) for words in (self.label, self.said))
+        return Refusal.of(label, said, where)
+
+
+def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
+    """The one wording of a refused value: place, quantity, what it must be, what it was."""
+    return Refusal.of(label, f"{label} must be {required}, got {given}", where)
+
+
+def hint(given: str, known: Iterable[str], otherwise: str) -> str:
+    """What an unknown name may stand for, "did you mean mass?"; or else `otherwise`."""
+    near = get_close_matches(given, [*known], 1)
+    return f"did you mean {near[0]}?" if near else otherwise
+
+
+def told_by(error: Exception) -> Refusal | str:
+    """The first thing that an error tells, as it was made."""
+    told = getattr(error, "problems", error.args)
+    return told[0] if told and isinstance(told[0], str) else str(error)
+
+
+def refused_by(error: Exception) -> str:
+    """What an error refuses: the label of the quantity, or the kind of an error that has none."""
+    told = told_by(error)
+    return told.label if isinstance(told, Refusal) else type(error).__name__
+
+
+def check_whole(
+    value: object, label: str, least: int = 1, most: int | None = None, *, where: str = ""
+) -> int:
+    """`value` as an int, if it is a whole number from `least` up, to `most` where that is given.
+
+    Truth values are none, nor are floats; NumPy's integers are.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    upper = f"from {least} to {most}" if most is not None else f"of at least {least}"
+    try:
+        number = least - 1 if isinstance(value, bool) else index(cast(SupportsIndex, value))
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        raise ValueError(refusal(label, f"a whole number {upper}", repr(value), where))
+    return number
