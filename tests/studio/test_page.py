@@ -154,6 +154,16 @@ def test_what_is_shown_is_what_python_computes(
     assert rows == min(len(motion.events), 100)
 
 
+def test_a_velocity_that_is_zero_but_for_rounding_is_shown_as_zero(page: Any) -> None:
+    opened(page, EXAMPLE)
+    page.fill("#drive-damping_ratio", "0.32")
+    page.keyboard.press("Enter")
+    settled(page)
+    rows = page.locator("section.events tbody tr")
+    assert rows.count() == 4
+    assert {rows.nth(i).locator("td").last.inner_text() for i in range(4)} == {"0"}
+
+
 def test_derivatives_are_those_of_python(page: Any) -> None:
     opened(page, EXAMPLE)
     bars = page.evaluate(
