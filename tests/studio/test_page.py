@@ -53,8 +53,8 @@ def saved(page: Any, kind: str, folder: Path) -> Path:
     return path
 
 
-def numbers_shown(page: Any) -> dict[str, float]:
-    found: dict[str, float] = page.evaluate(
+def numbers_shown(page: Any) -> dict[str, float | None]:
+    found: dict[str, float | None] = page.evaluate(
         "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
         ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
     )
