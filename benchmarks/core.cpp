@@ -63,7 +63,7 @@ struct State {
     if (segment.end < point.inputs.duration) return;
     const double tau = point.inputs.duration - segment.begin;
     const pindrive::Propagator<double> moved = segment.after(tau);
-    last = {segment.flow.position.at(moved, tau), segment.flow.velocity.at(moved, tau)};
+    last = {segment.flow.position.at(moved), segment.flow.velocity.at(moved)};
   });
   return last;
 }

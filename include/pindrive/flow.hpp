@@ -22,6 +22,7 @@ template <class T>
 struct Propagator {
   T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
   T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
+  T tau;      ///< s
 };
 
 /// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinity where there is none.
@@ -89,7 +90,7 @@ class Oscillator {
     using detail::expm1;
     using detail::sine_and_cosine_of;
     using std::abs;
-    if (tau == 0) return {T(0), tau};
+    if (tau == 0) return {T(0), tau, tau};
     if (hurry_squared() * tau * tau < early * early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
     if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
@@ -101,13 +102,13 @@ class Oscillator {
     const T rate = gentle(), apart = to_other_root();
     const auto [decay, decay_change] = detail::exponential_and_change(rate * tau);
     const T gain = decay * expm1(apart * tau) / apart;
-    return {decay_change - rate * gain, gain};
+    return {decay_change - rate * gain, gain, tau};
   }
 
   /// The same for half a period: where a velocity has come from zero to zero again.
   Propagator<T> half_turn() const {
     using detail::exp;
-    return {-1 - exp(alpha_ * half_period()), T(0)};
+    return {-1 - exp(alpha_ * half_period()), T(0), half_period()};
   }
 
   /// How far from zero a free oscillation turns whose rate has this value and slope at τ = 0: so far,
@@ -149,7 +150,7 @@ class Oscillator {
       gain += term;
       integral += term * tau / T(n + 1);
     }
-    return {-omega0_squared_ * integral, gain};
+    return {-omega0_squared_ * integral, gain, tau};
   }
 
   /// cos √z − 1 and sin √z / √z as entire functions of z: one expression through ω² = 0.
@@ -189,7 +190,7 @@ class Oscillator {
   Propagator<T> damped(T tau, T cosine_change, T sine) const {
     const auto [decay, decay_change] = detail::exponential_and_change(alpha_ * tau);
     const T gain = decay * sine;
-    return {decay_change + decay * cosine_change - alpha_ * gain, gain};
+    return {decay_change + decay * cosine_change - alpha_ * gain, gain, tau};
   }
 
   T alpha_{0}, omega0_squared_{1}, discriminant_{1}, omega_{1};
@@ -205,13 +206,14 @@ struct Path {
   T curvature{0};  ///< of a pin that is carried by an accelerating plate
 
   /// What it has changed by since τ = 0.
-  T change(const Propagator<T>& moved, T tau) const {
+  T change(const Propagator<T>& moved) const {
+    const T tau = moved.tau;
     return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
   }
   T change(const Oscillator<T>& oscillator, T tau) const {
-    return oscillates() ? change(oscillator.after(tau), tau) : change(Propagator<T>{}, tau);
+    return change(oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau});
   }
-  T at(const Propagator<T>& moved, T tau) const { return start + change(moved, tau); }
+  T at(const Propagator<T>& moved) const { return start + change(moved); }
   T at(const Oscillator<T>& oscillator, T tau) const { return start + change(oscillator, tau); }
 
   Path derivative(const Oscillator<T>& oscillator) const {
@@ -220,19 +222,19 @@ struct Path {
   struct Rates {
     T first, second, third;
   };
-  /// Its first three derivatives at τ.
-  Rates rates(const Oscillator<T>& oscillator, const Propagator<T>& moved, T tau) const {
+  /// Its first three derivatives there.
+  Rates rates(const Oscillator<T>& oscillator, const Propagator<T>& moved) const {
     const T wave = value + value * moved.decline + slope * moved.gain;
     const T rate = slope + slope * moved.decline + oscillator.bend(value, slope) * moved.gain;
     const T bend = oscillator.bend(wave, rate);
-    return {rate + drift + curvature * tau, bend + curvature, oscillator.bend(rate, bend)};
+    return {rate + drift + curvature * moved.tau, bend + curvature, oscillator.bend(rate, bend)};
   }
   /// The same path with its time counted from τ on.
   Path from(const Oscillator<T>& oscillator, T tau) const {
     const Propagator<T> moved = oscillator.after(tau);
     const T wave = value + value * moved.decline + slope * moved.gain;
     const T bend = oscillator.bend(value, slope);
-    return {at(moved, tau), wave, slope + slope * moved.decline + bend * moved.gain,
+    return {at(moved), wave, slope + slope * moved.decline + bend * moved.gain,
             drift + curvature * tau, curvature};
   }
   bool oscillates() const { return value != 0 || slope != 0; }
@@ -282,7 +284,7 @@ struct Flow {
 
   /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
   Propagator<T> after(T tau) const {
-    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>{};
+    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau};
   }
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.

@@ -137,7 +137,7 @@ class Guards {
     const T roundoff = guard.bound == Bound::none
                            ? force_roundoff
                            : rounding<T> * (abs(path.start) + abs(path.value));
-    const T rate = path.rates(oscillator, oscillator.after(guard.zero), guard.zero).first;
+    const T rate = path.rates(oscillator, oscillator.after(guard.zero)).first;
     return stays_at_bound(rate * (tau - guard.zero), path.at(oscillator, tau), roundoff);
   }
 

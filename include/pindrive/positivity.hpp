@@ -21,8 +21,8 @@ class PositivityBound {
   struct Sample {
     T tau, value, slope;
   };
-  Sample at(const Propagator<T>& moved, T tau) const {
-    return {tau, path_.at(moved, tau), rate_.at(moved, tau)};
+  Sample at(const Propagator<T>& moved) const {
+    return {moved.tau, path_.at(moved), rate_.at(moved)};
   }
 
   /// The largest size of its third and fourth derivatives.
@@ -88,7 +88,7 @@ class PositivityBound {
     const T tau = a.tau + h / 2;
     if (--halvings < 0 || !(tau > a.tau && tau < b.tau) || !(bound > -never))
       return bound > -never ? bound : -never;
-    const Sample middle = at(path_.oscillates() ? oscillator.after(tau) : Propagator<T>{}, tau);
+    const Sample middle = at(path_.oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau});
     return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings),
                     lowest(oscillator, middle, b, flatness, unseen, halvings));
   }

@@ -32,9 +32,9 @@ T root_between(const Oscillator<T>& oscillator, const Path<T>& path, T low, T hi
   T step = high - low, step_before = step;
   for (;;) {
     const Propagator<T> moved = oscillator.after(tau);
-    const T value = path.at(moved, tau);
+    const T value = path.at(moved);
     (side * value > 0 ? low : high) = tau;
-    const auto rates = path.rates(oscillator, moved, tau);
+    const auto rates = path.rates(oscillator, moved);
     const T newton = value / rates.first;
     const T bend = newton * rates.second / (2 * rates.first);
     const T twist = newton * newton * rates.third / (6 * rates.first);

@@ -105,11 +105,11 @@ class Settling {
     if (isfinite(segment.end)) {
       if (may_turn(segment)) {
         const Stretch last = last_stretch_outside(along, segment, x_end, width);
-        before = x.at(segment.after(last.from), last.from) - x_end;
+        before = x.at(segment.after(last.from)) - x_end;
         extrema(along, x, last.from, last.to, follow_to);
       } else {
         const T to = segment.end - segment.begin;
-        follow_to(to, x.at(segment.after(to), to));
+        follow_to(to, x.at(segment.after(to)));
       }
       return since;
     }

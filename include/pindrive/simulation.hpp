@@ -175,7 +175,7 @@ class Simulation : private Selection<T, Surface> {
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
-      state_.move(segment, finger_.elastic(), tau);
+      state_.move(segment, finger_.elastic());
     }
     if constexpr (!Surface::plain)
       if (finger_.sliding())

@@ -20,16 +20,16 @@ struct State {
   T x_size{0};    ///< the largest that the position is a sum of, m
   T roundoff{0};  ///< forces that differ by less are one, N
 
-  /// Brings it on by τ along a segment in closed form, whose oscillation has moved on so far.
-  void move(const Segment<T>& along, bool elastic, T tau) {
+  /// Brings it to the end of a segment in closed form.
+  void move(const Segment<T>& along, bool elastic) {
     using std::abs;
     const Path<T>& position = along.flow.position;
     const Propagator<T> moved = along.moved;
-    x = position.at(moved, tau);
-    v = along.flow.velocity.at(moved, tau);
+    x = position.at(moved);
+    v = along.flow.velocity.at(moved);
     x_size = std::max(std::max(x_size, abs(x)), std::max(abs(position.value * moved.decline),
                                                          abs(position.slope * moved.gain)));
-    if (elastic) skin = -along.finger_force.at(moved, tau);
+    if (elastic) skin = -along.finger_force.at(moved);
   }
 };
 

@@ -44,22 +44,19 @@ class ClosedForm {
 
   const Oscillator<T>& oscillator() const { return segment_.flow.oscillator; }
   T start(const Path<T>& path) const { return path.start; }
-  T at(const Path<T>& path, T tau) const { return path.at(segment_.after(tau), tau); }
+  T at(const Path<T>& path, T tau) const { return path.at(segment_.after(tau)); }
   /// An instant at which several quantities are evaluated.
-  struct Moment {
-    T tau;
-    Propagator<T> moved;
-  };
+  using Moment = Propagator<T>;
   Moment moment(T tau) const {
-    return {tau, waves() && tau > 0 ? oscillator().after(tau) : Propagator<T>{}};
+    return waves() && tau > 0 ? oscillator().after(tau) : Moment{T(0), T(0), tau};
   }
-  T at(const Path<T>& path, const Moment& now) const { return path.at(now.moved, now.tau); }
+  T at(const Path<T>& path, const Moment& now) const { return path.at(now); }
   /// Whether anything oscillates.
   bool waves() const {
     return position().oscillates() || velocity().oscillates() || plate_force().oscillates() ||
            finger_force().oscillates();
   }
-  T change(const Path<T>& path, T tau) const { return path.change(segment_.after(tau), tau); }
+  T change(const Path<T>& path, T tau) const { return path.change(segment_.after(tau)); }
   Path<T> derivative(const Path<T>& path) const { return path.derivative(oscillator()); }
   bool constant(const Path<T>& path) const { return path.constant(); }
   /// A bound of its terms until τ.

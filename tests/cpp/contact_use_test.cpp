@@ -19,12 +19,14 @@ int main() {
   segments[0].mode = {ContactState::slip_forward, ContactState::elastic_stick};
   segments[0].event.plate = pd::Transition::stick;
   segments[0].flow = pd::Flow<double>::stuck(0, {0.1, -0.25});
+  segments[0].moved = segments[0].flow.after(0.4);
   segments[0].plate_force = pd::Line<double>{-0.2, 0};
   segments[0].finger_force = pd::Line<double>{0.05, -0.2};
   segments[1].begin = 0.4;
   segments[1].end = 1;
   segments[1].mode = {ContactState::stick, ContactState::elastic_stick};
   segments[1].flow = pd::Flow<double>::stuck(0.02, {});
+  segments[1].moved = segments[1].flow.after(1 - 0.4);
   segments[1].plate_force = pd::Line<double>{-0.25, 0};
   segments[1].finger_force = pd::Line<double>{-0.03, 0};
   pd::Outcome<double> outcome;

@@ -28,8 +28,8 @@ void steps_compose() {
       const double b = 0.7 * a;
       composes = composes && near(1e3 * x.at(o, a + b), 1e3 * x.from(o, a).at(o, b), 1e-12);
       const auto moved = o.after(a);
-      const auto rates = x.rates(o, moved, a);
-      const double y = x.at(moved, a) - x.centre();
+      const auto rates = x.rates(o, moved);
+      const double y = x.at(moved) - x.centre();
       const double rest = rates.second - 2 * o.alpha() * rates.first + o.omega0_squared() * y;
       const double size = std::abs(rates.second) + std::abs(2 * o.alpha() * rates.first) +
                           std::abs(o.omega0_squared() * y);

@@ -178,8 +178,8 @@ bool beside_core(const Releases& releases, const Answers& found, bool wide, std:
     const auto at = [&](double t) {
       const auto [segment, tau] = motion.locate(t, pd::Side::left);
       const auto moved = segment->after(tau);
-      return std::array<double, 2>{segment->flow.position.at(moved, tau),
-                                   segment->flow.velocity.at(moved, tau)};
+      return std::array<double, 2>{segment->flow.position.at(moved),
+                                   segment->flow.velocity.at(moved)};
     };
     if (i % every == 0) {
       const auto certificate = pd::Certifier<double>(motion, s.duration).certify();

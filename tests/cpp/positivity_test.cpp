@@ -19,7 +19,7 @@ constexpr double unseen = 1e-10;
 /// Over the whole of a panel at once, which certify walks in 17 steps.
 double lowest(const pd::Oscillator<double>& oscillator, const PositivityBound& guard, double low,
               double high) {
-  const auto at = [&](double tau) { return guard.at(oscillator.after(tau), tau); };
+  const auto at = [&](double tau) { return guard.at(oscillator.after(tau)); };
   const auto flatness = guard.flatness(oscillator, oscillator.after(low), low, high - low);
   return guard.lowest(oscillator, at(low), at(high), flatness, unseen);
 }

@@ -43,9 +43,12 @@ class Bounds:
 
     def __contains__(self, value: float) -> bool:
         """Whether `value` is allowed; NaN never is."""
-        above = self.lower < value or (self.lower_closed and value == self.lower)
-        below = value < self.upper or (self.upper_closed and value == self.upper)
-        return (above and below) or value in self.also
+        return (
+            self.lower < value < self.upper
+            or (self.lower_closed and value == self.lower)
+            or (self.upper_closed and value == self.upper)
+            or value in self.also
+        )
 
     def words(self, unit: str = "") -> str:
         """The values as they read in a sentence: "finite and greater than 0 kg"."""
