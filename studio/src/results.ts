@@ -121,7 +121,8 @@ export class EventsTable {
     const events = curves?.events.slice(0, 100) ?? [];
     let before = 0;
     // A velocity that is 0 but for the rounding of the core's sums is shown as 0.
-    const fastest = Math.max(...events.map(({ velocity }) => Math.abs(velocity)), 0);
+    const velocities = curves?.columns.velocity ?? new Float64Array();
+    const fastest = velocities.reduce((most, v) => Math.max(most, Math.abs(v) || 0), 0);
     const rows = events.map(({ time, contact, kind, position, velocity }) => {
       const since = time - before;
       before = time;

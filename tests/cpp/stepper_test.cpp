@@ -43,8 +43,8 @@ struct Case {
     drive.plate = {plate, plate * (one_of(random, 2) ? 1 : between(random, 1, 2))};
     drive.finger = {finger, finger * (one_of(random, 2) ? 1 : between(random, 1, 2))};
     if (one_of(random, 3)) {
-      const double speeds[]{0, 0.05, 0.3}, forces[]{plate, plate * between(random, 0.5, 1), plate};
-      drive.plate.branches = pd::branches_of(speeds, forces, 3, curve.data());
+      const double speeds[]{0, 0.05, 0.3}, rows[]{plate, plate * between(random, 0.5, 1), plate};
+      drive.plate.branches = pd::branches_of(speeds, rows, 3, curve.data());
       drive.plate.curve = curve.data();
     }
     if (one_of(random, 3)) drive.finger.stiffness = drive.stiffness * between(random, 1, 50);

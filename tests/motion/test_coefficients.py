@@ -278,6 +278,8 @@ def test_stretch_keeps_its_ratio_to_what_the_touch_lets_the_skin_hold() -> None:
     Path("device.toml").write_text(text)
     softer = load_device("device.toml", {"touch_force": "5 mN"})
     assert softer.release.skin_stretch == pytest.approx(1.5e-6)
+    smoother = load_device("device.toml", ["finger.coefficient=0.25"])
+    assert smoother.release.skin_stretch == pytest.approx(1.5e-6)  # static friction follows
 
 
 REFUSED: Mapping[str, tuple[str, tuple[str, ...], str]] = {

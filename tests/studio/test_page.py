@@ -53,8 +53,8 @@ def saved(page: Any, kind: str, folder: Path) -> Path:
     return path
 
 
-def numbers_shown(page: Any) -> dict[str, float]:
-    found: dict[str, float] = page.evaluate(
+def numbers_shown(page: Any) -> dict[str, float | None]:
+    found: dict[str, float | None] = page.evaluate(
         "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
         ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
     )
@@ -152,6 +152,16 @@ def test_what_is_shown_is_what_python_computes(
     ]
     rows = page.locator("section.events tbody tr").count()
     assert rows == min(len(motion.events), 100)
+
+
+def test_a_velocity_that_is_zero_but_for_rounding_is_shown_as_zero(page: Any) -> None:
+    opened(page, EXAMPLE)
+    page.fill("#drive-damping_ratio", "0.32")
+    page.keyboard.press("Enter")
+    settled(page)
+    rows = page.locator("section.events tbody tr")
+    assert rows.count() == 4
+    assert {rows.nth(i).locator("td").last.inner_text() for i in range(4)} == {"0"}
 
 
 def test_derivatives_are_those_of_python(page: Any) -> None:
