@@ -97,6 +97,9 @@ class Case:
             "finger.kinetic": 0.005,
             "finger.static": 0.005,
             "finger.stiffness": inf,
+            "travel": inf,
+            "stop_stiffness": inf,
+            "stop_damping": 0.0,
             "displacement": 1.5e-3,
             "velocity": 0.10,
             "skin_stretch": nan,
@@ -129,6 +132,7 @@ class Case:
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
             self.inputs["finger_load"],
+            (n["travel"], n["stop_stiffness"], n["stop_damping"]),
             n["duration"],
         )
 
@@ -174,6 +178,9 @@ def drawn(random: np.random.Generator) -> Case:
     if kind == 3:
         case.inputs["finger_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
+    if kind == 3 and random.integers(2):
+        n["travel"] = abs(n["displacement"]) + between(0, 1e-3)
+        n["stop_stiffness"] = random.choice([inf, n["stiffness"] * between(1, 100)])
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
     return case
@@ -420,6 +427,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
         case.inputs |= {"force": [(0.0, 0.0)], "across_velocity": [(0.0, 0.0)]}
         case.inputs["finger_load"] = [(0.0, 1.0)]
+        case.numbers["travel"] = inf
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
         case.numbers["duration"] = changes[-1] + 0.2
         core = case.core()

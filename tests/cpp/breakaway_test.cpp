@@ -16,7 +16,7 @@ constexpr auto backward = ContactState::slip_backward, absent = ContactState::ab
 
 /// A pin at x, at rest on the plate, or on both.
 pd::Beginning<double> at(double x, bool on_finger, double acceleration = 0, double load = 1) {
-  return {x,         0,    0.2 * load, on_finger ? 0.05 : 0, {0, acceleration}, load, 0, true,
+  return {x,         0,    0.2 * load, on_finger ? 0.05 : 0, {0, acceleration}, load, 1, 0, true,
           on_finger, true, true};
 }
 

@@ -87,8 +87,8 @@ struct Values {
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
                  const pd::InputLines<double>& lines, double tau) {
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
-    const auto load = [&] { return lines.plate_load; };
-    const auto friction = pd::friction_along(t, drive, segment, load, tau);
+    const auto given = [&] { return lines; };
+    const auto friction = pd::friction_along(t, drive, segment, given, tau);
     return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
                   friction.finger};
   });

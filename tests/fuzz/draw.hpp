@@ -32,7 +32,9 @@ class Random {
 
 class Draw {
  public:
-  Draw(std::uint64_t seed, std::uint64_t number) : random_(seed, number) {}
+  /// Each with end stops, or one in ten.
+  Draw(std::uint64_t seed, std::uint64_t number, bool stops = false)
+      : random_(seed, number), stops_(stops) {}
 
   Case next() {
     Case c;
@@ -72,6 +74,7 @@ class Draw {
     const auto touch = [&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); };
     if (coulomb && chance(0.2))
       c.finger_load = std::isinf(c.skin) ? profile(touch, last, 0.3) : Rows{{0}, {touch()}};
+    if (stops_ || chance(0.1)) stop(c, critical, length);
     return c;
   }
 
@@ -94,6 +97,18 @@ class Draw {
     if (std::isinf(c.skin) || chance(0.002)) return;
     const double wave = 6.3 / (omega * std::sqrt(1 + c.skin / c.stiffness));
     period_ = std::min(period_, wave * decade(0, 1.3));
+  }
+
+  /// End stops, near enough to be met; elastic ones from soft to stiff, without damping and with much.
+  void stop(Case& c, double critical, double length) {
+    c.travel = tidy(length * decade(-1.5, 0.2));
+    if (chance(0.5)) {
+      c.stop_stiffness = c.stiffness * decade(-1, 4);
+      const double wave = std::sqrt(c.stop_stiffness / c.stiffness);
+      if (chance(0.7)) c.stop_damping = critical * wave * decade(-3, 0.5);
+    }
+    if (std::abs(c.displacement) > c.travel)
+      c.displacement = c.travel * (chance(0.3) ? 1 : uniform(-1, 1));
   }
 
   Rows curve() {
@@ -124,7 +139,7 @@ class Draw {
   }
 
   Random random_;
-  bool round_{false}, long_{false};
+  bool stops_, round_{false}, long_{false};
   double force_{}, speed_{}, period_{};
 };
 

@@ -1,9 +1,9 @@
 // Draws drives and inputs over many decades, runs each and judges it by the laws of motion alone.
 //
-//   fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE]
+//   fuzz COUNT SEED [--from NUMBER] [--threads N] [--log FILE] [--stops 1]
 //   fuzz --replay FILE…
 //
-// The cases NUMBER … NUMBER + COUNT − 1 of a seed; the result does not depend on the threads. The
+// With --stops 1 every drive has end stops, else one in ten. The cases NUMBER … NUMBER + COUNT − 1 of a seed; the result does not depend on the threads. The
 // log is brought up to date once a minute, and a run goes on from where its log ends. A motion that
 // fails is written to fuzz-SEED-CASE.txt, to be replayed and kept in tests/hard.
 #include <algorithm>
@@ -39,7 +39,8 @@ struct Options {
 
 Verdict judged(const Range& range, long long number, std::vector<pd::Segment<double>>& segments) {
   const Case c =
-      Draw(static_cast<std::uint64_t>(range.seed), static_cast<std::uint64_t>(number)).next();
+      Draw(static_cast<std::uint64_t>(range.seed), static_cast<std::uint64_t>(number), range.stops)
+          .next();
   return judge(c, number % 64 == 0, segments);
 }
 
@@ -75,9 +76,9 @@ void report(const Options& options, const Totals& before, const Totals& found) {
     const std::string name =
         "fuzz-" + std::to_string(options.range.seed) + "-" + std::to_string(number) + ".txt";
     std::ofstream file(name);
-    write(file,
-          Draw(static_cast<std::uint64_t>(options.range.seed), static_cast<std::uint64_t>(number))
-              .next());
+    write(file, Draw(static_cast<std::uint64_t>(options.range.seed),
+                     static_cast<std::uint64_t>(number), options.range.stops)
+                    .next());
     print(name.c_str(), judged(options.range, number, segments));
     std::fflush(stdout);
   }
@@ -176,6 +177,8 @@ bool parse(const std::vector<std::string>& words, Options& options) {
     if (words[i] == "--from" && whole(value, options.range.from)) continue;
     if (words[i] == "--threads" && whole(value, threads) && threads >= 1 && threads <= 1024)
       options.threads = static_cast<int>(threads);
+    else if (words[i] == "--stops")
+      options.range.stops = value == "1";
     else if (words[i] == "--log" && !value.empty())
       options.log = value;
     else

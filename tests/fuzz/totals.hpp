@@ -79,14 +79,15 @@ struct Totals {
 /// Which cases of which seed.
 struct Range {
   long long count{0}, seed{0}, from{0};
+  bool stops{false};  ///< all with end stops
 
   friend bool operator==(const Range& a, const Range& b) {
-    return a.seed == b.seed && a.from == b.from;
+    return a.seed == b.seed && a.from == b.from && a.stops == b.stops;
   }
 };
 
 inline void write(std::ostream& out, const Range& range, const Totals& totals) {
-  out << "seed " << range.seed << " from " << range.from << '\n'
+  out << "seed " << range.seed << " from " << range.from << " stops " << range.stops << '\n'
       << "drives " << totals.drives << " of " << range.count << '\n'
       << "segments " << totals.segments << '\n'
       << "of_zero_length " << totals.instants << '\n'
@@ -105,9 +106,10 @@ inline void write(std::ostream& out, const Range& range, const Totals& totals) {
 inline bool read(std::istream& in, Range& range, Totals& totals) {
   std::string word;
   std::size_t failures = 0;
-  in >> word >> range.seed >> word >> range.from >> word >> totals.drives >> word >> range.count >>
-      word >> totals.segments >> word >> totals.instants >> word >> totals.inconsistent >> word >>
-      totals.most_segments.value >> word >> totals.most_segments.at >> word >> totals.seconds;
+  in >> word >> range.seed >> word >> range.from >> word >> range.stops >> word >> totals.drives >>
+      word >> range.count >> word >> totals.segments >> word >> totals.instants >> word >>
+      totals.inconsistent >> word >> totals.most_segments.value >> word >>
+      totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
   for (long long number = 0; failures > 0 && in >> number; --failures)

@@ -14,6 +14,7 @@ from pindrive.motion.drive import (
     check_finger_load,
     check_skin,
     check_stretch,
+    check_within_travel,
 )
 from pindrive.quantities.table import QUANTITIES, check, default, refusal
 
@@ -33,6 +34,7 @@ CoreNumbers = tuple[
     Rows,
     Rows,
     Rows,
+    tuple[float, float, float],
     float,
 ]
 """In the order of `Numbers` in _core.cpp."""
@@ -53,6 +55,9 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "force": (10,),
     "across_velocity": (11,),
     "finger_load": (12,),
+    "travel": (13, 0),
+    "stop_stiffness": (13, 1),
+    "stop_damping": (13, 2),
 }
 """Where each number, or the rows of an input, stands among them."""
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -187,7 +192,8 @@ def check_fits(drive: Drive, release: Release) -> None:
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a friction curve at a compliant finger; a finger load that changes at either.
+            hold; a friction curve at a compliant finger; a finger load that changes at either;
+            a displacement beyond rigid end stops.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -197,6 +203,7 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
     check_skin(drive.finger)
     check_finger_load(release.finger_load, drive.finger)
+    check_within_travel(release.displacement, drive.travel, drive.stop_stiffness)
     if release.skin_stretch is not None:
         check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))
 
@@ -224,6 +231,11 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         _rows(release.force),
         _rows(release.across_velocity),
         _rows(release.finger_load),
+        (
+            inf if drive.travel is None else drive.travel,
+            inf if drive.stop_stiffness is None else drive.stop_stiffness,
+            drive.stop_damping or 0.0,
+        ),
         inf if duration is None else duration,
     )
 
