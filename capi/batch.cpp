@@ -60,7 +60,7 @@ bool constant(const pd::Numbers& at) {
   const auto none_of = [](const pd::Rows& rows) { return rows.size() == 1 && rows[0].second == 0; };
   return at.plate.curve.empty() && at.finger.curve.empty() && at.mouse_velocity.size() == 1 &&
          at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
-         none_of(at.across_velocity) && at.finger_load.size() == 1;
+         none_of(at.across_velocity) && at.finger_load.size() == 1 && !at.stops.present();
 }
 /// The same with its load in its friction.
 pd::Numbers pressed(pd::Numbers at) {

@@ -21,6 +21,7 @@ struct pindrive_drive {
   double mass{pindrive_c::none}, stiffness{pindrive_c::none}, damping{0};
   pindrive::ContactNumbers plate{0, 0, pindrive_c::infinity, {}},
       finger{0, 0, pindrive_c::infinity, {}};
+  pindrive::StopNumbers stops{};
 };
 
 struct pindrive_release {
@@ -78,7 +79,7 @@ bool set(pindrive_drive& drive, const char* name, double value);
 bool set(pindrive_release& release, const char* name, double value);
 constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
-    "finger.stiffness";
+    "finger.stiffness, travel, stop_stiffness, stop_damping";
 constexpr const char* release_names =
     "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
     "skin_stretch, duration";

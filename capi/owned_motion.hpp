@@ -22,6 +22,14 @@ struct ContactNumbers {
   Rows curve;
 };
 
+/// The end stops of a drive: infinite travel is none, infinite stiffness rigid.
+struct StopNumbers {
+  double travel{std::numeric_limits<double>::infinity()},
+      stiffness{std::numeric_limits<double>::infinity()}, damping{0};
+
+  bool present() const { return travel < std::numeric_limits<double>::infinity(); }
+};
+
 /// A drive and its release in plain numbers, as Drive and Inputs have them.
 struct Numbers {
   double mass, stiffness, damping;
@@ -29,6 +37,7 @@ struct Numbers {
   Rows mouse_velocity, plate_load;
   double displacement, velocity, skin_stretch;
   Rows force, across_velocity, finger_load;
+  StopNumbers stops;
   double duration;
 };
 
@@ -93,8 +102,14 @@ class OwnedMotion {
         force_(at.force, along.force),
         across_velocity_(at.across_velocity, along.across_velocity),
         finger_load_(at.finger_load, along.finger_load),
-        drive_{number<T>(at.mass, along.mass), number<T>(at.stiffness, along.stiffness),
-               number<T>(at.damping, along.damping), plate_.contact, finger_.contact},
+        drive_{number<T>(at.mass, along.mass),
+               number<T>(at.stiffness, along.stiffness),
+               number<T>(at.damping, along.damping),
+               plate_.contact,
+               finger_.contact,
+               {number<T>(at.stops.travel, along.stops.travel),
+                number<T>(at.stops.stiffness, along.stops.stiffness),
+                number<T>(at.stops.damping, along.stops.damping)}},
         inputs_{mouse_velocity_.profile(),
                 number<T>(at.displacement, along.displacement),
                 number<T>(at.velocity, along.velocity),

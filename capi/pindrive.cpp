@@ -63,7 +63,10 @@ double* find(pindrive_drive& drive, const char* name) {
                                                      {"plate.static", &drive.plate.static_limit},
                                                      {"finger.kinetic", &drive.finger.kinetic},
                                                      {"finger.static", &drive.finger.static_limit},
-                                                     {"finger.stiffness", &drive.finger.stiffness}};
+                                                     {"finger.stiffness", &drive.finger.stiffness},
+                                                     {"travel", &drive.stops.travel},
+                                                     {"stop_stiffness", &drive.stops.stiffness},
+                                                     {"stop_damping", &drive.stops.damping}};
   for (const auto& [known, number] : numbers)
     if (std::strcmp(known, name) == 0) return number;
   return nullptr;
@@ -185,6 +188,13 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
                   "at least 0 and finite");
   if (!error) error = check_contact("plate", drive.plate);
   if (!error) error = check_contact("finger", drive.finger);
+  if (!error) error = check("travel", drive.stops.travel, drive.stops.travel > 0, "above 0");
+  if (!error)
+    error = check("stop_stiffness", drive.stops.stiffness, drive.stops.stiffness > 0, "above 0");
+  if (!error)
+    error = check("stop_damping", drive.stops.damping,
+                  drive.stops.damping >= 0 && std::isfinite(drive.stops.damping),
+                  "at least 0 and finite");
   if (!error) error = check_rows("mouse_velocity", release.mouse_velocity, true, false);
   if (!error) error = check_rows("plate_load", release.plate_load, false, true);
   if (!error) error = check_rows("force", release.force, true, true);
@@ -250,10 +260,11 @@ pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindri
 }
 
 pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
-  return {drive.mass,          drive.stiffness,        drive.damping,      drive.plate,
-          drive.finger,        release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity,    release.skin_stretch,   release.force,      release.across_velocity,
-          release.finger_load, release.duration};
+  return {drive.mass,           drive.stiffness,      drive.damping,
+          drive.plate,          drive.finger,         release.mouse_velocity,
+          release.plate_load,   release.displacement, release.velocity,
+          release.skin_stretch, release.force,        release.across_velocity,
+          release.finger_load,  drive.stops,          release.duration};
 }
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
@@ -450,8 +461,12 @@ pindrive_drive* pindrive_drive_rate_new(const pindrive_drive* drive) {
   pindrive_drive* rate = nullptr;
   if (drive)
     guarded([&]() -> pindrive_error {
-      rate = new pindrive_drive{0, 0, 0, pd::ContactNumbers{0, 0, 0, {}},
-                                pd::ContactNumbers{0, 0, 0, {}}};
+      rate = new pindrive_drive{0,
+                                0,
+                                0,
+                                pd::ContactNumbers{0, 0, 0, {}},
+                                pd::ContactNumbers{0, 0, 0, {}},
+                                pd::StopNumbers{0, 0, 0}};
       rate->plate.curve.resize(drive->plate.curve.size());
       rate->finger.curve.resize(drive->finger.curve.size());
       return PINDRIVE_OK;

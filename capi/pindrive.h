@@ -90,7 +90,10 @@ PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
  *   plate.kinetic     N      >= 0: kinetic friction; sets plate.static too, which may follow
  *   plate.static      N      >= plate.kinetic
  *   finger.kinetic, finger.static: the same at the finger
- *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first */
+ *   finger.stiffness  N/m    > 0: tangential; infinite: a rigid finger, as it is at first
+ *   travel            m      > 0: of the pin to its end stops, either way; infinite: none, as at first
+ *   stop_stiffness    N/m    > 0: of the stops; infinite: rigid, as they are at first
+ *   stop_damping      N s/m  >= 0: of elastic ones; 0 at first */
 PINDRIVE_API pindrive_error pindrive_drive_set(pindrive_drive *drive, const char *name,
                                                double value);
 

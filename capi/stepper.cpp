@@ -115,7 +115,10 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 
-pindrive_error check_start(const pindrive_release& release, double begin) {
+pindrive_error check_start(const pindrive_drive& drive, const pindrive_release& release,
+                           double begin) {
+  if (drive.stops.present())
+    return fail(PINDRIVE_UNSUPPORTED, "a stepper follows no end stops: travel must be infinite");
   for (const auto& [name, rows] :
        {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
         std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
@@ -291,7 +294,7 @@ pindrive_error pindrive_stepper_new(const pindrive_drive* drive, const pindrive_
   if (!drive || !release) return null_pointer("drive and release");
   if (!stepper) return null_pointer("stepper");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*release, begin);
+  if (!error) error = check_start(*drive, *release, begin);
   if (error) return error;
   return made(stepper, [&](pindrive_stepper& s) {
     s.at = s.along = numbers_of(*drive, *release);
@@ -309,7 +312,7 @@ pindrive_error pindrive_stepper_differentiate(const pindrive_drive* drive,
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*release, begin);
+  if (!error) error = check_start(*drive, *release, begin);
   if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return made(derivative, [&](pindrive_stepper& s) {

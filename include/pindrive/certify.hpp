@@ -120,7 +120,7 @@ class Certifier {
     Line<T> plate_velocity, load, finger_load, force, across;
     T span;
     Quantity x_rate, acceleration, finger_rate;
-    std::array<Watch<Guard>, 4> watches;
+    std::array<Watch<Guard>, 6> watches;
     int count{0};
   };
 
@@ -188,6 +188,8 @@ class Certifier {
         watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
     }
     slipping(drive_.finger, mode.finger, mode.finger_branch, {});
+    stops_at(stage, watch);
+    if (held_by_stop(drive_, mode)) return stage;
     if (mode.both_stuck()) {
       sticking(along.plate_force(),
                {at_plate.value + at_finger.value, at_plate.rate + at_finger.rate});
@@ -207,6 +209,41 @@ class Certifier {
              along.at(stage.acceleration, now), along.at(along.plate_force(), now),
              along.at(along.finger_force(), now)},
             now};
+  }
+
+  /// What the end stops keep positive: the way to them or, of an elastic one, its depth or its push.
+  template <class Trajectory, class Watch>
+  void stops_at(const Stage<Trajectory>& stage, Watch&& watch) const {
+    const Stops<T>& stops = drive_.stops;
+    if (!stops.present()) return;
+    const Trajectory& along = stage.along;
+    const StopState does = stage.segment.mode.stop;
+    const auto beyond = [&](int end, int sense) {
+      watch(along.above(T(sense * end) * along.position(), sense * stops.travel),
+            &Certificate<T>::sliding_sign, x_scale_);
+    };
+    if (does == StopState::apart || stops.rigid()) {
+      beyond(1, -1);
+      beyond(-1, -1);
+      return;
+    }
+    const int end = side(does), sense = touches(does) ? 1 : -1;
+    beyond(end, 1);
+    auto damping = T(sense * end) * stops.damping * along.velocity();
+    damping = T(sense * end) * stops.stiffness * along.position() + damping;
+    watch(along.above(damping, sense * stops.stiffness * stops.travel),
+          &Certificate<T>::force_bound, stop_scale_);
+  }
+  /// The force of an elastic stop on the pin, or of a rigid one that keeps it in equilibrium, N.
+  template <class Stage>
+  T stop_force(const Stage& stage, const Numbers& s) const {
+    if (!touches(stage.segment.mode.stop)) return T(0);
+    const Stops<T>& stops = drive_.stops;
+    if (!stops.rigid())
+      return stops.stiffness * (side(stage.segment.mode.stop) * stops.travel - s.x) -
+             stops.damping * s.v;
+    return drive_.stiffness * s.x - drive_.mass * stage.plate_velocity.rate - s.plate_force -
+           s.finger_force - stage.force.at(s.tau);
   }
 
   /// Kinetic friction at a sliding speed, from the rows of the contact's curve.
@@ -255,7 +292,8 @@ class Certifier {
 
   T energy(const Numbers& s) const {
     const T skin = soft() ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness) : T(0);
-    return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin;
+    return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin +
+           motion_.stop_energy(s.x);
   }
 
   /// Keeps the larger of what was found and |error|; infinity for what is not a number.
@@ -284,10 +322,14 @@ class Certifier {
         force_scale_ =
             std::max({force_scale_, abs(drive_.mass * s.a), abs(drive_.damping * s.v),
                       abs(s.plate_force), abs(s.finger_force), abs(stage.force.at(tau))});
+        if (drive_.stops.present() && !drive_.stops.rigid())
+          stop_scale_ = std::max(
+              {stop_scale_, drive_.stops.stiffness * abs(s.x), drive_.stops.damping * abs(s.v)});
       }
     });
     v_scale_ = x_scale_ * omega0;
     force_scale_ = std::max(force_scale_, drive_.stiffness * x_scale_);
+    stop_scale_ = std::max(stop_scale_, force_scale_);
   }
 
   // ---- along a segment ---------------------------------------------------------------------------
@@ -299,7 +341,7 @@ class Certifier {
 
   /// Powers, and the sums of them and of v and a over a panel.
   struct Sums {
-    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0};
+    T v{0}, a{0}, input{0}, damper{0}, plate{0}, finger{0}, stop{0};
   };
 
   /// Holds the laws all along a segment; its last state.
@@ -356,7 +398,7 @@ class Certifier {
 
   template <class Stage>
   void judge(const Stage& stage, const Errors& errors, T fastest) {
-    worst(result_.motion_law, errors.law, force_scale_);
+    worst(result_.motion_law, errors.law, stop_scale_);
     // An error in the rate of the position counts by how far it moves the pin in a mode.
     const T moves = x_scale_ * std::max(fastest, 1 / stage.span);
     worst(result_.kinematics, errors.velocity, std::max(v_scale_, moves));
@@ -370,7 +412,7 @@ class Certifier {
   void panel(const Closed& stage, const ClosedState& from, const ClosedState& to, bool brief,
              Errors& errors) {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
-    std::array<typename PositivityBound<T>::Flatness, 4> flatness;
+    std::array<typename PositivityBound<T>::Flatness, 6> flatness;
     for (int i = 0; i < stage.count; ++i)
       flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moment, from.tau,
                                                     to.tau - from.tau);
@@ -426,6 +468,7 @@ class Certifier {
     sums.input = over(plate, v_plate) + over(inertia, v);
     sums.damper = drive_.damping * over(v, v);
     sums.plate = -over(plate, v + T(-1) * v_plate);
+    if (touches(segment.mode.stop)) sums.stop = drive_.stops.damping * over(v, v);
     if (segment.mode.finger != ContactState::elastic_stick)
       sums.finger = -over(segment.finger_force, v);
     account(energy(from), energy(to), sums);
@@ -441,8 +484,14 @@ class Certifier {
       raise(errors.velocity, along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness + s.v);
     const T missed = drive_.mass * (s.a - stage.plate_velocity.rate) + drive_.damping * s.v +
                      drive_.stiffness * s.x - s.plate_force - s.finger_force -
-                     stage.force.at(s.tau);
+                     stage.force.at(s.tau) - stop_force(stage, s);
     raise(errors.law, std::max(abs(missed) - unsure(stage, s), T(0)));
+    if (held_by_stop(drive_, mode)) {
+      const int end = side(mode.stop);
+      raise(errors.sticking, s.v);
+      worst(result_.sticking, end * s.x - drive_.stops.travel, x_scale_);
+      worst(result_.force_bound, std::max(end * stop_force(stage, s), T(0)), force_scale_);
+    }
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
       if (does == ContactState::slip_oblique)
         raise(errors.friction, oblique_error(u, stage.across.at(s.tau), force, load));
@@ -467,19 +516,25 @@ class Certifier {
     sums.input += weight * (s.plate_force * v_plate + push * s.v);
     sums.damper += weight * drive_.damping * s.v * s.v;
     sums.plate -= weight * s.plate_force * (s.v - v_plate);
+    const StopState stop = stage.segment.mode.stop;
+    if (stop != StopState::apart && !drive_.stops.rigid())
+      sums.stop +=
+          weight * s.v *
+          (touches(stop) ? drive_.stops.damping * s.v
+                         : drive_.stops.stiffness * (side(stop) * drive_.stops.travel - s.x));
     if (stage.segment.mode.finger != ContactState::elastic_stick)
       sums.finger -= weight * s.finger_force * s.v;
   }
 
   void account(T before, T after, const Sums& sums) {
     using std::abs;
-    const T loss = sums.damper + sums.plate + sums.finger;
+    const T loss = sums.damper + sums.plate + sums.finger + sums.stop;
     balance_ += after - before - sums.input + loss;
     raise(unaccounted_, balance_);
     stored_ = std::max({stored_, before, after});
     input_ += abs(sums.input);
     dissipated_ += abs(loss);
-    for (const T part : {sums.damper, sums.plate, sums.finger})
+    for (const T part : {sums.damper, sums.plate, sums.finger, sums.stop})
       raise(gained_, std::min(part, T(0)));
   }
 
@@ -488,7 +543,13 @@ class Certifier {
   void junction(const Segment<T>& before, const Numbers& left, const Numbers& right) {
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, x_scale_);
-    worst(result_.continuity, left.v - right.v, v_scale_);
+    if (stops(event.stop) && drive_.stops.rigid()) {  // it takes the velocity, which was towards it
+      worst(result_.continuity, right.v, v_scale_);
+      worst(result_.sliding_sign, std::min(left.v * (left.x < 0 ? -1 : 1), T(0)), v_scale_);
+      worst(result_.continuity, std::abs(left.x) - drive_.stops.travel, x_scale_);
+    } else {
+      worst(result_.continuity, left.v - right.v, v_scale_);
+    }
     const bool skin_slips = soft() && event.finger == Transition::slip;
     if (soft() && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
@@ -515,7 +576,7 @@ class Certifier {
     };
     const bool plate = began(segment.mode.plate, plate_, plate_since_);
     const bool finger = began(segment.mode.finger, finger_, finger_since_);
-    if (brief_) return;
+    if (brief_ || held_by_stop(drive_, segment.mode)) return;
     Numbers s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
@@ -524,9 +585,13 @@ class Certifier {
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
-    // What slid before it, and goes on, rests only where its speed is zero.
+    // What slid before it, and goes on, rests only where its speed is zero; a rigid stop keeps the pin
+    // from going with the plate.
     const T u = s.v - stage.plate_velocity.value;
-    const bool on_plate = (plate ? abs(u) <= still : u == 0) && !oblique;
+    const int end = s.x < 0 ? -1 : 1;
+    const bool at_stop = drive_.stops.rigid() && end * s.x >= drive_.stops.travel;
+    const bool on_plate = (plate ? abs(u) <= still : u == 0) && !oblique &&
+                          !(at_stop && end * stage.plate_velocity.rate > 0);
     const bool on_finger = (finger ? abs(s.v) <= still : s.v == 0) && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
     const Beginning<T> now{s.x,
@@ -536,7 +601,7 @@ class Certifier {
                            stage.plate_velocity,
                            stage.load.value,
                            stage.finger_load.value,
-                           stage.force.value,
+                           stage.force.value + stop_force(stage, s),
                            on_plate,
                            on_finger,
                            plate,
@@ -552,6 +617,7 @@ class Certifier {
   T duration_;
   GoOn go_on_;
   T x_scale_{0}, v_scale_{0}, force_scale_{0};
+  T stop_scale_{0};  ///< of forces where elastic stops are, which may be stiffer by far
   T balance_{0}, unaccounted_{0}, gained_{0};  ///< J: of the ledger so far, at its worst …
   T stored_{0}, input_{0}, dissipated_{0};     ///< … and what it is measured against
   ContactState plate_{ContactState::absent}, finger_{ContactState::absent};  ///< what they do, …

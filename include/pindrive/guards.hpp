@@ -23,7 +23,8 @@ struct Guard {
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
 
-/// The guards of a mode; at most two of a sliding contact or an elastic stick, and two of a stick force.
+/// The guards of a mode; at most two of a sliding contact or an elastic stick, of a stick force and of the
+/// end stops.
 template <class T>
 class Guards {
  public:
@@ -134,7 +135,7 @@ class Guards {
              T force_roundoff) const {
     using std::abs;
     const Path<T>& path = guard.path;
-    const T roundoff = guard.bound == Bound::none
+    const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
                            ? force_roundoff
                            : rounding<T> * (abs(path.start) + abs(path.value));
     const T rate = path.rates(oscillator, oscillator.after(guard.zero)).first;
@@ -162,7 +163,7 @@ class Guards {
     if (count_ > index) nearest = index;
   }
 
-  std::array<Guard<T>, 6> list_;
+  std::array<Guard<T>, 8> list_;
   int count_{0}, forces_{0};   ///< of them, those of a stick force
   int below_{-1}, above_{-1};  ///< those of the velocity, from below and from above
 };

@@ -101,12 +101,24 @@ struct Coulomb {
   bool present() const { return static_limit > 0; }
 };
 
+/// End stops of the pin's travel, which push it and never pull: rigid and plastic, or elastic.
+template <class T>
+struct Stops {
+  T travel{std::numeric_limits<T>::infinity()};     ///< to either side, m; > 0, infinite without
+  T stiffness{std::numeric_limits<T>::infinity()};  ///< N/m; > 0, infinite if rigid
+  T damping{0};                                     ///< of elastic ones, N s/m; >= 0
+
+  bool present() const { return travel < std::numeric_limits<T>::infinity(); }
+  bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+};
+
 template <class T, class Surface = Contact<T>>
 struct Drive {
   T mass;                 ///< electromagnet and pin, kg; > 0
   T stiffness;            ///< spring, N/m; > 0
   T damping;              ///< damper, N s/m; >= 0
   Surface plate, finger;  ///< the plate is rigid
+  Stops<T> stops{};
 };
 
 /// An input over time: linear between its rows, constant outside. It owns nothing.
@@ -197,9 +209,26 @@ T along(ContactState state, T value) {
   return T(static_cast<int>(state)) * value;
 }
 
+/// What the end stops do: the upper or the lower one touches the pin, or it is beyond the end of its travel
+/// and on its way back faster than an elastic one follows.
+enum class StopState : signed char {
+  beyond_lower = -2,
+  lower = -1,
+  apart = 0,
+  upper = 1,
+  beyond_upper = 2
+};
+
+inline bool touches(StopState state) {
+  return state == StopState::lower || state == StopState::upper;
+}
+/// Of the stop, if any: 1, −1 or 0.
+inline int side(StopState state) { return (state > StopState::apart) - (state < StopState::apart); }
+
 struct Mode {
   ContactState plate, finger;
   int plate_branch{0}, finger_branch{0};  ///< of the friction curve, while sliding
+  StopState stop{StopState::apart};
 
   bool stuck() const { return plate == ContactState::stick || finger == ContactState::stick; }
   bool both_stuck() const { return plate == finger && finger == ContactState::stick; }
@@ -211,7 +240,14 @@ enum class Transition : signed char { none, stick, slip, cross };
 
 struct Event {
   Transition plate{Transition::none}, finger{Transition::none};
+  Transition stop{Transition::none};  ///< stick: it is met, cross: for an instant; slip: it is left
 };
+
+/// Whether a rigid stop holds the pin.
+template <class Drive>
+bool held_by_stop(const Drive& drive, const Mode& mode) {
+  return touches(mode.stop) && drive.stops.rigid();
+}
 
 inline Transition change(ContactState before, ContactState after) {
   if (before == after) return Transition::none;

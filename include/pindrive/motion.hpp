@@ -106,6 +106,27 @@ class Motion {
     });
   }
 
+  /// Force of the end stops on the pin, N: of elastic ones by their law, of rigid ones what keeps it there.
+  T stop_force(const Segment<T>& segment, T tau) const {
+    if (!touches(segment.mode.stop)) return T(0);
+    const Stops<T>& stops = drive_.stops;
+    return along(segment, [&](const auto& t) -> T {
+      const T x = t.at(t.position(), tau), v = t.at(t.velocity(), tau);
+      if (!stops.rigid())
+        return stops.stiffness * (side(segment.mode.stop) * stops.travel - x) - stops.damping * v;
+      return drive_.stiffness * x - drive_.mass * segment.plate_velocity.rate -
+             inputs_.force.from(segment.begin).at(tau) - t.at(t.plate_force(), tau) -
+             t.at(t.finger_force(), tau);
+    });
+  }
+  /// What elastic stops store, J; also while they come back behind a pin.
+  T stop_energy(T x) const {
+    using std::abs;
+    const Stops<T>& stops = drive_.stops;
+    const T depth = abs(x) - stops.travel;
+    return depth > 0 && !stops.rigid() ? stops.stiffness * depth * depth / 2 : T(0);
+  }
+
   /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until
   /// the visitor returns false.
   template <class Visitor>

@@ -83,7 +83,8 @@ class Return {
     const auto alike = [&](T one, T other, T scale) { return abs(one - other) <= close * scale; };
     const T omega0 = sqrt(drive.stiffness / drive.mass);
     const T size = abs(now.state.x) + abs(now.state.v) / omega0;
-    return kept_.mode.plate == now.mode.plate && kept_.mode.finger == now.mode.finger &&
+    return kept_.mode.plate == now.mode.plate && kept_.mode.stop == now.mode.stop &&
+           kept_.mode.finger == now.mode.finger &&
            kept_.mode.plate_branch == now.mode.plate_branch &&
            alike(kept_.state.x, now.state.x, size) &&
            alike(kept_.state.v, now.state.v, size * omega0) &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
@@ -9,6 +10,7 @@
 #include "pindrive/model.hpp"
 #include "pindrive/series_oblique.hpp"
 #include "pindrive/state.hpp"
+#include "pindrive/stops.hpp"
 
 namespace pindrive::detail {
 
@@ -23,7 +25,8 @@ class Selection {
         time_(time),
         state_{x, v, T(0), T(0), T(0)},
         plate_(drive.plate),
-        finger_(drive.finger) {
+        finger_(drive.finger),
+        stop_(drive.stops) {
     using std::abs;
     state_.x_size = abs(x);
   }
@@ -42,41 +45,44 @@ class Selection {
     if constexpr (!Surface::plain) {
       inertia_ += force_.value;
       size += abs(force_.rate) * time_;  // known to the rounding of the time
+      stop_.ask(state_);
+      size += stop_.size(state_);
     }
     state_.roundoff =
         rounding<T> * (size + 2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
-    const bool finger_first =
-        finger_.before == ContactState::stick && plate_.before != ContactState::stick;
-    Side &first = finger_first ? finger_ : plate_, &second = finger_first ? plate_ : finger_;
-    const int i = first.may_stick() ? 1 : 0, j = second.may_stick() ? 1 : 0;
-    if (i == 1 && sticks(first, second, 0)) return true;
-    if (j == 1 && sticks(second, first, i)) return true;
-    for (int k = i; k < first.count; ++k)
-      for (int l = j; l < second.count; ++l) {
-        first.does = first.option(k);
-        second.does = second.option(l);
-        if (sets_out()) return true;
-      }
-    return false;
+    if constexpr (Surface::plain) {
+      return sticks() || slips();
+    } else {
+      const T pull = pull_;
+      for (const bool stick : {true, false})
+        for (int option = 0; option < stop_.count(); ++option) {
+          stop_.take(option);
+          pull_ = pull - stop_.force(state_);
+          if (stop_.holds() ? stick && stays_at_stop() : stick ? sticks() : slips()) return true;
+        }
+      return false;
+    }
   }
 
   /// The mode that was selected.
   Mode mode() const {
-    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch};
+    return {plate_.does.state, finger_.does.state, plate_.does.branch, finger_.does.branch,
+            stop_.does};
   }
 
   /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
   bool continues() const {
-    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_);
+    return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) && !stop_.jumped();
   }
 
   const Drive<T, Surface>& drive_;
   T time_;  ///< now, s
   State<T> state_;
-  Side plate_, finger_;   ///< in the mode that was selected
+  Side plate_, finger_;  ///< in the mode that was selected, …
+  std::conditional_t<Surface::plain, NoStops, EndStops<T>> stop_;  ///< … and the end stops
   int limit_{0};          ///< the side of a stick force that has just come to its limit
   Line<T> force_{};       ///< from outside, N
-  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v, N
+  T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v less a stop's force, N
 
   T acceleration_{};  ///< of a pin that slips; tangential: that of a surface …
   bool tangential_{false};
@@ -84,6 +90,73 @@ class Selection {
   Guards<T> guards_;       ///< the mode's
 
  private:
+  /// Of spring and damper, with a stop that pushes.
+  T stiffness() const {
+    if constexpr (Surface::plain)
+      return drive_.stiffness;
+    else
+      return drive_.stiffness + stop_.stiffness();
+  }
+  T damping() const {
+    if constexpr (Surface::plain)
+      return drive_.damping;
+    else
+      return drive_.damping + stop_.damping();
+  }
+
+  /// Whether the finger is asked before the plate.
+  bool finger_first() const {
+    return finger_.before == ContactState::stick && plate_.before != ContactState::stick;
+  }
+  /// Whether a contact sticks …
+  bool sticks() {
+    const bool finger = finger_first();
+    Side &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    if (first.may_stick() && sticks(first, second, 0)) return true;
+    return second.may_stick() && sticks(second, first, first.may_stick() ? 1 : 0);
+  }
+  /// … or the pin sets out with none that does.
+  bool slips() {
+    const bool finger = finger_first();
+    Side &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
+      for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
+        first.does = first.option(k);
+        second.does = second.option(l);
+        if (sets_out()) return true;
+      }
+    return false;
+  }
+
+  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps.
+  bool no_push() const {
+    if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
+    const bool finger_alike = finger_.before == finger_.does.state || finger_.force(state_) == 0;
+    return plate_.before == plate_.does.state && finger_alike;
+  }
+
+  /// Whether a rigid stop keeps the pin where it is. A finger at rest does nothing there.
+  bool stays_at_stop() {
+    tangential_ = false;
+    acceleration_ = T(0);
+    finger_.does = finger_.option(0);
+    const T end = side(stop_.does);
+    for (int k = 0; k < plate_.count; ++k) {
+      plate_.does = plate_.option(k);
+      const T apart = -plate_.surface.rate;
+      if (plate_.stuck() ? apart != 0 : !plate_.goes_inside(state_, apart)) continue;
+      const T force = inertia_ - pull_ + plate_.force(state_) + finger_.force(state_);
+      const auto rate = plate_.force_rate(T(0), T(0));
+      const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value),
+                         end * rate.bend};
+      using std::abs;
+      if (stop_.holds_under(push, abs(force_.rate) + rate.size, no_push(), state_.roundoff,
+                            guards_))
+        return true;
+    }
+    return false;
+  }
+
   /// Whether a contact sticks while the other one does one of its options.
   bool sticks(Side& on, Side& other, int option) {
     on.does = on.option(0);
@@ -101,7 +174,7 @@ class Selection {
   /// … and how it changes; `size` is that of the terms of its slope.
   Path<T> stick_force_from(T force, const Side& on, const Side& other, T& size) const {
     using std::abs;
-    const T a = on.surface.rate, spring = drive_.stiffness * state_.v, damper = drive_.damping * a;
+    const T a = on.surface.rate, spring = stiffness() * state_.v, damper = damping() * a;
     const auto rate = other.force_rate(state_.v, a);
     size = abs(spring) + abs(damper) + rate.size;
     T drift = spring + damper - rate.value;
@@ -109,7 +182,7 @@ class Selection {
       drift -= force_.rate;
       size += abs(force_.rate);
     }
-    return {force, T(0), T(0), drift, drive_.stiffness * a - rate.bend};
+    return {force, T(0), T(0), drift, stiffness() * a - rate.bend};
   }
 
   /// Whether a contact, and the other where it sticks too, keeps the pin on its surface.
@@ -117,6 +190,8 @@ class Selection {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
+    if constexpr (!Surface::plain)
+      if (!stop_.allows(state_.v, on.surface.rate, T(0))) return false;
     const T of_on = on.contact.static_limit;
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
@@ -165,6 +240,8 @@ class Selection {
       return force;
     };
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
+    if constexpr (!Surface::plain)
+      if (stop_.ask_further() && !leaves_stop()) return false;
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
       if (!tangential_) return side.goes_inside(state_, force);
@@ -178,6 +255,21 @@ class Selection {
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
     return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
+  }
+
+  /// Whether a pin that sets out goes on as the stops do.
+  bool leaves_stop() {
+    using std::abs;
+    const bool none =
+        drive_.mass * abs(acceleration_) <= state_.roundoff || (stop_.rigid() && no_push());
+    if (!tangential_ && stop_.at_edge() && none) {
+      tangential_ = true;
+      acceleration_ = T(0);
+    }
+    const T jerk = force_.rate + plate_.force_rate(state_.v, acceleration_).value +
+                   finger_.force_rate(state_.v, acceleration_).value - stiffness() * state_.v -
+                   damping() * acceleration_;
+    return stop_.allows(state_.v, acceleration_, jerk / drive_.mass);
   }
 };
 

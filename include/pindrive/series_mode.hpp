@@ -92,7 +92,12 @@ class SeriesMode {
     } else if (slips(mode_.finger)) {
       e.damping += finger().slope * inputs_.finger_load.value;
     }
-    e.held = mode_.stuck();
+    e.held = mode_.stuck() || held_by_stop(drive_, mode_);
+    if (touches(mode_.stop) && !drive_.stops.rigid()) {
+      e.damping += drive_.stops.damping;
+      e.stiffness += drive_.stops.stiffness;
+      e.force.value += side(mode_.stop) * drive_.stops.stiffness * drive_.stops.travel;
+    }
     if (mode_.plate == ContactState::stick) e.surface = inputs_.plate_velocity;
     return e;
   }
@@ -108,6 +113,7 @@ class SeriesMode {
   struct Reached {
     detail::Bound plate{detail::Bound::none}, finger{detail::Bound::none};
     int limit{0};
+    bool push{false};  ///< a stop's
   };
 
   /// What stays positive while the mode lasts, along a step of it: the distance of a sliding speed from a
@@ -147,13 +153,16 @@ class SeriesMode {
       c[0] = turns ? c[1] * c[1] / (2 * c[2]) : T(0);  // twice as deep as it dips
       for (int n = 1; n <= 3 && !turns && !(c[n] > 0); ++n) c[n] = T(0);
     }
-    std::array<Guard, 6> list_;
+    std::array<Guard, 8> list_;
     int count_{0};
   };
   /// Those of a stick force come first.
   Guards guards(const SeriesStep<T>& step, const Reached& at = {}) const {
     Guards found;
-    if (mode_.stuck()) {
+    if (held_by_stop(drive_, mode_)) {
+      const int end = side(mode_.stop);
+      found.add(T(-end) * step.stick_force, at.push, detail::Bound::push, false, end);
+    } else if (mode_.stuck()) {
       Line<T> most{T(0), T(0)};
       if (mode_.plate == ContactState::stick)
         most = {drive_.plate.static_limit * inputs_.plate_load.value,
@@ -173,6 +182,7 @@ class SeriesMode {
       within(found, step.skin, {drive_.finger.static_limit * inputs_.finger_load.value, T(0)},
              limit, false);
     }
+    if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, step, at);
     return found;
   }
 
@@ -197,6 +207,28 @@ class SeriesMode {
     if (!oblique || range.from > 0)  // else the plate slides across at least
       found.add(above, at == Bound::lower, Bound::lower, is_plate, 0);
     if (range.to < never) found.add(below, at == Bound::upper, Bound::upper, is_plate, 0);
+  }
+  void stops(Guards& found, const SeriesStep<T>& step, const Reached& at) const {
+    using detail::Bound;
+    const Stops<T>& stops = drive_.stops;
+    const auto beyond = [&](int end, int sense) {
+      Polynomial<T> path = T(sense * end) * step.position;
+      path += Line<T>{-sense * stops.travel, T(0)};
+      const bool exact = end * step.position.c[0] == stops.travel;
+      found.add(path, exact, Bound::edge, false, end);
+    };
+    if (mode_.stop == StopState::apart) {
+      beyond(1, -1);
+      beyond(-1, -1);
+      return;
+    }
+    const int end = side(mode_.stop), sense = touches(mode_.stop) ? 1 : -1;
+    if (stops.damping == 0 || sense < 0) beyond(end, 1);
+    if (stops.damping == 0) return;
+    Polynomial<T> push = T(sense * end) * stops.stiffness * step.position;
+    push += T(sense * end) * stops.damping * step.velocity;
+    push += Line<T>{-sense * stops.stiffness * stops.travel, T(0)};
+    found.add(push, at.push, Bound::push, false, end);
   }
   void within(Guards& found, const Polynomial<T>& force, Line<T> most, int at_limit,
               bool is_plate) const {

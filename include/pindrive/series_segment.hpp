@@ -21,12 +21,13 @@ class SeriesSegment {
 
   /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
   /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
-  /// `at_limit` is the side on which a stick force is at its limit, `span` the time until the next row or the
+  /// `at_limit` is the side on which a stick force is at its limit, `no_push` says that a stop's push is
+  /// exactly zero, `span` the time until the next row or the
   /// end, s. Its guards come with their zeros.
   template <class Side, class Input>
   bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
              const Inputs<T, Input>& inputs, const Side& plate, const Side& finger,
-             const State<T>& state, T acceleration, int at_limit, T span) {
+             const State<T>& state, T acceleration, int at_limit, bool no_push, T span) {
     const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
     segment.creeps = false;
     used_ = !mode.has_closed_form();
@@ -35,22 +36,27 @@ class SeriesSegment {
     const SeriesState<T> start{state.x, state.v, state.skin, acceleration};
     step_ = series_step(equation, start, span);
     segment.creeps = step_.creeps;
-    const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit});
+    const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit, no_push});
+    const bool held = held_by_stop(drive, segment.mode);
     guards.clear();
     for (const auto& guard : paths)
       guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
-                       segment.mode.stuck() && &guard - paths.begin() < 2);
+                       segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     const T row = step_.span() < span ? never : span;
     first_ = guards.earliest_known(step_.span());
     first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
-      const T roundoff = guard.bound == Bound::none ? state.roundoff : rounding<T> * path.size();
+      const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
+                             ? state.roundoff
+                             : rounding<T> * path.size();
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), roundoff);
     });
     const T stick = step_.stick_force.c[0];
-    const T of_plate = plate.stuck() ? stick : plate.force(state);
-    const T of_finger = !finger.stuck() ? finger.force(state) : plate.stuck() ? T(0) : stick;
+    const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
+    const T of_finger = !finger.stuck() || held ? finger.force(state)
+                        : plate.stuck()         ? T(0)
+                                                : stick;
     const T rate = equation.held ? equation.surface.rate : acceleration;
     segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};

@@ -15,10 +15,11 @@ Outcome<T> simulate(const Drive<T>& drive, const Inputs<T>& inputs, Sink&& sink)
     return contact.branches == 0 && (contact.rigid() || !contact.present());
   };
   using std::isnan;
-  if (!plain(drive.plate) || !plain(drive.finger) || !inputs.mouse_velocity.constant() ||
-      !inputs.plate_load.constant() || !isnan(inputs.skin_stretch) || !inputs.force.constant() ||
-      inputs.force.first() != 0 || !inputs.across_velocity.constant() ||
-      inputs.across_velocity.first() != 0 || !inputs.finger_load.constant())
+  if (!plain(drive.plate) || !plain(drive.finger) || drive.stops.present() ||
+      !inputs.mouse_velocity.constant() || !inputs.plate_load.constant() ||
+      !isnan(inputs.skin_stretch) || !inputs.force.constant() || inputs.force.first() != 0 ||
+      !inputs.across_velocity.constant() || inputs.across_velocity.first() != 0 ||
+      !inputs.finger_load.constant())
     return detail::Simulation<T>(drive, inputs).run(sink);
   // The usual case, with nothing in it of what it does not need.
   const auto coulomb = [](const Contact<T>& contact, T load) {

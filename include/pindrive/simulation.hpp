@@ -47,6 +47,8 @@ class Simulation : private Selection<T, Surface> {
         const Mode after = mode();
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
+        if constexpr (!Surface::plain)
+          segment.event.stop = change(segment.mode.stop, after.stop, struck_);
         if (Return<T>::watches(segment.mode, after) && !(row_ < never))
           returns_.meet(drive_, segment, after, state_, outcome_);
       } else if (tau == never) {
@@ -75,7 +77,8 @@ class Simulation : private Selection<T, Surface> {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Selected = Selection<T, Surface>;
   using Selected::drive_, Selected::state_, Selected::plate_, Selected::finger_, Selected::limit_;
-  using Selected::stick_force_, Selected::guards_, Selected::mode, Selected::continues;
+  using Selected::stop_, Selected::stick_force_, Selected::guards_, Selected::mode,
+      Selected::continues;
   using Selected::time_, Selected::force_, Selected::inertia_, Selected::acceleration_,
       Selected::tangential_;
   using typename Selected::Side;
@@ -91,6 +94,7 @@ class Simulation : private Selection<T, Surface> {
     look_ahead();
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
+    if constexpr (!Surface::plain) stop_.begin(state_);
     plate_.begin(state_.v, false);
     finger_.begin(state_.v, given);
   }
@@ -111,29 +115,38 @@ class Simulation : private Selection<T, Surface> {
     segment.plate_velocity = plate_.surface;
     if constexpr (!Surface::plain)
       if (series_.begin(segment, guards_, drive_, inputs_, plate_, finger_, state_, acceleration_,
-                        continues() ? limit_ : 0, std::min(row_, inputs_.duration) - time_))
+                        continues() ? limit_ : 0, stop_.no_push(),
+                        std::min(row_, inputs_.duration) - time_))
         return;
     segment.flow = flow(plate, finger);
     segment.plate_force = plate.along(segment.flow);
     segment.finger_force = finger.along(segment.flow);
-    if (plate_.stuck())
+    if (plate_.stuck() && !stop_.holds())
       segment.plate_force = stick_force_;
-    else if (finger_.stuck())
+    else if (finger_.stuck() && !stop_.holds())
       segment.finger_force = stick_force_;
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
+    if constexpr (!Surface::plain)
+      if (!stop_.holds()) stop_.add_guards(guards_, state_, segment.flow);
   }
 
   Flow<T> flow(const Force<T>& plate, const Force<T>& finger) const {
     using std::abs;
     const State<T>& s = state_;
+    if (stop_.holds()) return Flow<T>::stuck(s.x, Line<T>{});
     if (plate_.stuck() || finger_.stuck())
       return Flow<T>::stuck(s.x, plate_.stuck() ? plate_.surface : Line<T>{});
     T damping = drive_.damping + plate.drag + finger.drag;
-    const T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
-    const T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
+    T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
+    T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
     T rate = plate.constant.rate + finger.constant.rate;
-    if constexpr (!Surface::plain) rate += force_.rate;
+    if constexpr (!Surface::plain) {
+      rate += force_.rate;
+      damping += stop_.damping();
+      stiffness += stop_.stiffness();
+      pull += stop_.spring_force(s);
+    }
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
@@ -152,8 +165,8 @@ class Simulation : private Selection<T, Surface> {
   }
 
   bool linear() const {  // no contact damps or stiffens
-    return Surface::plain ||
-           (!finger_.elastic() && drive_.plate.branches == 0 && drive_.finger.branches == 0);
+    return Surface::plain || (!finger_.elastic() && !stop_.pushes() && drive_.plate.branches == 0 &&
+                              drive_.finger.branches == 0);
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
@@ -186,9 +199,12 @@ class Simulation : private Selection<T, Surface> {
     look_ahead();
     segment.end = time_;
     limit_ = 0;
-    bool on_plate = plate_.stuck(), on_finger = finger_.stuck();
+    struck_ = false;
+    bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
+      if constexpr (!Surface::plain)
+        if (meets_stop(guard, row)) continue;
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
@@ -205,8 +221,29 @@ class Simulation : private Selection<T, Surface> {
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
-    if constexpr (!Surface::plain)
+    if constexpr (!Surface::plain) {
       land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
+      if (stop_.settles(state_) || struck_) begin_at_stop();
+    }
+  }
+
+  /// Whether a guard was one of the stops, which is then exactly where it has come to.
+  bool meets_stop(const Guard<T>& guard, bool row) {
+    if (guard.bound == Bound::push) stop_.released = !row || !stop_.holds();
+    if (guard.bound != Bound::edge) return guard.bound == Bound::push;
+    if (stop_.meet(state_, guard.side)) struck_ = true;
+    return true;
+  }
+  /// The contacts of a pin that has struck a rigid stop.
+  void begin_at_stop() {
+    struck_ = true;
+    state_.v = T(0);
+    for (Side* side : {&plate_, &finger_}) {
+      side->does = {};
+      side->reached = Bound::none;
+      side->begin(T(0), side == &finger_);
+    }
+    limit_ = 0;
   }
 
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
@@ -232,7 +269,8 @@ class Simulation : private Selection<T, Surface> {
   T half_period_;            ///< from one zero of its velocity to the next,
   Propagator<T> half_turn_;  ///< and how it has moved on there
 
-  T row_{never};  ///< time of the next row of an input, s
+  T row_{never};        ///< time of the next row of an input, s
+  bool struck_{false};  ///< a rigid stop, just now
   std::conditional_t<Surface::plain, NoSeries, SeriesSegment<T>> series_;
 
   Return<T> returns_;

@@ -9,8 +9,8 @@
 namespace pindrive::detail {
 
 /// Which end of its range a contact is at exactly: of the branch of its friction curve or, an elastic
-/// stick at its stick limit, the upper one.
-enum class Bound : signed char { none, lower, upper };
+/// stick at its stick limit, the upper one. Of an end stop: the end of the travel, or no push.
+enum class Bound : signed char { none, lower, upper, edge, push };
 
 /// The pin at an instant.
 template <class T>

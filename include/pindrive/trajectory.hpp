@@ -90,9 +90,10 @@ class BySeries {
   /// Expands it anew from where it begins: nothing but its beginning is stored.
   BySeries(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines)
       : step_(expand(drive, segment, lines)) {
-    const bool held = segment.mode.stuck();
+    const bool at_stop = held_by_stop(drive, segment.mode);
+    const bool held = segment.mode.stuck() && !at_stop;
     plate_force_ = step_.plate_force;
-    if (segment.mode.plate == ContactState::stick) plate_force_ = step_.stick_force;
+    if (segment.mode.plate == ContactState::stick && !at_stop) plate_force_ = step_.stick_force;
     finger_force_.span = step_.span();
     if (segment.mode.finger == ContactState::elastic_stick)
       finger_force_ = T(-1) * step_.skin;

@@ -204,7 +204,7 @@ class Measurement {
       // Where it ends the next mode begins, with the velocity that the event has set exactly.
       const bool ends = segment.end <= until && &segment + 1 != motion_.end();
       const auto compare = [&](T tau, T velocity) {
-        if (-outward * velocity <= 0 || (ends && tau == to)) return;
+        if (-outward * velocity <= 0 || (ends && tau == to && !stops(segment.event.stop))) return;
         if (outward * velocity >= outward * result.return_velocity) return;
         result.return_velocity = velocity;
         result.return_velocity_time = segment.begin + tau;
@@ -272,7 +272,9 @@ class Measurement {
     const Segment<T>* segment = motion_.end();
     while (segment != motion_.begin() && go_on_()) {
       --segment;
-      if (segment->event.plate == Transition::none && segment->event.finger == Transition::none)
+      const Event& event = segment->event;
+      if (event.plate == Transition::none && event.finger == Transition::none &&
+          event.stop == Transition::none)
         continue;
       const bool repeats = outcome.cycles() && !(segment->begin < outcome.cycle_begin);
       result.last_event_time = repeats ? never : segment->end;

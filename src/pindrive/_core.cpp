@@ -48,11 +48,13 @@ using CoreMotion = pd::OwnedMotion<T>;
 using Dual = pd::Dual<double>;
 /// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
 using ContactNumbers = std::tuple<double, double, double, Rows>;
+/// Travel, stiffness, damping of the end stops.
+using StopNumbers = std::tuple<double, double, double>;
 /// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
 /// row for a constant; displacement, velocity, skin stretch; rows of the force, of the velocity
-/// across and of the finger's load; duration.
+/// across and of the finger's load; the end stops; duration.
 using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
-                           double, double, double, Rows, Rows, Rows, double>;
+                           double, double, double, Rows, Rows, Rows, StopNumbers, double>;
 
 /// A tuple of Python's as the struct with the same fields.
 template <class Struct, class Tuple>
@@ -63,13 +65,24 @@ Struct as(const Tuple& tuple) {
 pd::Numbers numbers(const Numbers& given) {
   return std::apply(
       [](double mass, double stiffness, double damping, const ContactNumbers& plate,
-         const ContactNumbers& finger, const auto&... rest) {
+         const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
+         double displacement, double velocity, double skin_stretch, const Rows& force,
+         const Rows& across, const Rows& finger_load, const StopNumbers& stops, double duration) {
         return pd::Numbers{mass,
                            stiffness,
                            damping,
                            as<pd::ContactNumbers>(plate),
                            as<pd::ContactNumbers>(finger),
-                           rest...};
+                           mouse_velocity,
+                           plate_load,
+                           displacement,
+                           velocity,
+                           skin_stretch,
+                           force,
+                           across,
+                           finger_load,
+                           as<pd::StopNumbers>(stops),
+                           duration};
       },
       given);
 }
@@ -114,6 +127,15 @@ Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right)
   const auto view = motion.view();
   return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
     return view.friction(segment, tau).*contact;
+  });
+}
+
+/// Force of the end stops on the pin.
+template <class T>
+Array<double> stop_force(const CoreMotion<T>& motion, const Times& times, bool right) {
+  const auto view = motion.view();
+  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
+    return view.stop_force(segment, tau);
   });
 }
 
@@ -163,6 +185,8 @@ nb::dict segments(const CoreMotion<T>& motion) {
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.plate; });
   table["finger_event"] =
       column<std::int8_t>(motion, [](const Segment& s) { return s.event.finger; });
+  table["stop"] = column<std::int8_t>(motion, [](const Segment& s) { return s.mode.stop; });
+  table["stop_event"] = column<std::int8_t>(motion, [](const Segment& s) { return s.event.stop; });
   return table;
 }
 
@@ -261,6 +285,7 @@ nb::class_<CoreMotion<T>> bind(nb::module_& m, const char* name, const char* mea
       .def("acceleration", &evaluate<T, pd::Quantity::acceleration>, "times"_a, "right"_a)
       .def("plate_force", &force<T, &Friction::plate>, "times"_a, "right"_a)
       .def("finger_force", &force<T, &Friction::finger>, "times"_a, "right"_a)
+      .def("stop_force", &stop_force<T>, "times"_a, "right"_a)
       .def("stretch", &stretch<T, false>, "times"_a, "right"_a)
       .def("stretch_rate", &stretch<T, true>, "times"_a, "right"_a)
       .def("segments", &segments<T>, "Columns, one row a segment.")
@@ -299,15 +324,16 @@ NB_MODULE(_core, m) {
       [](double mass, double stiffness, double damping, const ContactNumbers& plate,
          const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
          double displacement, double velocity, double skin_stretch, const Rows& force,
-         const Rows& across_velocity, const Rows& finger_load, double duration) {
+         const Rows& across_velocity, const Rows& finger_load, const StopNumbers& stops,
+         double duration) {
         const Numbers numbers(mass, stiffness, damping, plate, finger, mouse_velocity, plate_load,
                               displacement, velocity, skin_stretch, force, across_velocity,
-                              finger_load, duration);
+                              finger_load, stops, duration);
         return run<double>(numbers, numbers);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
-      "across_velocity"_a, "finger_load"_a, "duration"_a,
+      "across_velocity"_a, "finger_load"_a, "stops"_a, "duration"_a,
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
       "(time, value), one row for a constant.");

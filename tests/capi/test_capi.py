@@ -84,6 +84,9 @@ class Case:
             "finger.kinetic": 0.005,
             "finger.static": 0.005,
             "finger.stiffness": inf,
+            "travel": inf,
+            "stop_stiffness": inf,
+            "stop_damping": 0.0,
             "displacement": 1.5e-3,
             "velocity": 0.10,
             "skin_stretch": nan,
@@ -116,6 +119,7 @@ class Case:
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
             self.inputs["finger_load"],
+            (n["travel"], n["stop_stiffness"], n["stop_damping"]),
             n["duration"],
         )
 
@@ -161,6 +165,9 @@ def drawn(random: np.random.Generator) -> Case:
     if kind == 3:
         case.inputs["finger_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
+    if kind == 3 and random.integers(2):
+        n["travel"] = abs(n["displacement"]) + between(0, 1e-3)
+        n["stop_stiffness"] = random.choice([inf, n["stiffness"] * between(1, 100)])
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
     return case
@@ -452,6 +459,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
     for number in range(150):
         case = drawn(random)
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
+        case.numbers["travel"] = inf
         rows = case.inputs
         oblique += len(rows["across_velocity"]) > 1
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})

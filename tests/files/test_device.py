@@ -106,6 +106,9 @@ def test_every_commented_line_of_the_template_works(write: Write, table: str, li
     lines = [text for text in template().splitlines() if not text.startswith(instead)]
     if name == "skin_stretch":  # of skin, and of skin alone
         lines = [text.replace("# stiffness", "stiffness") for text in template().splitlines()]
+    if name.startswith("stop_"):  # of stops, which are elastic
+        needed = tuple(f"# {n} =" for n in ("travel", "stop_stiffness") if n != name)
+        lines = [text[2:] if text.startswith(needed) else text for text in lines]
     if "coefficient" in name or name == "touch_force":  # in place of the table's forces
         begin = lines.index(f"[{table}]")
         end = next(i for i in range(begin + 1, len(lines)) if lines[i].startswith("["))

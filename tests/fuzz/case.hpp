@@ -28,6 +28,7 @@ struct Case {
   Rows mouse_velocity, plate_load, force{{0}, {0}}, across{{0}, {0}},
       finger_load{{0}, {1}};  ///< over time; one row is a constant
   double displacement{}, velocity{}, duration{};
+  double travel{never}, stop_stiffness{never}, stop_damping{};
 };
 
 inline void write(std::ostream& out, const Case& c) {
@@ -49,6 +50,9 @@ inline void write(std::ostream& out, const Case& c) {
   if (c.across.at.size() > 1 || c.across.value[0] != 0) rows("across", c.across);
   if (c.finger_load.at.size() > 1 || c.finger_load.value[0] != 1)
     rows("finger_load", c.finger_load);
+  if (c.travel < never)
+    out << "stops " << c.travel << ' ' << (std::isinf(c.stop_stiffness) ? 0.0 : c.stop_stiffness)
+        << ' ' << c.stop_damping << '\n';
 }
 
 /// False if the text is no such drive.
@@ -75,6 +79,11 @@ inline bool read(std::istream& in, Case& c) {
   in >> name >> c.displacement >> c.velocity >> c.duration;
   if (!in) return false;
   while (in >> std::ws && in.peek() != 'd' && in >> name) {  // until the next drive
+    if (name == "stops") {
+      in >> c.travel >> c.stop_stiffness >> c.stop_damping;
+      if (c.stop_stiffness == 0) c.stop_stiffness = never;
+      continue;
+    }
     if (name != "force" && name != "across" && name != "finger_load") return false;
     named(name == "force" ? c.force : name == "across" ? c.across : c.finger_load);
   }

@@ -30,8 +30,8 @@ class Random {
   std::uint64_t counter_;
 };
 
-/// Of the hands: along the axis, across it too, or one in ten across.
-enum class Family { any, aligned, oblique };
+/// Of hands that move along the axis, across it too, or one in ten across; or along it, of pins with stops.
+enum class Family { any, aligned, oblique, stops };
 
 class Draw {
  public:
@@ -79,6 +79,7 @@ class Draw {
     // Last, so that what an aligned hand has does not depend on the family.
     const bool oblique = chance(0.1);
     if (family_ == Family::oblique || (family_ == Family::any && oblique)) c.across = across();
+    if (family_ == Family::stops) stop(c, critical, length);
     return c;
   }
 
@@ -101,6 +102,18 @@ class Draw {
     if (std::isinf(c.skin) || chance(0.002)) return;
     const double wave = 6.3 / (omega * std::sqrt(1 + c.skin / c.stiffness));
     period_ = std::min(period_, wave * decade(0, 1.3));
+  }
+
+  /// End stops, near enough to be met; elastic ones from soft to stiff, without damping and with much.
+  void stop(Case& c, double critical, double length) {
+    c.travel = tidy(length * decade(-1.5, 0.2));
+    if (chance(0.5)) {
+      c.stop_stiffness = c.stiffness * decade(-1, 4);
+      const double wave = std::sqrt(c.stop_stiffness / c.stiffness);
+      if (chance(0.7)) c.stop_damping = critical * wave * decade(-3, 0.5);
+    }
+    if (std::abs(c.displacement) > c.travel)
+      c.displacement = c.travel * (chance(0.3) ? 1 : uniform(-1, 1));
   }
 
   Rows curve() {

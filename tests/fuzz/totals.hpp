@@ -77,7 +77,7 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 3> families{"any", "aligned", "oblique"};
+inline constexpr std::array<const char*, 4> families{"any", "aligned", "oblique", "stops"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {

@@ -32,7 +32,13 @@ HEAD, TAIL = 14, 6
 TRUSTED = 1e-8
 """Largest relative residual that a million events may leave; numbers that overflow leave more."""
 
-_KINDS = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+_KINDS = {
+    "stick": "sticks",
+    "slip": "breaks loose",
+    "cross": "reverses",
+    "stop": "is met",
+    "leave": "is left",
+}
 _TIME, _POSITION, _VELOCITY = (QUANTITIES[q] for q in ("duration", "displacement", "velocity"))
 
 

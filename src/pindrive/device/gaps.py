@@ -139,8 +139,13 @@ class _Pieces:
         finger = np.array([segment.finger == 0 for segment in segments])[which]
         rigid = drive.finger.rigid
         stiffness = drive.stiffness + np.where(finger & (not rigid), drive.finger.stiffness, 0.0)
+        if drive.stop_stiffness is not None:  # elastic end stops, where they push
+            pushed = motion.force("stop", middle) != 0.0
+            stiffness = stiffness + np.where(pushed, drive.stop_stiffness, 0.0)
         velocity = motion.velocity(middle)
         damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
+        if drive.stop_stiffness is not None:
+            damping = damping + np.where(pushed, drive.stop_damping or 0.0, 0.0)
         if drive.plate.curved:  # under a load that stays: else there is a bound
             load = motion.release.plate_load
             factor = load(middle) if isinstance(load, Profile) else load

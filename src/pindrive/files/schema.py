@@ -27,8 +27,10 @@ from pindrive.motion.drive import (
     check_one_kind,
     check_skin,
     check_static,
+    check_stops,
     check_stretch,
     check_touch,
+    check_within_travel,
 )
 from pindrive.motion.friction import (
     COEFFICIENT_OF,
@@ -241,6 +243,11 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
     problems = Problems(place)
     problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
+    stops = tuple(f"drive.{name}" for name in ("travel", "stop_stiffness", "stop_damping"))
+    travel, stiffness, damping = (values[key] for key in stops)
+    problems.check(check_stops, travel, stiffness, damping, keys=(*stops[1:], stops[0]))
+    start = ("motion.displacement", "drive.travel")
+    problems.check(check_within_travel, values[start[0]], travel, stiffness, keys=start)
     load = over_time(values["motion.finger_load"])
     assert load is not None  # it is 1 unless given
     load_keys = ("motion.finger_load", "finger.stiffness", "finger.curve")

@@ -24,7 +24,10 @@ SINGLE: Final = 1024
 """Candidates of what only the general core follows."""
 LOOKS: Final = 40
 """Samples of each recording at which candidates are compared."""
-_OTHER: Final = ("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load")
+_OTHER: Final = (
+    *("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load"),
+    *("travel", "stop_stiffness", "stop_damping"),
+)
 _PLAIN: Final = tuple(name for name in PLACES if name not in _OTHER)
 """What `simulate_batch` can vary."""
 
@@ -66,6 +69,7 @@ def _plain(model: Model) -> bool:
     channels = {block.channel for block in model.blocks}
     rigid = all(np.isinf(n[4][2]) for n in numbers)
     free = all(p.key in _PLAIN or p.key.endswith("_offset") for p in model.parameters)
+    unbounded = all(np.isinf(n[13][0]) for n in numbers)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
     coulomb = all(len(contact[3]) <= 1 for n in numbers for contact in n[3:5])
     left_alone = all(
@@ -73,7 +77,7 @@ def _plain(model: Model) -> bool:
         for release in model.releases
     )
     measured = channels <= {"position", "velocity"}
-    return measured and rigid and free and constant and coulomb and left_alone
+    return measured and rigid and unbounded and free and constant and coulomb and left_alone
 
 
 def _batched_costs(model: Model, weights: Array, theta: Array) -> Array:

@@ -234,6 +234,9 @@ def _constants(
         if contact.curved:
             required = "without a friction curve; `simulate` follows one"
             raise ValueError(refusal(name, required, f"{len(contact.curve or ())} rows"))
+    if drive.travel is not None:
+        required = "left out; `simulate` follows end stops"
+        raise ValueError(refusal("travel", required, f"{drive.travel!r} m"))
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))

@@ -25,6 +25,7 @@ CoreNumbers = tuple[
     Rows,
     Rows,
     Rows,
+    tuple[float, float, float],
     float,
 ]
 """In the order of `Numbers` in _core.cpp."""
@@ -47,6 +48,9 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "force": (10,),
     "across_velocity": (11,),
     "finger_load": (12,),
+    "travel": (13, 0),
+    "stop_stiffness": (13, 1),
+    "stop_damping": (13, 2),
 }
 """Where each number, or the rows of an input, stands among them."""
 

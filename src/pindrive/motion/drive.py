@@ -155,6 +155,11 @@ class Drive:
             1e12.
         touch_force: with which the finger presses on the pin, N, from 0 to 1e12; for a finger
             given by a coefficient alone.
+        travel: how far the pin can move from the spring's rest to an end stop, either way, m, from
+            1e-12 to 1e12; None: there are no stops.
+        stop_stiffness: of the end stops, N/m, from 1e-12 to 1e12; None: they are rigid and plastic,
+            so that a pin that strikes one loses its velocity.
+        stop_damping: of elastic end stops, N*s/m, from 0 to 1e12. They push and never pull.
 
     Raises:
         ValueError: a value is no number or out of its range.
@@ -167,6 +172,9 @@ class Drive:
     finger: Contact
     preload: Number = default("preload")
     touch_force: OptionalNumber = default("touch_force")
+    travel: OptionalNumber = default("travel")
+    stop_stiffness: OptionalNumber = default("stop_stiffness")
+    stop_damping: OptionalNumber = default("stop_damping")
 
     def __post_init__(self) -> None:
         """Validate what follows from them; coefficients become forces."""
@@ -177,6 +185,7 @@ class Drive:
             required = f"such that the damping ratio is {ratios.words()}"
             given = f"{self.damping!r} N*s/m, which makes it {self.damping_ratio:g}"
             raise ValueError(refusal("damping", required, given))
+        check_stops(self.travel, self.stop_stiffness, self.stop_damping)
         for label, contact in (("plate", self.plate), ("finger", self.finger)):
             if not isinstance(contact, Contact):
                 raise ValueError(refusal(label, "a Contact", repr(contact)))
@@ -202,6 +211,9 @@ class Drive:
         finger: Contact,
         preload: float | str = default("preload"),
         touch_force: float | str | None = None,
+        travel: float | str | None = None,
+        stop_stiffness: float | str | None = None,
+        stop_damping: float | str | None = None,
     ) -> Drive:
         """A drive whose damping is given as a fraction of the critical one, 0 or from 1e-11 to 1e6.
 
@@ -218,6 +230,9 @@ class Drive:
             finger=finger,
             preload=preload,
             touch_force=touch_force,
+            travel=travel,
+            stop_stiffness=stop_stiffness,
+            stop_damping=stop_damping,
         )
 
     @property
@@ -271,6 +286,27 @@ def check_skin(finger: Contact) -> None:
     if finger.curved and not finger.rigid:
         required = "one row for a compliant finger, whose skin would lag behind it"
         raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
+
+
+def check_stops(travel: float | None, stiffness: float | None, damping: float | None) -> None:
+    """Refuse what describes end stops (m, N/m, N*s/m) without what they need."""
+    for name, value, unit in (
+        ("stop_stiffness", stiffness, "N/m"),
+        ("stop_damping", damping, "N*s/m"),
+    ):
+        if value is not None and travel is None:
+            required = "left out without travel, as there are no end stops"
+            raise ValueError(refusal(name, required, f"{value!r} {unit}"))
+    if damping and stiffness is None:
+        required = "left out for rigid end stops; give stop_stiffness too"
+        raise ValueError(refusal("stop_damping", required, f"{damping!r} N*s/m"))
+
+
+def check_within_travel(displacement: float, travel: float | None, stiffness: float | None) -> None:
+    """Refuse a displacement (m) beyond rigid end stops."""
+    if travel is not None and stiffness is None and abs(displacement) > travel:
+        required = f"at most travel, {travel!r} m, either way"
+        raise ValueError(refusal("displacement", required, f"{displacement!r} m"))
 
 
 def check_stretch(stretch: float, finger: Contact, load: float) -> None:

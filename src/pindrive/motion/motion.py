@@ -142,10 +142,10 @@ class Motion(lazy.NotebookHtml):
     def force(
         self, contact: ContactName, t: ArrayLike, side: Side = "right"
     ) -> float | NDArray[np.float64]:
-        """Friction force of the plate or the finger on the pin, N; `t` and `side` as above."""
-        if contact not in ("plate", "finger"):
-            raise ValueError(refusal("contact", '"plate" or "finger"', repr(contact)))
-        of_contact = self._core.plate_force if contact == "plate" else self._core.finger_force
+        """Force of the plate, the finger or the end stops on the pin, N; `t`, `side` as above."""
+        if contact not in ("plate", "finger", "stop"):
+            raise ValueError(refusal("contact", '"plate", "finger" or "stop"', repr(contact)))
+        of_contact = getattr(self._core, f"{contact}_force")
         return self._evaluate(of_contact, t, side)
 
     @overload
@@ -227,7 +227,8 @@ class Motion(lazy.NotebookHtml):
             raise ValueError(refusal("begin", f"at most end ({end!r} s)", f"{begin!r} s"))
         times, ended = self._core.events(begin, end, budgets.MOMENTS.most + 1)
         budgets.MOMENTS.check(len(times), f"events from {begin:g} s to {end:g} s")
-        kinds = np.stack([self._table["plate_event"], self._table["finger_event"]], axis=-1)[ended]
+        each = [self._table[f"{name}_event"] for name in ("plate", "finger", "stop")]
+        kinds = np.stack(each, axis=-1)[ended]
         states = zip(self.position(times).tolist(), self.velocity(times).tolist(), strict=True)
         rows = zip(times.tolist(), kinds.tolist(), states, strict=True)
         return tuple(event for row in rows for event in events_at(*row))

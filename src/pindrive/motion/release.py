@@ -7,7 +7,13 @@ from math import inf, nan
 from typing import Final
 
 from pindrive.motion.core_numbers import CoreNumbers, Rows
-from pindrive.motion.drive import Contact, Drive, check_skin, check_stretch
+from pindrive.motion.drive import (
+    Contact,
+    Drive,
+    check_skin,
+    check_stretch,
+    check_within_travel,
+)
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, default
@@ -123,7 +129,8 @@ def check_fits(drive: Drive, release: Release) -> None:
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a friction curve at a compliant finger; a finger load that changes at either.
+            hold; a friction curve at a compliant finger; a finger load that changes at either;
+            a displacement beyond rigid end stops.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -133,6 +140,7 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
     check_skin(drive.finger)
     check_finger_load(release.finger_load, drive.finger)
+    check_within_travel(release.displacement, drive.travel, drive.stop_stiffness)
     if release.skin_stretch is not None:
         check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))
 
@@ -160,6 +168,11 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         _rows(release.force),
         _rows(release.across_velocity),
         _rows(release.finger_load),
+        (
+            inf if drive.travel is None else drive.travel,
+            inf if drive.stop_stiffness is None else drive.stop_stiffness,
+            drive.stop_damping or 0.0,
+        ),
         inf if duration is None else duration,
     )
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Side = Literal["left", "right"]
-ContactName = Literal["plate", "finger"]
+ContactName = Literal["plate", "finger", "stop"]
 
 
 def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
@@ -31,8 +31,8 @@ def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
     }
 
 
-Cause = Literal["plate", "finger", "both"]
-EventKind = Literal["stick", "slip", "cross"]
+Cause = Literal["plate", "finger", "both", "stop"]
+EventKind = Literal["stick", "slip", "cross", "stop", "leave"]
 ModeName = Literal["slip", "carried", "resting"]
 QuantityName = Literal["position", "velocity", "acceleration"]
 Table = dict[str, "NDArray[Any]"]
@@ -42,6 +42,8 @@ Table = dict[str, "NDArray[Any]"]
 _KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
 _EACH: tuple[Cause, ...] = ("plate", "finger")
 _BOTH: tuple[Cause, ...] = ("both",)
+_AT_STOP: tuple[EventKind, ...] = ("stop", "leave", "stop")
+"""Likewise: it is met, left, or met for an instant."""
 _SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0, 4: 2}
 
 
@@ -52,10 +54,10 @@ class Event:
     time: float
     """s"""
     contact: Cause
-    """Where; `both` when plate and finger, at one velocity, do the same."""
+    """Where; `both` when plate and finger, at one velocity, do the same; `stop`: an end stop."""
     kind: EventKind
     """`stick`: sliding stopped and the contact holds; `slip`: it breaks loose; `cross`: sliding
-    reversed without sticking."""
+    reversed without sticking; at a `stop`: the pin meets it, `stop`, or loses touch, `leave`."""
     position: float
     """m"""
     velocity: float
@@ -106,7 +108,9 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
     """
     rows = {name: column.tolist() for name, column in table.items()}
     events = []
-    for i, kinds in enumerate(zip(rows["plate_event"], rows["finger_event"], strict=True)):
+    for i, kinds in enumerate(
+        zip(*(rows[f"{name}_event"] for name in ("plate", "finger", "stop")), strict=True)
+    ):
         if not any(kinds):
             continue
         end = rows["end"][i]
@@ -116,39 +120,43 @@ def events_of(table: Table, state_at: Callable[[float], tuple[float, float]]) ->
     return tuple(events)
 
 
-def events_at(time: float, kinds: tuple[int, int], state: tuple[float, float]) -> list[Event]:
+def events_at(time: float, kinds: tuple[int, int, int], state: tuple[float, float]) -> list[Event]:
     """What happens at the end of a segment, the plate's first.
 
     Args:
         time: s.
-        kinds: of the events at plate and finger, as in the core's table.
+        kinds: of the events at plate, finger and stop, as in the core's table.
         state: position (m) and velocity (m/s) then.
     """
-    causes = _BOTH if kinds[0] == kinds[1] else _EACH
-    return [
+    *friction, stop = kinds
+    causes = _BOTH if friction[0] == friction[1] else _EACH
+    found = [
         Event(time, contact, _KINDS[kind - 1], *state)
-        for contact, kind in zip(causes, kinds, strict=False)
+        for contact, kind in zip(causes, friction, strict=False)
         if kind
     ]
+    return [*found, Event(time, "stop", _AT_STOP[stop - 1], *state)] if stop else found
 
 
 def segments_of(table: Table) -> tuple[Segment, ...]:
     """The modes in order."""
-    columns = ("begin", "end", "plate", "finger", "velocity", "acceleration")
+    columns = ("begin", "end", "plate", "finger", "stop", "velocity", "acceleration")
     rows = zip(*(table[name].tolist() for name in columns), strict=True)
     return tuple(
         Segment(
             begin,
             end,
-            _mode(plate, finger, velocity == acceleration == 0.0),
+            _mode(plate, finger, stop, velocity == acceleration == 0.0),
             _SLIDING[plate],
             _SLIDING[finger],
         )
-        for begin, end, plate, finger, velocity, acceleration in rows
+        for begin, end, plate, finger, stop, velocity, acceleration in rows
     )
 
 
-def _mode(plate: int, finger: int, still: bool) -> ModeName:
+def _mode(plate: int, finger: int, stop: int, still: bool) -> ModeName:
+    if stop and still:
+        return "resting"
     if 0 not in (plate, finger):
         return "slip"
     return "resting" if still or finger == 0 else "carried"
@@ -263,12 +271,15 @@ class Ledger:
     spring_end: float
     skin_start: float
     skin_end: float
+    stop_start: float
+    stop_end: float
     plate_work: float
     inertia_work: float
     force_work: float
     damper_dissipated: float
     plate_dissipated: float
     finger_dissipated: float
+    stop_dissipated: float
     residual: float
 
 

@@ -176,6 +176,7 @@ class Sensitivity(lazy.NotebookHtml):
         plate, finger = table["plate_event"], table["finger_event"]
         # As `Motion.events` lists them: two at one instant are one if they are alike.
         count = np.where(plate == finger, plate != 0, (plate != 0) + (finger != 0).astype(int))
+        count = count + (table["stop_event"] != 0)
         return np.array(
             [
                 np.repeat(
@@ -261,8 +262,8 @@ def _parting(one: _core.Motion, other: _core.Motion) -> float:
         return float(min(a[edge][at[0]], b[edge][at[0]])) if at.size else inf
 
     return min(
-        first("begin", "plate", "finger", "plate_branch", "finger_branch"),
-        first("end", "plate_event", "finger_event"),
+        first("begin", "plate", "finger", "plate_branch", "finger_branch", "stop"),
+        first("end", "plate_event", "finger_event", "stop_event"),
     )
 
 
@@ -414,15 +415,15 @@ def _natural_size(motion: Simulated, place: Place) -> float:
     displacement, velocity = map(abs, at_first)
     length = max(displacement, max(velocity, *speeds) / omega) or 1e-3
     match place:
-        case (0 | 1 | 2,):
+        case (0 | 1 | 2,) | (13, 2):
             return drive.mass * omega
         case (5 | 11, _, 1) | (8,) | (3 | 4, 3, _, 0):
             return length * omega
-        case (6, _, 1):
+        case (6 | 12, _, 1):
             return 1.0
-        case (5 | 6 | 10 | 11, _, 0):
+        case (5 | 6 | 10 | 11 | 12, _, 0):
             return 1.0 / omega
-        case (7 | 9,):
+        case (7 | 9,) | (13, 0):
             return length
     return length * drive.stiffness
 
@@ -434,7 +435,7 @@ def _in_range(numbers: CoreNumbers) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
 
     mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_ = numbers
-    *_, stretch, force, across, finger_load, _ = numbers
+    *_, stretch, force, across, finger_load, stops, _ = numbers
     contacts = all(
         static >= kinetic >= 0.0
         and give > 0.0
@@ -445,6 +446,9 @@ def _in_range(numbers: CoreNumbers) -> bool:
     return (
         mass > 0.0
         and stiffness > 0.0
+        and stops[0] > 0.0
+        and stops[1] > 0.0
+        and stops[2] >= 0.0
         and contacts
         and increase(mouse_velocity)
         and increase(across)

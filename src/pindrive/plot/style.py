@@ -27,6 +27,8 @@ PALETTE: Final = {
     "stick": "#D55E00",  # vermillion
     "slip": "#009E73",  # bluish green
     "cross": "#000000",
+    "stop": "#000000",
+    "leave": "#000000",
     "plate": "#000000",
     "carried": "#56B4E9",  # sky blue
     "resting": "#E69F00",  # orange
@@ -34,8 +36,13 @@ PALETTE: Final = {
 }
 """Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
 
-EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D"}
-CONTACTS: Final = {"plate": ("full", 3.2), "finger": ("none", 6.0), "both": ("left", 6.0)}
+EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D", "stop": "|", "leave": "_"}
+CONTACTS: Final = {
+    "plate": ("full", 3.2),
+    "finger": ("none", 6.0),
+    "both": ("left", 6.0),
+    "stop": ("full", 9.0),
+}
 """How a marker is filled, and its size, by the contact that changes."""
 
 CURVES: Final[tuple[dict[str, Any], ...]] = (

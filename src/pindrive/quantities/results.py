@@ -103,12 +103,15 @@ ENERGY: Final[tuple[Quantity, ...]] = (
     Quantity("energy.spring_end", "E_s", "J", "energy in the spring at the end"),
     Quantity("energy.skin_start", "E_f,0", "J", "energy in a compliant finger at release"),
     Quantity("energy.skin_end", "E_f", "J", "energy in a compliant finger at the end"),
+    Quantity("energy.stop_start", "E_x,0", "J", "energy in elastic end stops at release"),
+    Quantity("energy.stop_end", "E_x", "J", "energy in elastic end stops at the end"),
     Quantity("energy.plate_work", "W_in", "J", "work that the moving plate puts in"),
     Quantity("energy.inertia_work", "W_a", "J", "work of the accelerating housing"),
     Quantity("energy.force_work", "W_e", "J", "work of the external force"),
     Quantity("energy.damper_dissipated", "W_b", "J", "energy turned into heat in the damper"),
     Quantity("energy.plate_dissipated", "W_p", "J", "energy turned into heat at the plate"),
     Quantity("energy.finger_dissipated", "W_f", "J", "energy turned into heat at the finger"),
+    Quantity("energy.stop_dissipated", "W_x", "J", "energy turned into heat at the end stops"),
     Quantity("energy.residual", "W_res", "J", "what the terms leave over: rounding alone"),
 )
 """The energy ledger of a motion."""

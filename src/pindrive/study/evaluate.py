@@ -130,7 +130,8 @@ _WHOLE: Final = {
 }
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
 """What is asked of a motion, beside its drive and its release."""
-_FOLLOWED: Final = tuple(
+_STOPS: Final = ("travel", "stop_stiffness", "stop_damping")
+_FOLLOWED: Final = tuple(f"drive.{name}" for name in _STOPS) + tuple(
     f"motion.{name}" for name in ("skin_stretch", "force", "across_velocity", "finger_load")
 )
 """Which points `simulate_batch` does not take."""
@@ -221,6 +222,7 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
+        or device.drive.travel is not None
         or device.drive.plate.curved
         or device.drive.finger.curved
         or device.release.skin_stretch is not None
@@ -287,7 +289,7 @@ def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _motion(given: Mapping[str, Any]) -> Motion:
     body = {name: given[name] for name in ("mass", "stiffness", "damping")}
-    body |= {name: given[name] for name in ("preload", "touch_force")}
+    body |= {name: given[name] for name in ("preload", "touch_force", *_STOPS)}
     for table, stiffness in (("plate", inf), ("finger", given["finger_stiffness"] or inf)):
         own = {n: given[f"{table}_{n}"] for pair in COEFFICIENTS.items() for n in pair}
         for kinetic, curve in (("kinetic", "curve"), ("coefficient", "coefficient_curve")):

@@ -1,0 +1,184 @@
+/// The end stops of the pin's travel: what they may do next, and their force (docs/theory.md, section 13).
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "pindrive/guards.hpp"
+#include "pindrive/model.hpp"
+#include "pindrive/state.hpp"
+
+namespace pindrive::detail {
+
+/// The stops of a drive at an instant. A rigid one holds the pin; an elastic one pushes it, and may have let
+/// go of a pin that is still beyond the end of its travel.
+template <class T>
+class EndStops {
+ public:
+  explicit EndStops(const Stops<T>& given) : stops_(given) {}
+
+  StopState does{StopState::apart};
+  bool released{false};  ///< its force has just come to zero, exactly
+
+  /// At the start; a rigid stop takes the speed of a pin that is at it.
+  void begin(State<T>& s) {
+    const int end = s.x < 0 ? -1 : 1;
+    if (stops_.rigid() && end * s.x == stops_.travel && end * s.v > 0) s.v = T(0);
+    if (stops_.rigid() || !(end * s.x > stops_.travel)) return;
+    does = at_end(end, push(s, end) > 0);
+  }
+
+  /// Finds out what they may do.
+  void ask(const State<T>& s) {
+    const int end = s.x < 0 ? -1 : 1;
+    const bool edge = end * s.x == stops_.travel;
+    const StopState touching = at_end(end, true);
+    at_ = Bound::none;
+    count_ = 1;
+    exactly_ = released;
+    jumped_ = met_ && stops_.damping > 0;
+    met_ = false;
+    options_ = {does, StopState::apart};
+    if (edge && s.v == 0) {
+      at_ = Bound::edge;
+      options_[0] = touching;
+      count_ = 2;
+    } else if (edge || stops_.rigid()) {
+      options_[0] = edge && end * s.v > 0 ? touching : StopState::apart;
+    } else if (released) {
+      at_ = Bound::push;
+      options_ = {touching, at_end(end, false)};
+      count_ = 2;
+    }
+    released = false;
+  }
+  int count() const { return count_; }
+  void take(int option) { does = options_[option]; }
+
+  bool rigid() const { return stops_.rigid(); }
+  bool holds() const { return stops_.rigid() && touches(does); }
+  bool pushes() const { return !stops_.rigid() && touches(does); }
+  T stiffness() const { return pushes() ? stops_.stiffness : T(0); }
+  T damping() const { return pushes() ? stops_.damping : T(0); }
+  T spring_force(const State<T>& s) const {
+    return pushes() ? stops_.stiffness * (side(does) * stops_.travel - s.x) : T(0);
+  }
+  /// Of an elastic one on the pin, N, …
+  T force(const State<T>& s) const { return spring_force(s) - damping() * s.v; }
+  /// … and how large the terms of it are.
+  T size(const State<T>& s) const {
+    using std::abs;
+    if (stops_.rigid() || (does == StopState::apart && at_ == Bound::none)) return T(0);
+    return stops_.stiffness * (s.x_size + stops_.travel) + stops_.damping * abs(s.v);
+  }
+
+  /// Whether nothing but how the pin goes on tells whether they touch it, …
+  bool ask_further() const { return at_ != Bound::none; }
+  bool at_edge() const { return at_ == Bound::edge; }
+  /// … and whether the one that was taken agrees with that.
+  bool allows(T v, T acceleration, T jerk) const {
+    if (at_ == Bound::none) return true;
+    T first = acceleration, second = jerk;
+    if (at_ == Bound::push) {
+      first = stops_.stiffness * v + stops_.damping * acceleration;
+      second = stops_.stiffness * acceleration + stops_.damping * jerk;
+    }
+    const T outwards = T(side(options_[0])) * (first != 0 ? first : second);
+    return touches(does) ? outwards >= 0 : outwards <= 0;
+  }
+
+  /// Adds the push of a rigid one that holds the pin; false if it is negative, or becomes so at once.
+  bool holds_under(Path<T> push, T rate_size, bool exactly, T roundoff, Guards<T>& guards) const {
+    using std::abs;
+    if (push.start < -roundoff && !exactly) return false;
+    if (!(push.start > roundoff) || exactly) {
+      push.start = T(0);
+      if (abs(push.drift) <= rounding<T> * rate_size) push.drift = T(0);
+      if ((push.drift != 0 ? push.drift : push.curvature) < 0) return false;
+    }
+    guards.clear();
+    guards.add(push, Bound::push, false, side(does));
+    return true;
+  }
+
+  /// Adds what ends their part in a mode, of a pin that none of them holds.
+  void add_guards(Guards<T>& guards, const State<T>& s, const Flow<T>& flow) const {
+    if (!stops_.present()) return;
+    const auto beyond = [&](int end, int sense) {
+      Path<T> path = T(sense * end) * flow.position;
+      path.start = sense * (end * s.x - stops_.travel);
+      guards.add(path, Bound::edge, false, end);
+    };
+    const int end = side(does);
+    if (does == StopState::apart) {
+      beyond(1, -1);
+      beyond(-1, -1);
+      return;
+    }
+    const int sense = touches(does) ? 1 : -1;
+    if (stops_.damping == 0 || sense < 0) beyond(end, 1);
+    if (stops_.damping == 0) return;
+    Path<T> path =
+        T(sense * end) * (stops_.stiffness * flow.position + stops_.damping * flow.velocity);
+    path.start = exactly_ ? T(0) : sense * push(s, end);
+    guards.add(path, Bound::push, false, end);
+  }
+
+  /// The pin has come to an end of its travel; whether it strikes what does not yield.
+  bool meet(State<T>& s, int end) {
+    met_ = true;
+    s.x = end * stops_.travel;
+    if (!stops_.rigid()) return false;
+    s.v = T(0);
+    return true;
+  }
+  /// Makes exact what rounding has left of a zero at another event; whether the pin has struck a rigid one.
+  bool settles(State<T>& s) {
+    if (!stops_.present()) return false;
+    const bool apart = does == StopState::apart;
+    const int end = !apart ? side(does) : s.x < 0 ? -1 : 1;
+    const T depth = end * s.x - stops_.travel;
+    if (apart) return depth >= 0 && end * s.v > 0 && meet(s, end);
+    if (stops_.rigid()) return false;
+    if (touches(does) ? stops_.damping == 0 && !(depth > 0) : !(depth > 0))
+      s.x = end * stops_.travel;
+    const T pushes = push(s, end);
+    if (stops_.damping > 0 && (touches(does) ? !(pushes > 0) : pushes >= 0)) released = true;
+    return false;
+  }
+  bool jumped() const { return jumped_; }    ///< its force, as the pin met it
+  bool no_push() const { return exactly_; }  ///< its force is exactly zero
+
+ private:
+  static StopState at_end(int end, bool touching) {
+    return static_cast<StopState>(touching ? end : 2 * end);
+  }
+  T push(const State<T>& s, int end) const {
+    return stops_.stiffness * (end * s.x - stops_.travel) + stops_.damping * end * s.v;
+  }
+
+  const Stops<T> stops_;
+  std::array<StopState, 2> options_{};
+  int count_{1};
+  Bound at_{Bound::none};  ///< what is exactly zero: the way to the end of the travel, or the push
+  bool exactly_{false}, met_{false}, jumped_{false};
+};
+
+/// A drive that has none.
+struct NoStops {
+  template <class Stops>
+  explicit NoStops(const Stops&) {}
+  static constexpr StopState does = StopState::apart;
+  static constexpr bool holds() { return false; }
+  static constexpr bool pushes() { return false; }
+  static constexpr bool jumped() { return false; }
+};
+
+/// What happens to the stops between two modes, where a pin may have struck a rigid one.
+inline Transition change(StopState before, StopState after, bool struck) {
+  if (struck) return touches(after) ? Transition::stick : Transition::cross;
+  if (touches(before) == touches(after)) return Transition::none;
+  return touches(after) ? Transition::stick : Transition::slip;
+}
+
+}  // namespace pindrive::detail
