@@ -247,8 +247,7 @@ class CreepFlow : public SeriesStep<T> {
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor) * plain(start.skin));
-    return 16 * unit * sizes * plain(e.across.value) /
-           (plain(e.load.value) * plain(e.plate_force));
+    return 16 * unit * sizes * plain(e.across.value) / (plain(e.load.value) * plain(e.plate_force));
   }
 
   T t_{0};                               // at the start

@@ -134,7 +134,9 @@ class _Oblique:
         """Where inertia q + strength q / sqrt(1 + q^2) is the rest, by bisection and Newton."""
         if inertia < 0 and abs(rest) >= strength * mpf("0.98"):
             raise DoubtError("friction nearly all used")
-        low, high = (-(abs(rest) / inertia) - 1, abs(rest) / inertia + 1) if inertia > 0 else (-5, 5)
+        low, high = (
+            (-(abs(rest) / inertia) - 1, abs(rest) / inertia + 1) if inertia > 0 else (-5, 5)
+        )
         low, high = mpf(low), mpf(high)
         for _ in range(60):
             q = (low + high) / 2
@@ -153,7 +155,8 @@ class _Oblique:
         last = (series[n] for n in range(ORDER - 4, ORDER))
         far = (abs(c) / size for c in last)
         return min(
-            (exp(log(REST / c) / n) for n, c in enumerate(far, ORDER - 4) if c != 0), default=mpf("inf")
+            (exp(log(REST / c) / n) for n, c in enumerate(far, ORDER - 4) if c != 0),
+            default=mpf("inf"),
         )
 
     def take(self, base: mpf, end: mpf, terms: Poly) -> None:
@@ -187,7 +190,9 @@ class _Oblique:
         here, self.t, left = self.t, knot, knot - self.t
         # The inputs just before the knot, told from the line that ends there.
         lines = self.lines
-        ahead = {p: (p(here), p.slope(here)) for p in (self.mouse, self.across, self.load, self.push)}
+        ahead = {
+            p: (p(here), p.slope(here)) for p in (self.mouse, self.across, self.load, self.push)
+        }
         self.lines = lambda _: [  # type: ignore[method-assign]
             [at + rate * left, -rate] for at, rate in ahead.values()
         ]
