@@ -44,19 +44,24 @@ class CreepFlow : public SeriesStep<T> {
     const Real step = std::min(trial_step(e, start), farthest);
     if (!(step > 0)) return;
     this->begin(step);
-    Real before{0};  // the velocity of creep at the start, of the last round
+    Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
       // What the rounds still change is less than what they changed.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
-      if (!within_step && round > 1 &&
+      if (!within_step && round > 0 &&
           abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
         return;
       before = v;
-      expand(e, start, step);
+      // The first one has as much of a as tells whether it is near.
+      expand(e, start, step, round == 0 ? 1 : N);
+      if (round == 0) continue;
       const Real left = farthest / step;
       Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
-      converged_ = change(part) <= unit * size(plate_force, part) / plain(e.mass);
+      const Real changed = change(part);
+      converged_ = changed <= unit * size(plate_force, part) / plain(e.mass);
+      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
+      last = changed;
       // The derivatives of a dual number converge one round later.
       if (!converged && !(within_step && round + 1 == most_rounds)) continue;
       if (!within_step && !starts_from(e, start)) return;
@@ -127,8 +132,8 @@ class CreepFlow : public SeriesStep<T> {
             abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
   }
 
-  /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a.
-  void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
+  /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a below an order.
+  void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step, int order) {
     using std::sqrt;
     auto &x = position.c, &v = velocity.c, &y = skin.c;
     auto &t = inner(0).c, &s = inner(1).c, &d = inner(2).c;
@@ -170,10 +175,10 @@ class CreepFlow : public SeriesStep<T> {
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
       x[n + 1] = T(step) / T(n + 1) * v[n];
-      if (n == N) break;
+      if (n == order) break;
       y[n + 1] = T(step) / T(n + 1) * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }
-    for (int n = 0; n < N; ++n) {
+    for (int n = 0; n < order; ++n) {
       const T a = T(n + 1) / T(step) * v[n + 1];
       changes_[n] = std::abs(plain(a - acceleration_[n]));
       acceleration_[n] = a;
@@ -242,8 +247,7 @@ class CreepFlow : public SeriesStep<T> {
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor) * plain(start.skin));
-    return 16 * unit * sizes * plain(e.across.value) /
-           (plain(e.load.value) * plain(e.plate_force));
+    return 16 * unit * sizes * plain(e.across.value) / (plain(e.load.value) * plain(e.plate_force));
   }
 
   T t_{0};                               // at the start

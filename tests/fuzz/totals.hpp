@@ -121,9 +121,10 @@ inline void write(std::ostream& out, const Range& range, const Totals& totals) {
 inline bool read(std::istream& in, Range& range, Totals& totals) {
   std::string word, family;
   std::size_t failures = 0;
-  in >> word >> range.seed >> word >> range.from >> word >> family >> word >> totals.drives >> word >> range.count >>
-      word >> totals.segments >> word >> totals.instants >> word >> totals.inconsistent >> word >>
-      totals.most_segments.value >> word >> totals.most_segments.at >> word >> totals.seconds;
+  in >> word >> range.seed >> word >> range.from >> word >> family >> word >> totals.drives >>
+      word >> range.count >> word >> totals.segments >> word >> totals.instants >> word >>
+      totals.inconsistent >> word >> totals.most_segments.value >> word >>
+      totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
   for (long long number = 0; failures > 0 && in >> number; --failures)

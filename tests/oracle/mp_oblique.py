@@ -1,9 +1,10 @@
 """Motions under a hand that moves across the axis too, in forty digits, through w = 0.
 
-The plate's friction opposes the whole sliding velocity (u, w), and the finger is rigid or absent. Where
-u and w are not both zero the equation of motion is integrated by its Taylor series. Where both come to
-zero at once, the pin creeps: with u = |w| q there is one power series of q on either side of that
-instant, and the motion before it is joined to it where the two agree to 28 digits.
+The plate's friction opposes the whole sliding velocity (u, w), and the finger is rigid or
+absent. Where u and w are not both zero the equation of motion is integrated by its Taylor
+series. Where both come to zero at once, the pin creeps: with u = |w| q there is one power
+series of q on either side of that instant, and the motion before it is joined to it where the
+two agree to 28 digits.
 
 Inputs are a mapping of SI values as in `mp_piecewise`, with rows of `across`.
 """
@@ -78,7 +79,7 @@ class _Oblique:
     # -- series --------------------------------------------------------------------------------
 
     def lines(self, way: int) -> list[Poly]:
-        """Velocities of the plate along and across, load and force from here on, or back in time."""
+        """Velocities of the plate along and across, load and force, from here on or back."""
         return [
             [p(self.t), way * p.slope(self.t)]
             for p in (self.mouse, self.across, self.load, self.push)
@@ -88,7 +89,11 @@ class _Oblique:
         """Position, velocity and what the finger carries, in the time from here on."""
         v_p, w, load, push = ([*line, *[mpf(0)] * ORDER] for line in self.lines(1))
         squared = [w[0] ** 2, 2 * w[0] * w[1], w[1] ** 2, *[mpf(0)] * ORDER]
-        x, v, u, r, d, carried = [self.x], [self.v], [], [], [], []
+        x, v = [self.x], [self.v]
+        u: Poly = []
+        r: Poly = []
+        d: Poly = []
+        carried: Poly = []
         for n in range(ORDER):
             u.append(v[n] - v_p[n])
             square = squared[n] + fdot(u, u[::-1]) - (fdot(r[1:], r[:0:-1]) if n > 1 else 0)
@@ -104,10 +109,14 @@ class _Oblique:
         return x, v, carried
 
     def creep(self, x: mpf, way: int) -> tuple[Poly, Poly, Poly]:
-        """Position, velocity and q from (way 1) or to (-1) the instant where u = w = 0, in |time|."""
+        """Position, velocity and q from (way 1) or to (-1) the instant u = w = 0, in |time|."""
         v_p, w, load, push = ([*line, *[mpf(0)] * ORDER] for line in self.lines(way))
         rate, kinetic = abs(w[1]), self.finger * self.kinetic
-        xs, v, q, s, d = [x], [], [], [], []
+        xs = [x]
+        v: Poly = []
+        q: Poly = []
+        s: Poly = []
+        d: Poly = []
         for n in range(ORDER):
             v.append(v_p[n] + (rate * q[n - 1] if n > 0 else 0))
             rest = push[n] - self.b * v[n] - self.k * xs[n] - (kinetic if n == 0 else 0)
@@ -134,7 +143,9 @@ class _Oblique:
         """Where inertia q + strength q / sqrt(1 + q^2) is the rest, by bisection and Newton."""
         if inertia < 0 and abs(rest) >= strength * mpf("0.98"):
             raise DoubtError("friction nearly all used")
-        low, high = (-(abs(rest) / inertia) - 1, abs(rest) / inertia + 1) if inertia > 0 else (-5, 5)
+        low, high = (
+            (-(abs(rest) / inertia) - 1, abs(rest) / inertia + 1) if inertia > 0 else (-5, 5)
+        )
         low, high = mpf(low), mpf(high)
         for _ in range(60):
             q = (low + high) / 2
@@ -153,7 +164,8 @@ class _Oblique:
         last = (series[n] for n in range(ORDER - 4, ORDER))
         far = (abs(c) / size for c in last)
         return min(
-            (exp(log(REST / c) / n) for n, c in enumerate(far, ORDER - 4) if c != 0), default=mpf("inf")
+            (exp(log(REST / c) / n) for n, c in enumerate(far, ORDER - 4) if c != 0),
+            default=mpf("inf"),
         )
 
     def take(self, base: mpf, end: mpf, terms: Poly) -> None:
@@ -187,8 +199,10 @@ class _Oblique:
         here, self.t, left = self.t, knot, knot - self.t
         # The inputs just before the knot, told from the line that ends there.
         lines = self.lines
-        ahead = {p: (p(here), p.slope(here)) for p in (self.mouse, self.across, self.load, self.push)}
-        self.lines = lambda _: [  # type: ignore[method-assign]
+        ahead = {
+            p: (p(here), p.slope(here)) for p in (self.mouse, self.across, self.load, self.push)
+        }
+        self.lines = lambda way: [  # type: ignore[method-assign]
             [at + rate * left, -rate] for at, rate in ahead.values()
         ]
         try:

@@ -2,8 +2,8 @@
 
     cd tests && ../.venv/bin/python -m oracle.oblique 200 1
 
-The hand wobbles across: w is piecewise linear through zero, slow or fast, while the pin slips, creeps,
-turns, or rests on the finger. A draw whose answer is ill-conditioned is discarded.
+The hand wobbles across: w is piecewise linear through zero, slow or fast, while the pin slips,
+creeps, turns, or rests on the finger. A draw whose answer is ill-conditioned is discarded.
 """
 
 from __future__ import annotations
@@ -52,7 +52,8 @@ def draw(rng: random.Random) -> dict[str, Any]:
             "displacement": short(rng.uniform(-0.5, 0.5) * speed / omega),
             "velocity": short(speed * rng.uniform(-0.5, 1.2)),
             "skin_stretch": None,
-            "mouse_velocity": [[0.0, mouse[0]], [short(duration / 3), mouse[1]], [duration, mouse[2]]],
+            "mouse_velocity": [[0.0, mouse[0]], [short(duration / 3), mouse[1]],
+                               [duration, mouse[2]]],
             "across": [list(row) for row in zip(times, across, strict=True)],
             "load": [[0.0, 1.0], [duration, short(rng.uniform(0.5, 1.5))]],
             "force": [[0.0, 0.0], [duration, short(size * rng.uniform(-0.3, 0.3))]],

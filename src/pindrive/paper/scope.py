@@ -45,7 +45,9 @@ _SENTENCES: Final = (
         "",
         "A condition of operation, from measurements that are not printed. This report keeps it: "
         "one friction coefficient at the plate, and a hand that moves along the drive. "
-        "`pindrive.Device` follows an oblique hand.",
+        "`pindrive.Device` follows an oblique hand: at 10° the pin of examples/tactile-reader.toml "
+        "goes 84 % as far as under an aligned hand, at 30° 69 %, at 60° 26 %, and from 84° on it "
+        "shows no line (docs/studies.md).",
     ),
     (
         "Experiment",
