@@ -34,10 +34,7 @@ COARSER = {
     "examples/tactile-reader-study.toml": (("count = 19", "count = 4"), ("count = 13", "count = 3"))
 }
 """Examples of which the pages have a copy with fewer points, to be quick."""
-WARNED = {
-    "docs/studies.md": "the plate's friction coefficient",
-    "docs/scanning.md": "the spot of pin 0 is beyond the page",
-}
+WARNED = {"docs/studies.md": "the plate's friction coefficient"}
 """Pages whose commands warn, and of what."""
 LIBRARY = BLOCKS["docs/c.md"][0].text.splitlines()
 """The commands that install the C interface, which a fixture runs."""
