@@ -24,6 +24,9 @@ EXCEPTIONS = {
 }
 """Pages with blocks that cannot be run here, and their language; the page says why."""
 LONGER = {
+    ".venv/bin/pindrive scan examples/tactile-reader.toml --text ": (
+        "--set array.columns=2 --set array.rows=2"
+    ),
     ".venv/bin/pindrive sensitivity examples/": "--rows 128",
     ".venv/bin/pindrive speed examples/": (
         '--pitch "4 mm" --slowest "0.05 m/s" --fastest "0.2 m/s"'
