@@ -479,7 +479,17 @@ def docs() -> int:
     """The documentation site; whatever Sphinx warns of is an error."""
     install({"docs"})
     site = ROOT / "build" / "docs"
-    strict = ("-W", "--keep-going", "-q", "-j", "auto", "-b", "html", "-d", site.with_name("docs-cache"))
+    strict = (
+        "-W",
+        "--keep-going",
+        "-q",
+        "-j",
+        "auto",
+        "-b",
+        "html",
+        "-d",
+        site.with_name("docs-cache"),
+    )
     status = run("python", "-m", "sphinx", *strict, "docs", site)
     if status == 0:
         print(f"The site is {site / 'index.html'}")

@@ -41,7 +41,8 @@ html_title = f"pindrive {release}"
 html_copy_source = False
 # The studio, where it has been built: `_static/studio.html`, which docs/studio.md then links to.
 STUDIO = Path(str(find_spec("pindrive").origin)).with_name("studio.html")
-html_static_path = [str(STUDIO)] if STUDIO.exists() else []
+html_static_path = ["_static", *([str(STUDIO)] if STUDIO.exists() else [])]
+html_css_files = ["site.css"]
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True

@@ -93,9 +93,11 @@ def test_every_result_has_the_same_faces(name: str, results: dict[str, Any]) -> 
     text = result._repr_html_()
     parts = Parts(text)
     assert parts.open == []
-    assert parts.rows[0] == ["number", "value", "unit", "meaning"]
-    assert len(parts.rows) > 2 and all(len(row) == 4 for row in parts.rows)
-    assert not any(row[1] in ("nan", "-", "") for row in parts.rows)
+    begin = parts.rows.index(["number", "value", "unit", "meaning"])
+    rows = parts.rows[begin:]
+    assert begin == (2 if name == "fit" else 0)
+    assert len(rows) > 1 and all(len(row) == 4 for row in rows)
+    assert not any(row[1] in ("nan", "-", "") for row in rows)
     (picture,) = parts.pictures
     kind, _, encoded = picture["src"].partition(",")
     assert kind == "data:image/png;base64"
@@ -121,6 +123,16 @@ def test_the_table_has_the_numbers_in_the_units_that_a_person_reads(motion: pd.M
     x = motion.to_dataset().position.values
     ends = f"{significant(1e3 * x.min())} to {significant(1e3 * x.max())}"
     assert rows["position"][:2] == [f"{ends} (time {len(x)})", "mm"]
+
+
+def test_the_parameters_of_a_fit_are_a_table_with_their_units(results: dict[str, Any]) -> None:
+    heads, row = Parts(results["fit"]._repr_html_()).rows[:2]
+    assert heads[0] == "parameter" and heads[-1] == "unit"
+    found = dict(zip(heads, row, strict=True))
+    (estimate,) = results["fit"].estimates
+    assert (found["parameter"], found["unit"]) == ("damping", "N*s/m")
+    assert found["value"] == significant(estimate.value)
+    assert [found["lower"], found["upper"]] == [significant(end) for end in estimate.interval]
 
 
 def test_the_picture_comes_first_and_only_numbers_are_unfolded(

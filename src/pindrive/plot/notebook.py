@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _DPI: Final = 96
 """Of the picture: as large on the screen as on paper."""
+_MOST_LABELS: Final = 12
+_MOST_COLUMNS: Final = 8
 _STYLE: Final = (
     "<style>.pindrive td,.pindrive th{padding:1px 8px;text-align:left}"
     ".pindrive td.value{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}"
@@ -39,21 +41,51 @@ class Result(Protocol):
 def html(result: Result) -> str:
     """The result as a piece of HTML that needs nothing else.
 
-    The picture, then a row for each number that exists. Folded away: the terms of an energy ledger,
-    and what has dimensions, with these and its smallest and largest value.
+    The picture; a table for each dimension with few labels, such as the parameters of a fit; a row
+    for each number that exists. Folded away: the terms of an energy ledger, and other arrays, with
+    their dimensions and their smallest and largest value.
     """
     data = result.to_dataset()
-    names = [str(name) for name in data.data_vars]
+    labelled = {dim: names for dim in data.dims if (names := _columns(data, str(dim)))}
+    shown = {name for names in labelled.values() for name in names}
+    names = [str(name) for name in data.data_vars if name not in shown]
     groups: dict[str, list[str]] = {"numbers": [], "energy": [], "arrays": []}
     for name in names:
         energy = "energy" if name.startswith("energy_") else "numbers"
         groups["arrays" if data[name].ndim else energy].append(name)
     title = escape(repr(result).strip("<>"))
-    tables = (_folded(data, group, names) for group, names in groups.items())
+    tables = [_labelled(data, str(dim), names) for dim, names in labelled.items()]
+    tables += [_folded(data, group, names) for group, names in groups.items()]
     return (
         f'<div class="pindrive">{_STYLE}<p><strong>{title}</strong></p>'
         f"{_picture(result.plot(), title)}{''.join(tables)}</div>"
     )
+
+
+def _columns(data: xr.Dataset, dim: str) -> list[str]:
+    """What makes a table with a row for each label of a dimension; nothing where it has none."""
+    labels = data.coords.get(dim)
+    if labels is None or labels.dtype.kind != "U" or labels.size > _MOST_LABELS:
+        return []
+    names = [str(name) for name, variable in data.data_vars.items() if variable.dims == (dim,)]
+    return names if len(names) <= _MOST_COLUMNS else []
+
+
+def _labelled(data: xr.Dataset, dim: str, names: list[str]) -> str:
+    """The table of a dimension; each row has the unit of its own, where its label has one."""
+    units = next(
+        (c.values for c in data[dim].coords.values() if str(c.name).endswith("unit")), None
+    )
+    heads = [dim, *names, *(["unit"] if units is not None else [])]
+    rows = []
+    for i, label in enumerate(data[dim].values):
+        unit, scale = _display("" if units is None else str(units[i]))
+        values = [data[name].isel({dim: i}) for name in names]
+        cells = [str(label), *(_value(value, scale) for value in values)]
+        rows.append([*cells, *([unit] if units is not None else [])])
+    top = "".join(f"<th>{escape(head)}</th>" for head in heads)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(c)}</td>' for c in row)}</tr>" for row in rows)
+    return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def _folded(data: xr.Dataset, title: str, names: list[str]) -> str:
