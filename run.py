@@ -348,6 +348,7 @@ LINT: dict[str, Callable[[], int]] = {
     "clang-tidy": clang_tidy,
     "workflows": workflows,
     "stubs": check_stub,
+    "typescript": lambda: run("python", Path("studio", "build.py"), "lint"),
 }
 
 
@@ -357,7 +358,7 @@ def lint(steps: list[str]) -> int:
     if unknown:
         stop(f"no lint step {unknown[0]!r}; there are {', '.join(LINT)}")
     steps = steps or list(LINT)
-    install({"dev"}, project="stubs" in steps)
+    install({"dev"}, project="stubs" in steps or "typescript" in steps)
     failed = []
     for step in steps:
         print(f"run.py: {step}", flush=True)
@@ -489,7 +490,8 @@ def layout() -> int:
     """Lays the sources out; what lint can only complain about is left to the author."""
     install({"dev"}, project=False)
     run("ruff", "check", "--fix-only", "--quiet")
-    return run("ruff", "format") or run("clang-format", "-i", *cpp_files())
+    python = run("ruff", "format") or run("clang-format", "-i", *cpp_files())
+    return python or run("python", Path("studio", "build.py"), "format")
 
 
 def studio(arguments: list[str]) -> int:

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "batch_numbers.hpp"
 #include "interface.hpp"
 #include "owned_motion.hpp"
 #include "pindrive.h"
@@ -21,20 +23,12 @@ using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
 namespace {
 
-using Block = pd::detail::KernelBlock;
-using pd::detail::PlainNumber;
-
-using pd::detail::no_column;
-using pd::detail::transient_columns;
-
-constexpr std::size_t number_count = std::size(transient_columns);
-constexpr auto settling_time = std::size_t{8};
-static_assert(transient_columns[settling_time] == PlainNumber::settling_time);
+using pd::batch::Block, pd::batch::no_column, pd::batch::PlainNumber, pd::batch::Row;
+using pd::detail::Asked;
 
 /// In packs as wide as the processor has them, where the kernel is compiled for several widths; the bits are
 /// the same in each.
-void run_kernel(Block& block, std::size_t count) {
-  constexpr auto asked = pd::detail::Asked::settling;
+void run_kernel(Block& block, std::size_t count, Asked asked) {
 #ifdef PINDRIVE_KERNELS
   pindrive_extension::kernel_of(0)->follow(block, static_cast<int>(count), asked);
 #else
@@ -46,13 +40,14 @@ void run_kernel(Block& block, std::size_t count) {
 /// plate in its friction; the order is that of the kernel's blocks.
 std::array<double, Block::inputs> arguments(const pd::Numbers& at, double band) {
   const double load = at.plate_load[0].second, velocity = at.mouse_velocity[0].second;
+  const double finger_load = at.finger_load[0].second;
   return {at.mass,
           at.stiffness,
           at.damping,
           load == 1 ? at.plate.kinetic : at.plate.kinetic * load,
           load == 1 ? at.plate.static_limit : at.plate.static_limit * load,
-          at.finger.kinetic,
-          at.finger.static_limit,
+          at.finger.kinetic * finger_load,
+          at.finger.static_limit * finger_load,
           at.finger.stiffness,
           velocity,
           at.displacement,
@@ -65,32 +60,46 @@ bool constant(const pd::Numbers& at) {
   const auto none_of = [](const pd::Rows& rows) { return rows.size() == 1 && rows[0].second == 0; };
   return at.plate.curve.empty() && at.finger.curve.empty() && at.mouse_velocity.size() == 1 &&
          at.plate_load.size() == 1 && std::isnan(at.skin_stretch) && none_of(at.force) &&
-         none_of(at.across_velocity);
+         none_of(at.across_velocity) && at.finger_load.size() == 1;
 }
 /// The same with its load in its friction.
 pd::Numbers pressed(pd::Numbers at) {
   const double load = at.plate_load[0].second;
   if (load != 1)
     for (double* force : {&at.plate.kinetic, &at.plate.static_limit}) *force *= load;
-  at.plate_load[0].second = 1;
+  for (double* force : {&at.finger.kinetic, &at.finger.static_limit})
+    *force *= at.finger_load[0].second;
+  at.plate_load[0].second = at.finger_load[0].second = 1;
   return at;
 }
 
-/// A batch as its caller describes it, and what it fills.
+/// What a batch fills; all but the numbers may be null.
+struct Filled {
+  double* numbers;
+  int* events;
+  pindrive_status* status;
+  pindrive_end* end;
+  pindrive_error* errors;
+};
+
+/// A batch as its caller describes it.
 class Batch {
  public:
   Batch(const pindrive_drive& drive, const pindrive_release& release, const pindrive_varied* varied,
-        std::size_t varied_count, double band, double* numbers, pindrive_status* status,
-        pindrive_end* end, pindrive_error* errors)
+        std::size_t varied_count, double band, std::vector<Row> rows, const Filled& filled)
       : drive_(drive),
         release_(release),
         varied_(varied),
         varied_count_(varied_count),
         band_(band),
-        numbers_(numbers),
-        status_(status),
-        end_(end),
-        errors_(errors) {}
+        rows_(std::move(rows)),
+        asked_(filled.events ? Asked::numbers : Asked::state),
+        filled_(filled) {
+    for (const Row& row : rows_) {
+      asked_ = std::max(asked_, row.asked());
+      energy_ = energy_ || row.energy;
+    }
+  }
 
   /// Points [first, first + count), at most a block.
   void follow(std::size_t first, std::size_t count, Attended& attended) {
@@ -107,8 +116,9 @@ class Batch {
     for (std::size_t j = 0; j < varied_count_; ++j)
       if (const double value = varied_[j].values[first + i]; !set(drive_, varied_[j].name, value))
         set(release_, varied_[j].name, value);
-    const pindrive_error error = check(drive_, release_);
-    if (errors_) errors_[first + i] = error;
+    pindrive_error error = check(drive_, release_);
+    if (!error) error = check_duration(release_);
+    if (filled_.errors) filled_.errors[first + i] = error;
     if (!error) {
       pd::Numbers& at = points_[i] = numbers_of(drive_, release_);
       start(at, at);
@@ -124,14 +134,17 @@ class Batch {
   void by_kernel(std::size_t first, std::size_t count) {
     std::fill_n(block_->output, Block::columns, nullptr);
     block_->output[Block::rest_time] = columns_[Block::rest_time];
-    for (const int column : transient_columns)
-      if (column != no_column) block_->output[column] = columns_[column];
-    run_kernel(*block_, count);
+    if (filled_.events) block_->output[PlainNumber::events] = columns_[PlainNumber::events];
+    for (const Row& row : rows_)
+      if (row.column != no_column) block_->output[row.column] = columns_[row.column];
+    run_kernel(*block_, count, asked_);
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < number_count; ++k)
-        row(first + i)[k] = kinds_[i] == Kind::kernel && transient_columns[k] != no_column
-                                ? columns_[transient_columns[k]][i]
-                                : none;
+      const bool known = kinds_[i] == Kind::kernel;
+      for (std::size_t k = 0; k < rows_.size(); ++k)
+        numbers_of_point(first + i)[k] =
+            known && rows_[k].column != no_column ? columns_[rows_[k].column][i] : none;
+      if (filled_.events)
+        filled_.events[first + i] = known ? static_cast<int>(columns_[PlainNumber::events][i]) : 0;
       const bool rests = !std::isnan(columns_[Block::rest_time][i]);
       const bool refused = kinds_[i] == Kind::refused;
       say(first + i, refused ? pd::Status::inconsistent : pd::Status::ok,
@@ -139,28 +152,37 @@ class Batch {
     }
   }
 
-  /// What the kernel has left of a point to the general core: all of it, or its settling time.
+  /// What the kernel has left of a point to the general core: all of it, its settling time, its energies.
   void finish(std::size_t point, std::size_t i, Attended& attended) {
-    const bool all =
-        kinds_[i] == Kind::general || (kinds_[i] == Kind::kernel && block_->given_up[i]);
-    if (!all && (kinds_[i] == Kind::refused || !block_->unsure[i])) return;
+    if (kinds_[i] == Kind::refused) return;
+    const bool all = kinds_[i] == Kind::general || block_->given_up[i];
+    const bool settling = block_->unsure[i];
+    if (!all && !settling && !energy_) return;
     const pd::Numbers& at = points_[i];
     const pd::OwnedMotion<double> motion(at, at, [&] { return attended.go_on(); });
     if (attended.stopped()) return;
-    double numbers[number_count];
-    write_numbers(motion, band_, numbers);
-    if (!all) {
-      row(point)[settling_time] = numbers[settling_time];
-      return;
-    }
-    std::copy_n(numbers, number_count, row(point));
-    say(point, motion.outcome().status, motion.outcome().end);
+    const auto view = motion.view();
+    pd::Summary<double> summary{{}, motion.outcome(), pd::duration_of(view, band_), 0};
+    summary.transient = pd::Measurement<double>(view, summary.duration).transient(band_);
+    for (const auto& segment : motion.segments()) summary.events += pd::events_at_end(segment);
+    const pd::batch::Summary found = pd::batch::with_end(summary, view);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (!rows_[k].energy && (all || (settling && rows_[k].column == PlainNumber::settling_time)))
+        numbers_of_point(point)[k] = rows_[k].of(found);
+    if (all) say(point, summary.outcome.status, summary.outcome.end);
+    if (all && filled_.events) filled_.events[point] = static_cast<int>(summary.events);
+    if (!energy_) return;
+    const auto ledger = pd::energy_ledger(view, summary.duration, summary.transient);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (rows_[k].energy) numbers_of_point(point)[k] = rows_[k].energy(ledger);
   }
 
-  double* row(std::size_t point) const { return numbers_ + point * number_count; }
+  double* numbers_of_point(std::size_t point) const {
+    return filled_.numbers + point * rows_.size();
+  }
   void say(std::size_t point, pd::Status status, pd::End end) const {
-    if (status_) status_[point] = static_cast<pindrive_status>(status);
-    if (end_) end_[point] = static_cast<pindrive_end>(end);
+    if (filled_.status) filled_.status[point] = static_cast<pindrive_status>(status);
+    if (filled_.end) filled_.end[point] = static_cast<pindrive_end>(end);
   }
 
   pindrive_drive drive_;
@@ -168,10 +190,10 @@ class Batch {
   const pindrive_varied* varied_;
   std::size_t varied_count_;
   double band_;
-  double* numbers_;
-  pindrive_status* status_;
-  pindrive_end* end_;
-  pindrive_error* errors_;
+  std::vector<Row> rows_;
+  Asked asked_;
+  bool energy_{false};
+  Filled filled_;
 
   std::unique_ptr<Block> block_{std::make_unique<Block>()};
   double columns_[Block::columns][Block::capacity];
@@ -181,16 +203,16 @@ class Batch {
 
 }  // namespace
 
-extern "C" pindrive_error pindrive_batch(const pindrive_drive* drive,
-                                         const pindrive_release* release,
-                                         const pindrive_varied* varied, size_t varied_count,
-                                         size_t points, double settling_band, pindrive_go_on go_on,
-                                         void* context, double* numbers, pindrive_status* status,
-                                         pindrive_end* end, pindrive_error* errors) {
+extern "C" pindrive_error pindrive_batch(
+    const pindrive_drive* drive, const pindrive_release* release, const pindrive_varied* varied,
+    size_t varied_count, size_t points, double settling_band, const char* const* outputs,
+    size_t output_count, pindrive_go_on go_on, void* context, double* numbers, int* events,
+    pindrive_status* status, pindrive_end* end, pindrive_error* errors) {
   if (!drive) return null_pointer("drive");
   if (!release) return null_pointer("release");
   if (varied_count > 0 && !varied) return null_pointer("varied");
-  if (points > 0 && !numbers) return null_pointer("numbers");
+  if (output_count > 0 && !outputs) return null_pointer("outputs");
+  if (points > 0 && output_count > 0 && !numbers) return null_pointer("numbers");
   if (const pindrive_error error = check_band(settling_band)) return error;
   return guarded([&]() -> pindrive_error {
     pindrive_drive tried_drive = *drive;
@@ -201,8 +223,19 @@ extern "C" pindrive_error pindrive_batch(const pindrive_drive* drive,
         return fail(PINDRIVE_BAD_NAME, "neither a drive nor a release has %.40s, but %s; %s",
                     varied[j].name, drive_names, release_names);
     }
+    std::vector<Row> rows;
+    for (std::size_t k = 0; k < output_count; ++k) {
+      if (!outputs[k]) return null_pointer("the name of an output");
+      if (!rows.emplace_back(outputs[k]).exists())
+        return fail(
+            PINDRIVE_BAD_NAME,
+            "a batch has no number %.40s, but those of pindrive_number_name, \"energy.\" and "
+            "those of pindrive_energy_name, duration, final.position, final.velocity",
+            outputs[k]);
+    }
+    const Filled filled{numbers, events, status, end, errors};
     const auto batch = std::make_unique<Batch>(*drive, *release, varied, varied_count,
-                                               settling_band, numbers, status, end, errors);
+                                               settling_band, std::move(rows), filled);
     Attended attended(go_on, context);
     for (std::size_t first = 0; first < points && !attended.stopped(); first += Block::capacity)
       batch->follow(first, std::min<std::size_t>(Block::capacity, points - first), attended);

@@ -24,7 +24,8 @@ struct pindrive_drive {
 };
 
 struct pindrive_release {
-  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}};
+  pindrive::Rows mouse_velocity{{0, 0}}, plate_load{{0, 1}}, force{{0, 0}}, across_velocity{{0, 0}},
+      finger_load{{0, 1}};
   double displacement{0}, velocity{pindrive_c::none}, skin_stretch{pindrive_c::none},
       duration{pindrive_c::infinity};
 };
@@ -79,21 +80,19 @@ constexpr const char* drive_names =
     "mass, stiffness, damping, plate.kinetic, plate.static, finger.kinetic, finger.static, "
     "finger.stiffness";
 constexpr const char* release_names =
-    "mouse_velocity, plate_load, force, across_velocity, displacement, velocity, skin_stretch, "
-    "duration";
+    "mouse_velocity, plate_load, force, across_velocity, finger_load, displacement, velocity, "
+    "skin_stretch, duration";
 
 pindrive_error check_band(double band);
-/// What the core can follow, and what fits the direction of a derivative.
+/// What the core can follow, whether to an end, and what fits the direction of a derivative.
 pindrive_error check(const pindrive_drive& drive, const pindrive_release& release);
+pindrive_error check_duration(const pindrive_release& release);
 pindrive_error check(const char* name, double value, bool good, const char* range);
 pindrive_error check_rates(const pindrive_drive& drive, const pindrive_release& release,
                            const pindrive_drive& drive_rate, const pindrive_release& release_rate);
 pd::Numbers numbers_of(const pindrive_drive& drive, const pindrive_release& release);
 /// What stands for the plate's velocity at the release, with its derivative.
 void start(pd::Numbers& at, pd::Numbers& along);
-
-/// The numbers of a motion in the order of pindrive_number_name, over its own duration.
-void write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values);
 
 /// A quantity at an instant of a trajectory; friction() tells the friction there.
 template <class T, class Trajectory, class Share>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ struct Numbers {
   ContactNumbers plate, finger;
   Rows mouse_velocity, plate_load;
   double displacement, velocity, skin_stretch;
-  Rows force, across_velocity;
+  Rows force, across_velocity, finger_load;
   double duration;
 };
 
@@ -91,6 +92,7 @@ class OwnedMotion {
         plate_load_(at.plate_load, along.plate_load),
         force_(at.force, along.force),
         across_velocity_(at.across_velocity, along.across_velocity),
+        finger_load_(at.finger_load, along.finger_load),
         drive_{number<T>(at.mass, along.mass), number<T>(at.stiffness, along.stiffness),
                number<T>(at.damping, along.damping), plate_.contact, finger_.contact},
         inputs_{mouse_velocity_.profile(),
@@ -100,7 +102,8 @@ class OwnedMotion {
                 plate_load_.profile(),
                 number<T>(at.skin_stretch, along.skin_stretch),
                 force_.profile(),
-                across_velocity_.profile()},
+                across_velocity_.profile(),
+                finger_load_.profile()},
         outcome_(simulate(drive_, inputs_, [&](const Segment<T>& segment) {
           segments_.push_back(segment);
           return go_on();
@@ -115,11 +118,21 @@ class OwnedMotion {
 
  private:
   OwnedContact<T> plate_, finger_;
-  OwnedRows<T> mouse_velocity_, plate_load_, force_, across_velocity_;
+  OwnedRows<T> mouse_velocity_, plate_load_, force_, across_velocity_, finger_load_;
   Drive<T> drive_;
   Inputs<T> inputs_;
   std::vector<Segment<T>> segments_;
   Outcome<T> outcome_;
 };
+
+/// Of a segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
+inline double acceleration_bound(const Motion<double>& motion, const Segment<double>& segment) {
+  return motion.along(segment, [](const auto& along) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(along)>, BySeries<double>>)
+      return largest_size(along.acceleration());
+    else
+      return std::numeric_limits<double>::quiet_NaN();
+  });
+}
 
 }  // namespace pindrive

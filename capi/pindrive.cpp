@@ -87,6 +87,7 @@ pd::Rows* profile(pindrive_release& release, const char* name) {
   if (std::strcmp(name, "plate_load") == 0) return &release.plate_load;
   if (std::strcmp(name, "force") == 0) return &release.force;
   if (std::strcmp(name, "across_velocity") == 0) return &release.across_velocity;
+  if (std::strcmp(name, "finger_load") == 0) return &release.finger_load;
   return nullptr;
 }
 
@@ -188,10 +189,7 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error) error = check_rows("plate_load", release.plate_load, false, true);
   if (!error) error = check_rows("force", release.force, true, true);
   if (!error) error = check_rows("across_velocity", release.across_velocity, true, false);
-  if (!error)
-    error = check("duration", release.duration,
-                  std::isfinite(release.duration) || release.across_velocity.back().second == 0,
-                  "finite where the hand moves across the axis at the end");
+  if (!error) error = check_rows("finger_load", release.finger_load, false, true);
   if (!error)
     error =
         check("displacement", release.displacement, std::isfinite(release.displacement), "finite");
@@ -201,17 +199,29 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
   if (!error)
     error = check("skin_stretch", release.skin_stretch, finite_or(release.skin_stretch, none),
                   "finite, or NaN");
-  if (!error) error = check("duration", release.duration, release.duration > 0, "above 0");
   if (error) return error;
   if (drive.finger.curve.size() > 1 && std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED,
                 "a compliant finger must have one kinetic friction, not a curve");
-  const double skin = release.skin_stretch, most = drive.finger.static_limit;
+  if (release.finger_load.size() > 1 &&
+      (drive.finger.curve.size() > 1 || std::isfinite(drive.finger.stiffness)))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must have one value for a finger that is compliant or has a curve");
+  const double skin = release.skin_stretch;
+  const double most = drive.finger.static_limit * release.finger_load[0].second;
   if (std::isnan(skin)) return PINDRIVE_OK;
   if (!std::isfinite(drive.finger.stiffness))
     return fail(PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger");
   return check("skin_stretch", skin, std::abs(skin) * drive.finger.stiffness <= most,
                "what the finger's static friction can hold");
+}
+
+pindrive_error pindrive_c::check_duration(const pindrive_release& release) {
+  const pindrive_error error = check("duration", release.duration, release.duration > 0, "above 0");
+  if (error) return error;
+  return check("duration", release.duration,
+               std::isfinite(release.duration) || release.across_velocity.back().second == 0,
+               "finite where the hand moves across the axis at the end");
 }
 
 namespace {
@@ -235,14 +245,15 @@ pindrive_error pindrive_c::check_rates(const pindrive_drive& drive, const pindri
   if (!error) error = same_rows("force", release.force, release_rate.force);
   if (!error)
     error = same_rows("across_velocity", release.across_velocity, release_rate.across_velocity);
+  if (!error) error = same_rows("finger_load", release.finger_load, release_rate.finger_load);
   return error;
 }
 
 pd::Numbers pindrive_c::numbers_of(const pindrive_drive& drive, const pindrive_release& release) {
-  return {drive.mass,       drive.stiffness,        drive.damping,      drive.plate,
-          drive.finger,     release.mouse_velocity, release.plate_load, release.displacement,
-          release.velocity, release.skin_stretch,   release.force,      release.across_velocity,
-          release.duration};
+  return {drive.mass,          drive.stiffness,        drive.damping,      drive.plate,
+          drive.finger,        release.mouse_velocity, release.plate_load, release.displacement,
+          release.velocity,    release.skin_stretch,   release.force,      release.across_velocity,
+          release.finger_load, release.duration};
 }
 
 void pindrive_c::start(pd::Numbers& at, pd::Numbers& along) {
@@ -366,13 +377,6 @@ constexpr std::size_t number_count = std::size(pd::transient_numbers<double>);
 
 }  // namespace
 
-void pindrive_c::write_numbers(const pd::OwnedMotion<double>& motion, double band, double* values) {
-  double duration = none;
-  duration_in(motion, band, duration);
-  write(pd::transient_numbers<double>, pd::Measurement(motion.view(), duration).transient(band),
-        values);
-}
-
 extern "C" {
 
 int pindrive_interface(void) { return PINDRIVE_INTERFACE; }
@@ -430,8 +434,9 @@ pindrive_error pindrive_release_set_profile(pindrive_release* release, const cha
   if (!times || !values) return null_pointer("times and values");
   pd::Rows* input = profile(*release, name);
   if (!input)
-    return bad_name("a release", name,
-                    "the profiles mouse_velocity, plate_load, force and across_velocity");
+    return bad_name(
+        "a release", name,
+        "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
   if (count == 0) return fail(PINDRIVE_BAD_VALUE, "a profile must have at least one row, not 0");
   return guarded([&]() -> pindrive_error {
     pd::Rows rows;
@@ -462,6 +467,7 @@ pindrive_release* pindrive_release_rate_new(const pindrive_release* release) {
                                   pd::Rows(release->plate_load.size()),
                                   pd::Rows(release->force.size()),
                                   pd::Rows(release->across_velocity.size()),
+                                  pd::Rows(release->finger_load.size()),
                                   0,
                                   0,
                                   0,
@@ -476,12 +482,14 @@ pindrive_error pindrive_simulate(const pindrive_drive* drive, const pindrive_rel
   if (!drive) return null_pointer("drive");
   if (!release) return null_pointer("release");
   if (!motion) return null_pointer("motion");
-  if (const pindrive_error error = check(*drive, *release)) return error;
+  pindrive_error error = check(*drive, *release);
+  if (!error) error = check_duration(*release);
+  if (error) return error;
   return guarded([&]() -> pindrive_error {
     auto made = std::make_unique<pindrive_motion>();
     Attended attended(go_on, context);
     const pd::Numbers at = numbers_of(*drive, *release);
-    if (const pindrive_error error = simulated(made->values, at, at, attended)) return error;
+    if (const pindrive_error stopped = simulated(made->values, at, at, attended)) return stopped;
     *motion = made.release();
     return PINDRIVE_OK;
   });
@@ -495,6 +503,7 @@ pindrive_error pindrive_differentiate(const pindrive_drive* drive, const pindriv
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
+  if (!error) error = check_duration(*release);
   if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return guarded([&]() -> pindrive_error {
@@ -587,8 +596,13 @@ pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
                 pd::result(s.flow.velocity.start),
                 pd::result(of.view().along(
                     s, [](const auto& along) { return along.start(along.acceleration()); })),
+                motion->values ? pd::acceleration_bound(motion->values->view(),
+                                                        motion->values->segments()[index])
+                               : none,
                 static_cast<pindrive_contact_state>(s.mode.plate),
                 static_cast<pindrive_contact_state>(s.mode.finger),
+                s.mode.plate_branch,
+                s.mode.finger_branch,
                 static_cast<pindrive_transition>(s.event.plate),
                 static_cast<pindrive_transition>(s.event.finger)};
     return PINDRIVE_OK;

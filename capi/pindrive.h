@@ -49,7 +49,7 @@ extern "C" {
 #endif
 
 /* The version of this interface: raised wherever a caller has to change. */
-#define PINDRIVE_INTERFACE 1
+#define PINDRIVE_INTERFACE 2
 
 /* That of the library which is running. */
 PINDRIVE_API int pindrive_interface(void);
@@ -110,6 +110,7 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   plate_load           >= 0: constant factor on the plate's friction; 1 at first
  *   force           N    constant external force on the pin, the way of x; 0 at first
  *   across_velocity m/s  constant velocity of the plate across the axis; 0 at first
+ *   finger_load          >= 0: constant factor on the finger's friction; 1 at first
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
@@ -118,9 +119,10 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 
-/* Gives a release "mouse_velocity", "plate_load", "force" or "across_velocity" over time: values[i] at times[i] (s, increasing,
- * count >= 1), linear between, constant outside. Two rows of a load or a force at one time are a step:
- * from that time on the later one holds. */
+/* Gives a release "mouse_velocity", "plate_load", "force", "across_velocity" or "finger_load" over time:
+ * values[i] at times[i] (s, increasing, count >= 1), linear between, constant outside. Two rows of a load
+ * or a force at one time are a step: from that time on the later one holds. A finger_load that changes
+ * needs a rigid finger without a curve. */
 PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
                                                          const char *name, const double *times,
                                                          const double *values, size_t count);
@@ -224,7 +226,8 @@ enum {
   PINDRIVE_STICK = 0,
   PINDRIVE_SLIP_FORWARD = 1,
   PINDRIVE_ABSENT = 2,
-  PINDRIVE_ELASTIC_STICK = 3
+  PINDRIVE_ELASTIC_STICK = 3,
+  PINDRIVE_SLIP_OBLIQUE = 4 /* on a plate that also slides across */
 };
 
 /* What happens to a contact at an event. */
@@ -240,7 +243,9 @@ enum {
 typedef struct pindrive_segment {
   double begin, end;                       /* s */
   double position, velocity, acceleration; /* at its begin: m, m/s, m/s^2 */
+  double acceleration_bound; /* of a mode without a closed form, what |x''| stays below, m/s^2; else NaN */
   pindrive_contact_state plate, finger;
+  int plate_branch, finger_branch;               /* of the friction curve, while it slips */
   pindrive_transition plate_event, finger_event; /* at its end */
 } pindrive_segment;
 
@@ -310,8 +315,8 @@ PINDRIVE_API pindrive_error pindrive_certificate(const pindrive_motion *motion, 
  * answers are those of one simulation, whatever the steps: nothing is integrated again at a step. */
 typedef struct pindrive_stepper pindrive_stepper;
 
-/* A release at the time `begin`, s; to be freed. Its mouse_velocity and plate_load have one value, as
- * its inputs are set on the way; its duration does not matter. */
+/* A release at the time `begin`, s; to be freed. Its mouse_velocity, plate_load, across_velocity, force
+ * and finger_load have one value, as its inputs are set on the way; its duration does not matter. */
 PINDRIVE_API pindrive_error pindrive_stepper_new(const pindrive_drive *drive,
                                                  const pindrive_release *release, double begin,
                                                  pindrive_stepper **stepper);
@@ -336,11 +341,12 @@ PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper *steppe
 
 PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 
-/* Sets "mouse_velocity" (m/s, rate m/s^2) or "plate_load" (>= 0, rate 1/s) from now on: it goes on at
- * its rate until it is set again; a load that has fallen to zero stays there. A mouse velocity that jumps
- * moves the housing in no time: beside it the pin keeps its velocity, to the plate too. A value that
- * differs from the input as it went on by rounding is the same. Of derivatives it is a number, which does
- * not change along the direction. */
+/* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
+ * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
+ * fallen to zero stays there. A finger_load that changes needs a rigid finger without a curve. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
+ * velocity, to the plate too. Where the velocity across jumps the pin keeps its velocity as well, and the
+ * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
+ * it is a number, which does not change along the direction. */
 PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
                                                  double value, double rate);
 
@@ -360,6 +366,9 @@ typedef struct pindrive_instant {
                                                     as they do, s; infinite where none ever does */
   double mouse_velocity, mouse_velocity_rate;    /* m/s, m/s^2 */
   double plate_load, plate_load_rate;            /* 1, 1/s */
+  double across_velocity, across_velocity_rate;  /* m/s, m/s^2 */
+  double force, force_rate;                      /* N, N/s */
+  double finger_load, finger_load_rate;          /* 1, 1/s */
   pindrive_contact_state plate, finger;          /* from now on */
   pindrive_transition plate_event, finger_event; /* what happens now */
 } pindrive_instant;
@@ -388,18 +397,21 @@ typedef struct pindrive_varied {
   const double *values; /* one for each point */
 } pindrive_varied;
 
-/* The numbers of `points` releases: a drive and a release in which some numbers vary. Point i fills
- * numbers[i * pindrive_number_count()] and what follows it, status[i] and end[i]; a point that cannot
- * be simulated has an error there, which is PINDRIVE_OK otherwise, and NaN for numbers. The last three
- * may be null. Each is measured over its own duration, long enough to see its ending where the release
- * has none. */
+/* Numbers of `points` releases: a drive and a release in which some numbers vary. The outputs are called as
+ * by pindrive_number_name(), or "energy." and as by pindrive_energy_name(), or "duration" (s), over which a
+ * release is measured, "final.position" (m) and "final.velocity" (m/s) at its end. Point i fills
+ * numbers[i * output_count] and what follows it; events[i]: how often a contact changes, of a cycle in one
+ * round; status[i] and end[i]; a point that cannot be simulated has an error there, which is PINDRIVE_OK
+ * otherwise, and NaN for numbers. The last four may be null. Each is measured over its own duration, long
+ * enough to see its ending where the release has none. */
 PINDRIVE_API pindrive_error pindrive_batch(const pindrive_drive *drive,
                                            const pindrive_release *release,
                                            const pindrive_varied *varied, size_t varied_count,
                                            size_t points, double settling_band,
+                                           const char *const *outputs, size_t output_count,
                                            pindrive_go_on go_on, void *context, double *numbers,
-                                           pindrive_status *status, pindrive_end *end,
-                                           pindrive_error *error);
+                                           int *events, pindrive_status *status,
+                                           pindrive_end *end, pindrive_error *error);
 
 #ifdef __cplusplus
 }

@@ -57,7 +57,9 @@ pd::Numbers without_change(const pd::Numbers& at) {
 StateOfDual lifted(const State& s) {
   const auto line = [](const pd::Line<double>& l) { return pd::Line<Dual>{l.value, l.rate}; };
   const auto held = [&](const pd::Held<double>& h) {
-    return pd::Held<Dual>{h.since, line(h.line), h.ends};
+    pd::Held<Dual> lifted(h.since, line(h.line));
+    lifted.ends = h.ends;
+    return lifted;
   };
   const auto option = [](const auto& o) {
     return decltype(StateOfDual::plate){o.state, o.at, o.branch, o.sense};
@@ -72,9 +74,11 @@ StateOfDual lifted(const State& s) {
           s.at_finger,
           s.limit,
           line(s.plate_velocity),
-          line(s.plate_load),
           held(s.mouse_velocity),
-          held(s.load_factor),
+          held(s.plate_load),
+          held(s.across_velocity),
+          held(s.force),
+          held(s.finger_load),
           s.event};
 }
 
@@ -104,23 +108,24 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
                                           pd::number<T>(at.velocity, along.velocity),
                                           T(infinity),
                                           held(at.plate_load, along.plate_load),
-                                          pd::number<T>(at.skin_stretch, along.skin_stretch)};
+                                          pd::number<T>(at.skin_stretch, along.skin_stretch),
+                                          held(at.force, along.force),
+                                          held(at.across_velocity, along.across_velocity),
+                                          held(at.finger_load, along.finger_load)};
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 
 pindrive_error check_start(const pindrive_release& release, double begin) {
   for (const auto& [name, rows] :
        {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
-        std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load}})
+        std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
+        std::pair<const char*, const pd::Rows*>{"force", &release.force},
+        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity},
+        std::pair<const char*, const pd::Rows*>{"finger_load", &release.finger_load}})
     if (rows->size() > 1)
       return fail(PINDRIVE_UNSUPPORTED,
                   "%s of a stepper must have one value, not %zu rows; set it on the way", name,
                   rows->size());
-  for (const auto& [name, rows] :
-       {std::pair<const char*, const pd::Rows*>{"force", &release.force},
-        std::pair<const char*, const pd::Rows*>{"across_velocity", &release.across_velocity}})
-    if (rows->size() > 1 || rows->front().second != 0)
-      return fail(PINDRIVE_UNSUPPORTED, "%s of a stepper must be 0", name);
   return check("begin", begin, std::isfinite(begin), "finite");
 }
 
@@ -140,21 +145,41 @@ pindrive_error made(pindrive_stepper** stepper, Make&& make) {
   });
 }
 
-/// Sets one of the two inputs; the other one goes on.
+/// The input of that name, or null.
 template <class T>
-bool set_input(pd::Stepper<T>& stepper, const char* name, const pd::Line<T>& line) {
-  if (std::strcmp(name, "mouse_velocity") == 0)
-    stepper.set(line, stepper.plate_load());
-  else if (std::strcmp(name, "plate_load") == 0)
-    stepper.set(stepper.mouse_velocity(), line);
-  else
-    return false;
-  return true;
+pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
+  const std::pair<const char*, pd::Line<T>*> lines[] = {
+      {"mouse_velocity", &inputs.plate_velocity},
+      {"plate_load", &inputs.plate_load},
+      {"across_velocity", &inputs.across_velocity},
+      {"force", &inputs.force},
+      {"finger_load", &inputs.finger_load}};
+  for (const auto& [known, line] : lines)
+    if (std::strcmp(known, name) == 0) return line;
+  return nullptr;
 }
 
-pindrive_error bad_input(const char* name) {
-  return fail(PINDRIVE_BAD_NAME, "a stepper has no input %.40s, but mouse_velocity, plate_load",
-              name);
+/// Sets one of the inputs, which change(line) changes; the others go on.
+template <class T, class Change>
+pindrive_error set_input(pd::Stepper<T>& stepper, const char* name, Change&& change) {
+  pd::InputLines<T> inputs = stepper.inputs();
+  pd::Line<T>* const line = find(inputs, name);
+  if (!line)
+    return fail(
+        PINDRIVE_BAD_NAME,
+        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
+        "finger_load",
+        name);
+  const pd::Line<T> before = *line;
+  change(*line);
+  const auto& finger = stepper.drive().finger;
+  const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
+  if (line == &inputs.finger_load && !same && (!finger.rigid() || finger.branches > 0))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must stay %.17g for a finger that is compliant or has a curve",
+                plain(before.value));
+  stepper.set(inputs);
+  return stepper.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper.status());
 }
 
 // ---- bytes -------------------------------------------------------------------------------------
@@ -188,9 +213,9 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
   option(s.finger);
   number(s.at_plate, s.at_finger, s.limit);
   line(s.plate_velocity);
-  line(s.plate_load);
-  held(s.mouse_velocity);
-  held(s.load_factor);
+  for (auto* input :
+       {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force, &s.finger_load})
+    held(*input);
   number(s.event.plate, s.event.finger);
 }
 
@@ -330,16 +355,14 @@ pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input
                                     double rate) {
   if (!stepper) return null_pointer("stepper");
   if (!input) return null_pointer("input");
-  const bool load = std::strcmp(input, "plate_load") == 0;
+  const bool load = std::strcmp(input, "plate_load") == 0 || std::strcmp(input, "finger_load") == 0;
   if (!std::isfinite(value) || (load && value < 0))
     return check(input, value, false, load ? "at least 0 and finite" : "finite");
   if (!std::isfinite(rate)) return check("rate", rate, false, "finite");
-  const bool known = stepper->values
-                         ? set_input(stepper->values->stepper, input, {value, rate})
-                         : set_input<Dual>(stepper->derivatives->stepper, input, {value, rate});
-  if (!known) return bad_input(input);
-  const pd::Status status = stepper->ask([](const auto& of) { return of.status(); });
-  return status == pd::Status::ok ? PINDRIVE_OK : given_up(status);
+  const auto set = [&](auto& of) {
+    return set_input(of, input, [&](auto& line) { line = {value, rate}; });
+  };
+  return stepper->values ? set(stepper->values->stepper) : set(stepper->derivatives->stepper);
 }
 
 pindrive_error pindrive_stepper_set_along(pindrive_stepper* derivative, const char* input,
@@ -350,12 +373,9 @@ pindrive_error pindrive_stepper_set_along(pindrive_stepper* derivative, const ch
     return fail(PINDRIVE_DERIVATIVE, "a direction is set of derivatives, not of a stepper");
   if (!std::isfinite(value) || !std::isfinite(rate))
     return check("a direction", std::isfinite(value) ? rate : value, false, "finite");
-  auto& stepper = derivative->derivatives->stepper;
-  const bool load = std::strcmp(input, "plate_load") == 0;
-  const pd::Line<Dual> now = load ? stepper.plate_load() : stepper.mouse_velocity();
-  if (!set_input<Dual>(stepper, input, {{now.value.value, value}, {now.rate.value, rate}}))
-    return bad_input(input);
-  return PINDRIVE_OK;
+  return set_input(derivative->derivatives->stepper, input, [&](pd::Line<Dual>& line) {
+    line = {{line.value.value, value}, {line.rate.value, rate}};
+  });
 }
 
 pindrive_error pindrive_stepper_step(pindrive_stepper* stepper, double until, int stop_at_event) {
@@ -374,13 +394,19 @@ pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper, pindrive_in
   if (!stepper) return null_pointer("stepper");
   if (!instant) return null_pointer("instant");
   *instant = stepper->ask([](const auto& of) {
-    const auto velocity = of.mouse_velocity(), load = of.plate_load();
+    const auto inputs = of.inputs();
     return pindrive_instant{plain(of.now()),
                             plain(of.next()),
-                            plain(velocity.value),
-                            plain(velocity.rate),
-                            plain(load.value),
-                            plain(load.rate),
+                            plain(inputs.plate_velocity.value),
+                            plain(inputs.plate_velocity.rate),
+                            plain(inputs.plate_load.value),
+                            plain(inputs.plate_load.rate),
+                            plain(inputs.across_velocity.value),
+                            plain(inputs.across_velocity.rate),
+                            plain(inputs.force.value),
+                            plain(inputs.force.rate),
+                            plain(inputs.finger_load.value),
+                            plain(inputs.finger_load.rate),
                             static_cast<pindrive_contact_state>(of.mode().plate),
                             static_cast<pindrive_contact_state>(of.mode().finger),
                             static_cast<pindrive_transition>(of.event().plate),
@@ -400,9 +426,8 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
     const auto tau = of.tau();
     const auto lines = of.lines();
     return pd::visit_trajectory(of.drive(), of.segment(), lines, [&](const auto& along) {
-      const auto load = [&] { return lines.plate_load; };
       const auto friction = [&] {
-        return pd::friction_along(along, of.drive(), of.segment(), load, tau);
+        return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
       };
       return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
     });

@@ -1,23 +1,35 @@
 // Puts the page together: node build.mjs CORE.wasm PAGE.html; prints how large it is.
-import { build } from "esbuild";
+
 import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { deflateRawSync } from "node:zlib";
+import { build } from "esbuild";
 
 const [wasm, page] = process.argv.slice(2);
 const LARGEST = 400_000; // bytes of the whole page
 
 async function bundle(entry, format, define = {}) {
   const { outputFiles } = await build({
-    entryPoints: [entry], bundle: true, minify: true, write: false, format, define,
-    target: "es2022", charset: "utf8", legalComments: "none", loader: { ".css": "text" },
+    entryPoints: [entry],
+    bundle: true,
+    minify: true,
+    write: false,
+    format,
+    define,
+    target: "es2022",
+    charset: "utf8",
+    legalComments: "none",
+    loader: { ".css": "text" },
   });
   // A script must not hold what ends it.
   return outputFiles[0].text.trim().replaceAll("</script", "<\\/script");
 }
 
 async function style(...entries) {
-  const parts = await Promise.all(entries.map((entry) =>
-    build({ entryPoints: [entry], bundle: true, minify: true, write: false, charset: "utf8" })));
+  const parts = await Promise.all(
+    entries.map((entry) =>
+      build({ entryPoints: [entry], bundle: true, minify: true, write: false, charset: "utf8" }),
+    ),
+  );
   return parts.map(({ outputFiles }) => outputFiles[0].text.trim()).join("");
 }
 
@@ -32,11 +44,19 @@ const parts = {
   PROGRAM: packed(await bundle("src/main.ts", "esm", { MAP_WORKER: JSON.stringify(worker) })),
   BOOT: await bundle("src/boot.ts", "esm"),
 };
-const html = readFileSync("src/index.html", "utf8").replace(/STYLE|CORE|PROGRAM|BOOT/g, (name) => parts[name]);
+const html = readFileSync("src/index.html", "utf8").replace(
+  /STYLE|CORE|PROGRAM|BOOT/g,
+  (name) => parts[name],
+);
 writeFileSync(`${page}.new`, html);
 renameSync(`${page}.new`, page);
 await build({
-  entryPoints: ["src/node.ts"], bundle: true, format: "esm", platform: "node", outfile: "build/node.mjs", logLevel: "error",
+  entryPoints: ["src/node.ts"],
+  bundle: true,
+  format: "esm",
+  platform: "node",
+  outfile: "build/node.mjs",
+  logLevel: "error",
 });
 const size = Buffer.byteLength(html);
 console.log(`${page}: ${size} bytes; core ${parts.CORE.length}, program ${parts.PROGRAM.length}`);

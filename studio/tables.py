@@ -15,6 +15,8 @@ from typing import Any
 import pint
 
 from pindrive import __version__
+from pindrive.device.coil import COIL, COIL_NEEDS
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.template import (
     ALONE,
     AROUND,
@@ -27,6 +29,9 @@ from pindrive.files.template import (
     template,
     usual_rows,
 )
+from pindrive.motion.contact import SLOPES
+from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
+from pindrive.motion.release import CONTINUOUS, INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
@@ -36,9 +41,10 @@ from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
 PARTS = (
-    "curve.slope",
+    *SLOPES.values(),
     "profile.rate",
     "phase",
+    *(f"coil.{name}" for name in ("resistance", "inductance", "current", "field", "power")),
     *(name for pair in COLUMNS.values() for name in pair),
 )
 """Quantities of a drive's parts that the page checks."""
@@ -150,6 +156,18 @@ def tables() -> dict[str, Any]:
         "tables": TABLES,
         "alone": ALONE,
         "around": AROUND,
+        "slopes": SLOPES,
+        "coefficients": COEFFICIENT_OF,
+        "pressedBy": {
+            contact: {QUANTITIES[name].key: factor for name, factor in parts.items()}
+            for contact, parts in PRESSED_BY.items()
+        },
+        "overTime": INPUTS,
+        "continuous": [QUANTITIES[name].key for name in CONTINUOUS],
+        "coil": COIL,
+        "coilNeeds": {name: QUANTITIES[name].meaning for name in COIL_NEEDS},
+        "magnet": DIRECT,
+        "pins": [budgets.PINS.most, budgets.PINS.counted],
         "studyKeys": STUDY_KEYS,
         "inputRows": budgets.INPUT_ROWS.most,
         "units": units(),

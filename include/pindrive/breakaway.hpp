@@ -14,7 +14,7 @@ template <class T>
 struct Beginning {
   T x, v, plate_force, finger_force;
   Line<T> plate_velocity;
-  T load, force;
+  T plate_load, finger_load, force;
   bool rests_on_plate, rests_on_finger;
   bool plate_began, finger_began;  ///< to do what they do
 };
@@ -28,14 +28,17 @@ T spare_stick_limit(const Drive<T>& drive, const Mode& mode, const Beginning<T>&
   const bool plate = now.rests_on_plate && slips(mode.plate);
   const bool finger = now.rests_on_finger && slips(mode.finger);
   if (mode.stuck() || !(plate || finger)) return T(0);
-  const T at_plate = drive.plate.static_limit * now.load, at_finger = drive.finger.static_limit;
+  const T at_plate = drive.plate.static_limit * now.plate_load;
+  const T at_finger = drive.finger.static_limit * now.finger_load;
   const T pull = drive.damping * now.v + drive.stiffness * now.x - now.force;
   const T inertia = drive.mass * now.plate_velocity.rate;
   if (plate && finger && inertia == 0) return std::max(at_plate + at_finger - abs(pull), T(0));
   // Each alone. Where both part, the one that does not stick slips the way in which they part.
   const int side = inertia > 0 ? 1 : -1;
-  const T of_finger = plate && finger ? -side * drive.finger.kinetic : now.finger_force;
-  const T of_plate = plate && finger ? side * drive.plate.kinetic * now.load : now.plate_force;
+  const T of_finger =
+      plate && finger ? -side * drive.finger.kinetic * now.finger_load : now.finger_force;
+  const T of_plate =
+      plate && finger ? side * drive.plate.kinetic * now.plate_load : now.plate_force;
   T spare{0};
   if (plate && now.plate_began) spare = at_plate - abs(pull - of_finger);
   if (finger && now.finger_began)

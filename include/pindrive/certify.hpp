@@ -117,7 +117,7 @@ class Certifier {
 
     const Segment<T>& segment;
     const Trajectory& along;
-    Line<T> plate_velocity, load, force, across;
+    Line<T> plate_velocity, load, finger_load, force, across;
     T span;
     Quantity x_rate, acceleration, finger_rate;
     std::array<Watch<Guard>, 4> watches;
@@ -146,6 +146,7 @@ class Certifier {
         along,
         motion_.inputs().mouse_velocity.from(segment.begin),
         motion_.inputs().plate_load.from(segment.begin),
+        motion_.inputs().finger_load.from(segment.begin),
         motion_.inputs().force.from(segment.begin),
         motion_.inputs().across_velocity.from(segment.begin),
         std::min(segment.end, std::max(duration_, segment.begin)) - segment.begin,
@@ -156,7 +157,8 @@ class Certifier {
     const Mode mode = segment.mode;
     const Line<T> at_plate{drive_.plate.static_limit * stage.load.value,
                            drive_.plate.static_limit * stage.load.rate};
-    const Line<T> at_finger{drive_.finger.static_limit, T(0)};
+    const Line<T> at_finger{drive_.finger.static_limit * stage.finger_load.value,
+                            drive_.finger.static_limit * stage.finger_load.rate};
     const auto watch = [&](const auto& path, T Certificate<T>::* law, T scale) {
       stage.watches[stage.count++] = {guard_of(along, path), law, scale};
     };
@@ -187,7 +189,8 @@ class Certifier {
     }
     slipping(drive_.finger, mode.finger, mode.finger_branch, {});
     if (mode.both_stuck()) {
-      sticking(along.plate_force(), {at_plate.value + at_finger.value, at_plate.rate});
+      sticking(along.plate_force(),
+               {at_plate.value + at_finger.value, at_plate.rate + at_finger.rate});
     } else {
       if (mode.plate == ContactState::stick) sticking(along.plate_force(), at_plate);
       if (mode.finger == ContactState::stick || mode.finger == ContactState::elastic_stick)
@@ -219,8 +222,8 @@ class Certifier {
   /// force at that velocity or, where that turns steeply, by how far the velocity is from those with the
   /// direction of the force, as a part of the largest.
   T oblique_error(T u, T across, T force, T load) const {
+    using detail::hypot;
     using std::abs;
-    using std::hypot;
     using std::sqrt;
     const T speed = hypot(u, across), strength = load * kinetic(drive_.plate, speed);
     if (!(strength > 0)) return force;
@@ -430,7 +433,7 @@ class Certifier {
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
             stage.load.at(s.tau));
-    contact(drive_.finger, mode.finger, s.v, s.finger_force, T(1));
+    contact(drive_.finger, mode.finger, s.v, s.finger_force, stage.finger_load.at(s.tau));
   }
 
   template <class Stage>
@@ -470,7 +473,8 @@ class Certifier {
     if (soft() && !skin_slips)
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
     if (skin_slips) {
-      worst(result_.transitions, drive_.finger.static_limit - std::abs(left.finger_force),
+      const T load = motion_.inputs().finger_load.from(before.begin).value;
+      worst(result_.transitions, drive_.finger.static_limit * load - std::abs(left.finger_force),
             force_scale_);
       raise(gained_, std::min(energy(left) - energy(right), T(0)));
     }
@@ -496,7 +500,7 @@ class Certifier {
     const T still = T(1e-12) * v_scale_;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
     const bool oblique = segment.mode.plate == ContactState::slip_oblique;
-    const T drags = stage.plate_velocity.rate, turns = std::hypot(drags, stage.across.rate);
+    const T drags = stage.plate_velocity.rate, turns = detail::hypot(drags, stage.across.rate);
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
@@ -509,6 +513,7 @@ class Certifier {
                            s.finger_force,
                            stage.plate_velocity,
                            stage.load.value,
+                           stage.finger_load.value,
                            stage.force.value,
                            on_plate,
                            on_finger,

@@ -132,7 +132,8 @@ class ContactMeasurement {
     if (!whole || segment.event.finger != Transition::slip) return T(0);
     using std::abs;
     const T speed = abs(along.at(along.velocity(), to));
-    return end - energy(finger.branch(finger.branch_of(speed)).at(speed));
+    const T load = motion_.inputs().finger_load.from(segment.begin).value;
+    return end - energy(finger.branch(finger.branch_of(speed)).at(speed) * load);
   }
 
   const Motion<T>& motion_;

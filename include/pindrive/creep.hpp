@@ -181,8 +181,8 @@ class CreepFlow : public SeriesStep<T> {
   /// Bounds what the series leave out, as SeriesFlow does, with friction that takes energy by the slope γ
   /// of its force: d(2 E²)/dτ <= 2 (missed e_v − γ e_v²) <= missed²/(2 γ). Whether it is rounding.
   bool bound(const SeriesEquation<T>& e, Real missed) {
+    using detail::exp;
     using std::abs;
-    using std::exp;
     using std::max;
     using std::sqrt;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);

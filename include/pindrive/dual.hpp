@@ -56,21 +56,27 @@ struct Dual {
     return {root, times(a.slope, 1 / (2 * root))};
   }
   friend Dual hypot(Dual a, Dual b) {
-    const T length = std::hypot(a.value, b.value);
+    const T length = detail::hypot(a.value, b.value);
     return {length, times(a.slope, a.value / length) + times(b.slope, b.value / length)};
   }
   friend Dual exp(Dual a) {
-    const T power = std::exp(a.value);
+    const T power = detail::exp(a.value);
     return {power, times(a.slope, power)};
   }
-  friend Dual expm1(Dual a) { return {std::expm1(a.value), times(a.slope, std::exp(a.value))}; }
-  friend Dual log(Dual a) { return {std::log(a.value), times(a.slope, 1 / a.value)}; }
-  friend Dual log1p(Dual a) { return {std::log1p(a.value), times(a.slope, 1 / (1 + a.value))}; }
-  friend Dual sin(Dual a) { return {std::sin(a.value), times(a.slope, std::cos(a.value))}; }
-  friend Dual cos(Dual a) { return {std::cos(a.value), times(a.slope, -std::sin(a.value))}; }
+  friend Dual expm1(Dual a) {
+    return {detail::expm1(a.value), times(a.slope, detail::exp(a.value))};
+  }
+  friend Dual log(Dual a) { return {detail::log(a.value), times(a.slope, 1 / a.value)}; }
+  friend Dual log1p(Dual a) { return {detail::log1p(a.value), times(a.slope, 1 / (1 + a.value))}; }
+  friend detail::Circular<Dual> sine_and_cosine_of(Dual a) {
+    const auto [sine, cosine] = detail::sine_and_cosine_of(a.value);
+    return {{sine, times(a.slope, cosine)}, {cosine, times(a.slope, -sine)}};
+  }
+  friend Dual sin(Dual a) { return sine_and_cosine_of(a).sine; }
+  friend Dual cos(Dual a) { return sine_and_cosine_of(a).cosine; }
   friend Dual atan2(Dual y, Dual x) {
     const T square = x.value * x.value + y.value * y.value;
-    return {std::atan2(y.value, x.value),
+    return {detail::atan2(y.value, x.value),
             times(y.slope, x.value / square) - times(x.slope, y.value / square)};
   }
 

@@ -15,18 +15,25 @@ inline namespace PINDRIVE_TARGET {
 /// on its neighbours are 6e-8 rad and more apart.
 inline constexpr double largest_angle = 4.2e8;
 
-/// c[0] + c[1] x + … by halves, which do not wait for each other.
+/// terms[0] + terms[1] x + … by halves, which do not wait for each other.
+template <class V, int Count>
+V by_halves(const V& x, const V (&terms)[Count]) {
+  if constexpr (Count == 1) {
+    return terms[0];
+  } else {
+    V halves[(Count + 1) / 2];
+    for (int i = 0; i < Count / 2; ++i) halves[i] = terms[2 * i] + x * terms[2 * i + 1];
+    if constexpr (Count % 2 == 1) halves[Count / 2] = terms[Count - 1];
+    return by_halves(x * x, halves);
+  }
+}
+
+/// c[0] + c[1] x + …
 template <class V, int Count>
 V polynomial(const V& x, const double (&c)[Count]) {
   V terms[Count];
   for (int i = 0; i < Count; ++i) terms[i] = V(c[i]);
-  V power = x;
-  for (int left = Count; left > 1; left = (left + 1) / 2) {
-    for (int i = 0; i < left / 2; ++i) terms[i] = terms[2 * i] + power * terms[2 * i + 1];
-    if (left % 2 == 1) terms[left / 2] = terms[left - 1];
-    power = power * power;
-  }
-  return terms[0];
+  return by_halves(x, terms);
 }
 
 /// A sum with what its rounding left out.
@@ -155,13 +162,19 @@ V exponential(const V& given) {
   return select(given == given, result, given);
 }
 
+/// e^x − 1 for |x| <= 50, for less.
+template <class V>
+V exponential_minus_1_in_range(const V& x) {
+  const Exponent<V> e(x);
+  const V scale = e.n.power_of_two();
+  const Sum<V> sum = exact_sum(scale - V(1.0), scale * e.r);
+  return sum.value + (sum.rest + scale * e.change);
+}
+
 /// e^x − 1 for every x.
 template <class V>
 V exponential_minus_1(const V& x) {
-  const Exponent<V> e(smaller(larger(x, V(-50.0)), V(50.0)));
-  const V scale = e.n.power_of_two();
-  const Sum<V> sum = exact_sum(scale - V(1.0), scale * e.r);
-  const V near = sum.value + (sum.rest + scale * e.change);
+  const V near = exponential_minus_1_in_range(smaller(larger(x, V(-50.0)), V(50.0)));
   return select(absolute(x) < V(50.0), near, exponential(x) - V(1.0));
 }
 

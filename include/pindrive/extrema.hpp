@@ -13,7 +13,7 @@ namespace pindrive {
 /// follow from its start: at `from` what is left of it may have fewer digits.
 template <class T, class Visitor>
 void turns(const Oscillator<T>& oscillator, const Path<T>& path, T from, T to, Visitor& visit) {
-  using std::exp;
+  using detail::exp;
   using std::floor;
   const Path<T> slope = path.derivative(oscillator);
   const int side = side_after_start(oscillator, slope);

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pindrive/functions.hpp"
+
 namespace pindrive {
 
 /// How the free oscillator has moved on after a time τ.
@@ -84,41 +86,40 @@ class Oscillator {
 
   /// Φ(τ) − 1 and Ψ(τ) for finite τ ≥ 0.
   Propagator<T> after(T tau) const {
+    using detail::expm1;
+    using detail::sine_and_cosine_of;
     using std::abs;
-    using std::cos;
-    using std::expm1;
-    using std::sin;
     if (tau == 0) return {T(0), tau};
     if (hurry_squared() * tau * tau < early * early) return soon_after(tau);
     const T z = discriminant_ * tau * tau;
     if (abs(z) < series_reach && alpha_ * alpha_ < 2 * omega0_squared_)
       return damped(tau, cosine_series(z), tau * sine_series(z));
     if (oscillates()) {
-      const T angle = omega_ * tau;
-      return damped(tau, cos(angle) - 1, sin(angle) / omega_);
+      const auto [sine, cosine] = sine_and_cosine_of(omega_ * tau);
+      return damped(tau, cosine - 1, sine / omega_);
     }
     const T rate = gentle(), apart = to_other_root();
-    const auto [decay, decay_change] = exponential(rate * tau);
+    const auto [decay, decay_change] = detail::exponential_and_change(rate * tau);
     const T gain = decay * expm1(apart * tau) / apart;
     return {decay_change - rate * gain, gain};
   }
 
   /// The same for half a period: where a velocity has come from zero to zero again.
   Propagator<T> half_turn() const {
-    using std::exp;
+    using detail::exp;
     return {-1 - exp(alpha_ * half_period()), T(0)};
   }
 
   /// How far from zero a free oscillation turns whose rate has this value and slope at τ = 0: so far,
   /// times e^(ατ), whenever that rate vanishes.
   T reach(T rate, T rate_slope) const {
-    using std::hypot;
+    using detail::hypot;
     return hypot(omega_ * rate, rate_slope - alpha_ * rate) / omega0_squared_;
   }
 
   /// Where a free oscillation of this value and slope at τ = 0 vanishes while it lasts.
   Zeros<T> zeros(T value, T slope) const {
-    using std::atan2;
+    using detail::atan2;
     constexpr T never = std::numeric_limits<T>::infinity();
     const auto lasting = [&](T tau) { return tau <= lasts_for() ? tau : never; };
     if (!oscillates()) return {lasting(only_zero(value, slope)), never};
@@ -166,8 +167,8 @@ class Oscillator {
 
   /// Where two real waves cancel. A wave whose part is rounding is absent, and one alone has no zero.
   T only_zero(T value, T slope) const {
+    using detail::log1p;
     using std::abs;
-    using std::log1p;
     constexpr T never = std::numeric_limits<T>::infinity();
     constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
     const T steady = gentle() * value, apart = to_other_root(), other = steady + apart * value;
@@ -185,24 +186,8 @@ class Oscillator {
   /// From it to the other: −2ω in a decay, 2ω in a growth.
   T to_other_root() const { return alpha_ < 0 ? -2 * omega_ : 2 * omega_; }
 
-  struct Exponential {
-    T value, change;
-  };
-  /// e^u and e^u − 1, each without cancellation.
-  static Exponential exponential(T u) {
-    using std::abs;
-    using std::exp;
-    using std::expm1;
-    if (abs(u) < T(0.5)) {
-      const T change = expm1(u);
-      return {1 + change, change};
-    }
-    const T value = exp(u);
-    return {value, value - 1};
-  }
-
   Propagator<T> damped(T tau, T cosine_change, T sine) const {
-    const auto [decay, decay_change] = exponential(alpha_ * tau);
+    const auto [decay, decay_change] = detail::exponential_and_change(alpha_ * tau);
     const T gain = decay * sine;
     return {decay_change + decay * cosine_change - alpha_ * gain, gain};
   }
@@ -302,7 +287,7 @@ struct Flow {
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.
   T amplitude() const {
-    using std::hypot;
+    using detail::hypot;
     const T y = position.value;
     return hypot(y, (position.slope - oscillator.alpha() * y) / oscillator.omega());
   }

@@ -43,13 +43,14 @@ struct Touch {
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
   bool oblique() const { return !Surface::plain && does.state == ContactState::slip_oblique; }
   Branch<T> branch() const { return contact.branch(does.branch); }
+  T stick_limit() const { return contact.static_limit * load.value; }  ///< N
   /// Whether nothing but its relative acceleration tells where it goes.
   bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0) && !oblique(); }
 
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(T v, bool stretched) {
     const T u = v - surface.value, size = u < 0 ? -u : u;
-    if (!contact.present()) return;
+    if (!contact.present() || (!contact.rigid() && load.value == 0)) return;
     const bool elastic = !contact.rigid() && (stretched || v == 0);
     does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
     if (!elastic && u != 0) does = slip(u / size, Bound::none, contact.branch_of(size));
@@ -96,7 +97,7 @@ struct Touch {
       return;
     }
     sense_ = s.skin > 0 ? T(-1) : T(1);  // of the force
-    if (-sense_ * s.skin < contact.static_limit || sense_ * u > 0) return;
+    if (-sense_ * s.skin < stick_limit() || sense_ * u > 0) return;
     at_ = Bound::upper;
     if (u != 0) parts_ = Bound::none;
     count = 2;
@@ -145,7 +146,7 @@ struct Touch {
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
     using std::abs;
-    if (contact.branches == 0 || !sliding()) return contact.static_limit * load.value;
+    if (contact.branches == 0 || !sliding()) return stick_limit();
     const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
     return (contact.static_limit + rounded) * load.value + friction * load.value;
   }

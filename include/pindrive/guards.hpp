@@ -51,7 +51,7 @@ class Guards {
   template <class Surface>
   void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
-      const Path<T> most = Line<T>{side.contact.static_limit, T(0)};
+      const Path<T> most = Line<T>{side.stick_limit(), T(0)};
       for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, plate, to);
     }
     if (!side.sliding()) return;

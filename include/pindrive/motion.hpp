@@ -30,15 +30,17 @@ struct Friction {
   T plate, finger;
 };
 
-/// That along the quantities of a segment after τ, where load() is that of the plate from its begin on.
+/// That along the quantities of a segment after τ, where lines() are its inputs from its begin on.
 /// Two stuck contacts share in proportion to their static friction: how they really do is not determined.
-template <class Trajectory, class T, class Load>
+template <class Trajectory, class T, class Lines>
 Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
-                           const Segment<T>& segment, Load&& load, T tau) {
+                           const Segment<T>& segment, Lines&& lines, T tau) {
   const Friction<T> found{along.at(along.plate_force(), tau), along.at(along.finger_force(), tau)};
   if (!segment.mode.both_stuck()) return found;
-  const T at_plate = drive.plate.static_limit * load().at(tau);
-  const T part = at_plate > 0 ? at_plate / (at_plate + drive.finger.static_limit) : T(0);
+  const InputLines<T> inputs = lines();
+  const T at_plate = drive.plate.static_limit * inputs.plate_load.at(tau);
+  const T at_finger = drive.finger.static_limit * inputs.finger_load.at(tau);
+  const T part = at_plate > 0 ? at_plate / (at_plate + at_finger) : T(0);
   return {part * found.plate, (1 - part) * found.plate};
 }
 
@@ -99,8 +101,8 @@ class Motion {
 
   Friction<T> friction(const Segment<T>& segment, T tau) const {
     return along(segment, [&](const auto& t) {
-      const auto load = [&] { return inputs_.plate_load.from(segment.begin); };
-      return friction_along(t, drive_, segment, load, tau);
+      const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };
+      return friction_along(t, drive_, segment, lines, tau);
     });
   }
 

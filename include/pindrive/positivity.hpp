@@ -35,8 +35,8 @@ class PositivityBound {
   /// itself: the rounding of their sum would count as much of the fast one.
   Flatness flatness(const Oscillator<T>& oscillator, const Propagator<T>& moved, T from,
                     T length) const {
+    using detail::exp;
     using std::abs;
-    using std::exp;
     using std::sqrt;
     if (!path_.oscillates()) return {};
     if (!oscillator.oscillates() && 2 * oscillator.omega() > abs(oscillator.alpha())) {

@@ -74,10 +74,9 @@ T panels(const Oscillator<T>& oscillator, T to, Function&& f) {
 /// ∫₀^to p q for two quantities of a mode that are each a line and an oscillation.
 template <class T>
 T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path<T>& q, T to) {
-  using std::cos;
-  using std::exp;
-  using std::expm1;
-  using std::sin;
+  using detail::exp;
+  using detail::expm1;
+  using detail::sine_and_cosine_of;
   const T alpha = oscillator.alpha(), omega = oscillator.omega();
   const auto product = [&](T tau) { return p.at(oscillator, tau) * q.at(oscillator, tau); };
   if (!p.oscillates() && !q.oscillates()) return gauss<T>(product, T(0), to);  // a polynomial
@@ -110,9 +109,8 @@ T product_integral(const Oscillator<T>& oscillator, const Path<T>& p, const Path
   const T u = (alpha * c - omega * d) / (2 * oscillator.omega0_squared());
   const T v = (omega * c + alpha * d) / (2 * oscillator.omega0_squared());
   const T mean = alpha == 0 ? to : expm1(2 * alpha * to) / (2 * alpha);
-  const T angle = 2 * omega * to;
-  return sum + (pa * qa + pb * qb) / 2 * mean +
-         exp(2 * alpha * to) * (u * cos(angle) + v * sin(angle)) - u;
+  const auto [sine, cosine] = sine_and_cosine_of(2 * omega * to);
+  return sum + (pa * qa + pb * qb) / 2 * mean + exp(2 * alpha * to) * (u * cosine + v * sine) - u;
 }
 
 /// ∫ p q over a stretch of a mode.

@@ -176,9 +176,9 @@ class Roots {
 
   /// The last extremum of a growing oscillation that still turns back before zero.
   T skip_short_swings(T value) {
+    using detail::log;
     using std::abs;
     using std::floor;
-    using std::log;
     const T growth = 2 * oscillator_.alpha() * extrema_.spacing();  // in a period
     const T short_of = abs(path_.centre() / (value - path_.centre()));
     if (!(short_of > 1) || !(growth > 0)) return left_;
@@ -243,8 +243,8 @@ class Roots<T, 0> {
 /// given half of the way between them, the line the other half.
 template <class T>
 T out_of_reach(const Oscillator<T>& oscillator, const Path<T>& path, int side) {
-  using std::hypot;
-  using std::log1p;
+  using detail::hypot;
+  using detail::log1p;
   constexpr T never = std::numeric_limits<T>::infinity();
   const T alpha = oscillator.alpha();
   const T reach = hypot(path.value, (path.slope - alpha * path.value) / oscillator.omega());

@@ -70,8 +70,8 @@ class SeriesFlow : public SeriesStep<T> {
   }
   /// … and the one at which that turns the direction of sliding.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
+    using detail::hypot;
     using std::abs;
-    using std::hypot;
     if (e.side != 0) return Real(0);
     const Real m = plain(e.mass), load = abs(plain(e.load.value));
     const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
@@ -200,8 +200,8 @@ class SeriesFlow : public SeriesStep<T> {
   /// 2 E² = m e_v² + k e_x² + (f/g) e_y², grows by no more than the energy that this puts in, since
   /// friction's own slope takes energy but where it falls. Whether the bound is rounding.
   bool bound(const SeriesEquation<T>& e) {
+    using detail::exp;
     using std::abs;
-    using std::exp;
     using std::max;
     using std::sqrt;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);

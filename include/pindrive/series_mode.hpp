@@ -16,21 +16,24 @@ namespace pindrive {
 /// The inputs from an instant on, until one has its next row.
 template <class T>
 struct InputLines {
-  Line<T> plate_velocity;          ///< v_p, m/s
-  Line<T> plate_load{T(1), T(0)};  ///< >= 0
-  Line<T> across_velocity{};       ///< w, m/s
-  Line<T> force{};                 ///< on the pin from outside, N
+  Line<T> plate_velocity;           ///< v_p, m/s
+  Line<T> plate_load{T(1), T(0)};   ///< >= 0
+  Line<T> across_velocity{};        ///< w, m/s
+  Line<T> force{};                  ///< on the pin from outside, N
+  Line<T> finger_load{T(1), T(0)};  ///< >= 0
 
   bool oblique() const { return across_velocity.value != 0 || across_velocity.rate != 0; }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
-    return {later(plate_velocity), later(plate_load), later(across_velocity), later(force)};
+    return {later(plate_velocity), later(plate_load), later(across_velocity), later(force),
+            later(finger_load)};
   }
   /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
   template <class Input>
   static InputLines of(const Inputs<T, Input>& inputs, const Segment<T>& segment) {
     return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
-            across_from(inputs.across_velocity, segment.begin), inputs.force.from(segment.begin)};
+            across_from(inputs.across_velocity, segment.begin), inputs.force.from(segment.begin),
+            inputs.finger_load.from(segment.begin)};
   }
   /// A velocity across from a time on; where it comes to zero within some roundings of that, it is zero: the
   /// nearer to it, the shorter are the steps of a pin that comes to rest on the plate at once.
@@ -75,7 +78,11 @@ class SeriesMode {
       e.side = 0;
       e.across = inputs_.across_velocity;
     }
-    if (slips(mode_.finger)) e.force.value -= along(mode_.finger, at_rest(finger()));
+    if (slips(mode_.finger)) {
+      const T friction = along(mode_.finger, at_rest(finger()));
+      e.force.value -= friction * inputs_.finger_load.value;
+      e.force.rate -= friction * inputs_.finger_load.rate;
+    }
     if (sheared()) {
       e.skin_factor = finger().slope;
       e.skin_gain = e.skin_decay = drive_.finger.stiffness / finger().slope;
@@ -83,7 +90,7 @@ class SeriesMode {
       e.skin_factor = T(1);
       e.skin_gain = drive_.finger.stiffness;
     } else if (slips(mode_.finger)) {
-      e.damping += finger().slope;
+      e.damping += finger().slope * inputs_.finger_load.value;
     }
     e.held = mode_.stuck();
     if (mode_.plate == ContactState::stick) e.surface = inputs_.plate_velocity;
@@ -151,7 +158,10 @@ class SeriesMode {
       if (mode_.plate == ContactState::stick)
         most = {drive_.plate.static_limit * inputs_.plate_load.value,
                 drive_.plate.static_limit * inputs_.plate_load.rate};
-      if (mode_.finger == ContactState::stick) most.value += drive_.finger.static_limit;
+      if (mode_.finger == ContactState::stick) {
+        most.value += drive_.finger.static_limit * inputs_.finger_load.value;
+        most.rate += drive_.finger.static_limit * inputs_.finger_load.rate;
+      }
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
     if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
@@ -160,7 +170,8 @@ class SeriesMode {
               at.finger, false, false);
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
-      within(found, step.skin, {drive_.finger.static_limit, T(0)}, limit, false);
+      within(found, step.skin, {drive_.finger.static_limit * inputs_.finger_load.value, T(0)},
+             limit, false);
     }
     return found;
   }

@@ -34,11 +34,11 @@ struct ObliqueSlip {
  private:
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
   T speed() const {
-    using std::hypot;
+    using detail::hypot;
     return hypot(u.value, w.value);
   }
   T along() const {
-    using std::hypot;
+    using detail::hypot;
     return speed() > 0 ? u.value / speed() : u.rate / hypot(u.rate, w.rate);
   }
   T turn() const { return u.rate * w.value - u.value * w.rate; }
@@ -58,7 +58,7 @@ struct ObliqueSlip {
 /// it slips along the axis, or is asked whether it sticks.
 template <class Side, class T>
 bool asks_across(Side& side, T u, Bound& at) {
-  using std::hypot;
+  using detail::hypot;
   const auto& contact = side.contact;
   if (side.across.value == 0 && side.across.rate == 0) {
     if (!side.oblique()) return false;
@@ -87,7 +87,7 @@ bool asks_across(Side& side, T u, Bound& at) {
 /// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
 template <class T, class Side>
 T set_out_across(T mass, const Side& plate, T pull) {
-  using std::hypot;
+  using detail::hypot;
   const T rest = pull - mass * plate.surface.rate;
   const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
   return p / hypot(p, plate.across.rate);

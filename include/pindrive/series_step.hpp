@@ -44,15 +44,16 @@ class SeriesStep {
 
   /// The part of the step at which the last terms are rounding of the first ones.
   Real suggested_part() const {
+    using detail::exp;
+    using detail::log;
     using std::abs;
-    using std::pow;
     Real least = std::numeric_limits<Real>::infinity();
     for (const Polynomial<T>* p : {&velocity, &skin, &speed}) {
       const auto size = [&](int n) { return abs(plain(p->c[n])); };
       const Real largest = std::max({size(0), size(1), size(2)});
       for (int n = N - 2; n <= N; ++n)
         if (size(n) > 0 && largest > 0)
-          least = std::min(least, pow(unit / 4 * largest / size(n), Real(1) / n));
+          least = std::min(least, exp(log(unit / 4 * largest / size(n)) / n));
     }
     return least;
   }

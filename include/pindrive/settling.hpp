@@ -119,8 +119,8 @@ class Settling {
     if (turns.first < never) follow_to(turns.first, x.at(oscillator, turns.first));
     if (turns.spacing < never && abs(before) > width) {
       // The extrema of a free decay shrink by one factor, so the last one outside is known.
+      using detail::log;
       using std::floor;
-      using std::log;
       const T count = floor(log(abs(before) / width) / (-oscillator.alpha() * turns.spacing));
       low = turns.first + count * turns.spacing;
       before = x.at(oscillator, low) - x_end;

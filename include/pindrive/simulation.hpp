@@ -177,7 +177,9 @@ class Simulation : private Selection<T, Surface> {
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
       state_.move(segment, finger_.elastic(), tau);
     }
-    if (finger_.sliding()) state_.skin = finger_.does.sense * drive_.finger.kinetic;
+    if constexpr (!Surface::plain)
+      if (finger_.sliding())
+        state_.skin = finger_.does.sense * drive_.finger.kinetic * finger_.load.value;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
     const T across = plate_.across.at(tau);
@@ -196,7 +198,7 @@ class Simulation : private Selection<T, Surface> {
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
       } else if (side.elastic()) {
-        state_.skin = guard.side * drive_.finger.static_limit;
+        state_.skin = guard.side * finger_.stick_limit();
       } else if (!row) {
         limit_ = guard.side;
       }
@@ -215,10 +217,11 @@ class Simulation : private Selection<T, Surface> {
       plate_.load = inputs_.plate_load.from(time_);
       row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
       if constexpr (!Surface::plain) {
+        finger_.load = inputs_.finger_load.from(time_);
         force_ = inputs_.force.from(time_);
         plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_);
-        row_ = std::min(
-            {row_, inputs_.force.next_row(time_), inputs_.across_velocity.next_row(time_)});
+        row_ = std::min({row_, inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
+                         inputs_.across_velocity.next_row(time_)});
       }
       if (row_ - time_ > rounding<T> * time_) return;
     }

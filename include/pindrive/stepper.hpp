@@ -11,6 +11,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "pindrive/functions.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/simulation.hpp"
 
@@ -22,6 +23,10 @@ struct Held {
   T since{0};                                  ///< s
   Line<T> line{};                              ///< from then on
   T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
+
+  Held() = default;
+  Held(T constant) : line{constant, T(0)} {}  // NOLINT: as of a Profile
+  Held(T begin, const Line<T>& from_there) : since(begin), line(from_there) {}
 
   Line<T> from(T t) const {
     if (t >= ends) return {};
@@ -39,15 +44,16 @@ class Stepper {
  public:
   /// All that it goes on with: a stepper made of it gives the same bits.
   struct State {
-    T now;                                ///< s
-    T since;                              ///< time of the last event, s; there …
-    detail::State<T> pin;                 ///< … was the pin, …
-    Option plate, finger;                 ///< … this each contact had done, …
-    detail::Bound at_plate, at_finger;    ///< … these bounds their speeds had come to, …
-    int limit;                            ///< … this side a stick force, …
-    Line<T> plate_velocity, plate_load;   ///< … and from there on the inputs went like this
-    Held<T> mouse_velocity, load_factor;  ///< the inputs as they were set
-    Event event;                          ///< what happened to the contacts now
+    T now;                              ///< s
+    T since;                            ///< time of the last event, s; there …
+    detail::State<T> pin;               ///< … was the pin, …
+    Option plate, finger;               ///< … this each contact had done, …
+    detail::Bound at_plate, at_finger;  ///< … these bounds their speeds had come to, …
+    int limit;                          ///< … this side a stick force, …
+    Line<T> plate_velocity;             ///< … and from there on the plate moved like this
+    /// The inputs as they were set.
+    Held<T> mouse_velocity, plate_load, across_velocity, force, finger_load;
+    Event event;  ///< what happened to the contacts now
   };
 
   /// A release at the time `begin`, s. The duration of its inputs does not matter: it has no end. The drive's
@@ -61,8 +67,9 @@ class Stepper {
   }
   Stepper(const Drive<T>& drive, const State& state)
       : drive_(drive),
-        inputs_(without_end(
-            {state.mouse_velocity, state.pin.x, state.pin.v, never, state.load_factor})),
+        inputs_(without_end({state.mouse_velocity, state.pin.x, state.pin.v, never,
+                             state.plate_load, std::numeric_limits<T>::quiet_NaN(), state.force,
+                             state.across_velocity, state.finger_load})),
         simulation_(drive_, inputs_, state.since),
         now_(state.now) {
     restore(state);
@@ -76,7 +83,10 @@ class Stepper {
     State found = last_;
     found.now = now_;
     found.mouse_velocity = inputs_.mouse_velocity;
-    found.load_factor = inputs_.plate_load;
+    found.plate_load = inputs_.plate_load;
+    found.across_velocity = inputs_.across_velocity;
+    found.force = inputs_.force;
+    found.finger_load = inputs_.finger_load;
     found.event = event_;
     return found;
   }
@@ -103,26 +113,36 @@ class Stepper {
     return true;
   }
 
-  /// Sets the inputs from now on, values and rates: mouse velocity (m/s, m/s²) and plate load (>= 0, 1/s). A
-  /// mouse velocity that jumps moves the housing in no time: beside it the pin keeps its velocity, as no finite
-  /// force could change that. A value that differs from the input as it went on by rounding is the same.
-  void set(const Line<T>& mouse_velocity, const Line<T>& plate_load) {
+  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most, and that of a
+  /// compliant finger, or of one with a curve, stays as it is. A mouse velocity
+  /// that jumps moves the housing in no time: beside it the pin keeps its velocity, as no finite force could
+  /// change that; so it does where the velocity across jumps. A value that differs from the input as it went
+  /// on by rounding is the same.
+  void set(const InputLines<T>& given) {
     Held<T>&velocity = inputs_.mouse_velocity, &load = inputs_.plate_load;
-    const T jump = change_to(mouse_velocity.value, velocity);
-    const T of_load = change_to(plate_load.value, load);
-    if (zero(jump) && zero(of_load) && zero(mouse_velocity.rate - velocity.from(now_).rate) &&
-        zero(plate_load.rate - load.from(now_).rate))
-      return;
-    velocity = {now_, {velocity.from(now_).value, mouse_velocity.rate}};
-    load =
-        load_from(now_, moved(load.from(now_).value, of_load, plate_load.value), plate_load.rate);
+    Held<T>&across = inputs_.across_velocity, &force = inputs_.force;
+    Held<T>& touch = inputs_.finger_load;
+    const bool turns = differs(given.plate_velocity, velocity),
+               loads = differs(given.plate_load, load);
+    const bool drifts = differs(given.across_velocity, across),
+               pushes = differs(given.force, force);
+    const bool touches = differs(given.finger_load, touch);
+    if (!turns && !loads && !drifts && !pushes && !touches) return;
+    const T jump = change_to(given.plate_velocity.value, velocity);
+    const bool across_jumps = plain(change_to(given.across_velocity.value, across)) != 0;
+    if (turns) velocity = {now_, {velocity.from(now_).value, given.plate_velocity.rate}};
+    if (loads) load = load_from(now_, given.plate_load.value, given.plate_load.rate);
+    if (drifts) across = {now_, given.across_velocity};
+    if (pushes) force = {now_, given.force};
+    if (touches) touch = load_from(now_, given.finger_load.value, given.finger_load.rate);
     restart();
     const ContactState plate = simulation_.plate_.does.state;
     const ContactState finger = simulation_.finger_.does.state;
     if (!zero(jump)) {
-      velocity.line.value = moved(velocity.line.value, jump, mouse_velocity.value);
+      velocity.line.value = moved(velocity.line.value, jump, given.plate_velocity.value);
       shift(jump);
     }
+    if (across_jumps) turn();
     select();
     event_ = {change(plate, segment_.mode.plate), change(finger, segment_.mode.finger)};
   }
@@ -134,14 +154,18 @@ class Stepper {
   const Event& event() const { return event_; }  ///< what happens to the contacts now
   Mode mode() const { return segment_.mode; }    ///< of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
-  Line<T> mouse_velocity() const { return inputs_.mouse_velocity.from(now_); }
-  Line<T> plate_load() const { return inputs_.plate_load.from(now_); }
+  InputLines<T> inputs() const {
+    return {inputs_.mouse_velocity.from(now_), inputs_.plate_load.from(now_),
+            inputs_.across_velocity.from(now_), inputs_.force.from(now_),
+            inputs_.finger_load.from(now_)};
+  }
 
   /// The segment that goes on from now, how long it has lasted, and its inputs from its begin on.
   const Segment<T>& segment() const { return segment_; }
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
   InputLines<T> lines() const {
-    return {segment_.plate_velocity, simulation_.plate_.load, {}, simulation_.force_};
+    return {segment_.plate_velocity, simulation_.plate_.load, simulation_.plate_.across,
+            simulation_.force_, simulation_.finger_.load};
   }
 
  private:
@@ -149,13 +173,14 @@ class Stepper {
 
   /// The load falls to zero at most: friction never pushes.
   static Held<T> load_from(T now, T value, T rate) {
-    return {now, {value, rate}, rate < 0 ? now - value / rate : never};
+    Held<T> load(now, {value, rate});
+    if (rate < 0) load.ends = now - value / rate;
+    return load;
   }
   static Inputs<T, Held<T>> without_end(Inputs<T, Held<T>> inputs) {
     inputs.duration = never;
-    const Held<T>& load = inputs.plate_load;
-    if (!(load.ends < never))
-      inputs.plate_load = load_from(load.since, load.line.value, load.line.rate);
+    for (Held<T>* load : {&inputs.plate_load, &inputs.finger_load})
+      if (!(load->ends < never)) *load = load_from(load->since, load->line.value, load->line.rate);
     return inputs;
   }
   /// Whether a number, and its derivative, is zero.
@@ -173,6 +198,9 @@ class Stepper {
     const T size = abs(held.line.value) + abs(line.rate * (now_ - held.since)) + abs(given);
     return abs(change) <= detail::rounding<T> * size ? change - plain(change) : change;
   }
+  bool differs(const Line<T>& given, const Held<T>& held) const {
+    return !zero(change_to(given.value, held)) || !zero(given.rate - held.from(now_).rate);
+  }
   static T moved(const T& from, const T& change, const T& given) {
     return plain(change) == 0 ? from + change : given;
   }
@@ -189,8 +217,15 @@ class Stepper {
     simulation_.plate_.reached = state.at_plate;
     simulation_.finger_.reached = state.at_finger;
     simulation_.plate_.surface = state.plate_velocity;
-    simulation_.plate_.load = state.plate_load;
     simulation_.limit_ = state.limit;
+    take_inputs(state.since);
+  }
+  /// Those but for the plate's velocity, which may be known to be exactly the pin's.
+  void take_inputs(const T& time) {
+    simulation_.plate_.load = inputs_.plate_load.from(time);
+    simulation_.plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time);
+    simulation_.force_ = inputs_.force.from(time);
+    simulation_.finger_.load = inputs_.finger_load.from(time);
   }
 
   /// Brings the pin to now, where the inputs have a row: at an event that is now to rounding, to that.
@@ -200,7 +235,7 @@ class Stepper {
       restore(last_);
       simulation_.time_ = now_;
       simulation_.plate_.surface.rate = inputs_.mouse_velocity.line.rate;
-      simulation_.plate_.load = inputs_.plate_load.from(now_);
+      take_inputs(now_);
       simulation_.limit_ = 0;
     } else {
       simulation_.row_ = now_;
@@ -230,6 +265,16 @@ class Stepper {
     }
   }
 
+  /// The velocity across jumps, and with it the speed at which the plate slides.
+  void turn() {
+    using detail::hypot;
+    auto& plate = simulation_.plate_;
+    plate.reached = detail::Bound::none;
+    if (!plate.oblique()) return;
+    const T u = simulation_.state_.v - plate.surface.value;
+    plate.does.branch = plate.contact.branch_of(hypot(u, plate.across.value));
+  }
+
   /// Begins the segment that follows.
   void select() {
     const auto &plate = simulation_.plate_, &finger = simulation_.finger_;
@@ -242,14 +287,18 @@ class Stepper {
              finger.reached,
              simulation_.limit_,
              plate.surface,
-             plate.load,
+             {},
+             {},
+             {},
              {},
              {},
              {}};
     // A quantity that follows a line is looked at for a finite time.
-    const bool steady = plate.surface.rate == 0 && plate.load.rate == 0;
-    simulation_.row_ = std::min(inputs_.plate_load.next_row(simulation_.time_),
-                                steady ? never : simulation_.time_ + far_);
+    const bool steady = plate.surface.rate == 0 && plate.load.rate == 0 && finger.load.rate == 0 &&
+                        simulation_.force_.rate == 0;
+    simulation_.row_ = std::min({inputs_.plate_load.next_row(simulation_.time_),
+                                 inputs_.finger_load.next_row(simulation_.time_),
+                                 steady ? never : simulation_.time_ + far_});
     simulation_.select();
     simulation_.begin(segment_);
     tau_ = simulation_.earliest(segment_.flow);

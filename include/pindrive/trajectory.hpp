@@ -102,7 +102,7 @@ class BySeries {
     else if (held && segment.mode.finger == ContactState::stick && !segment.mode.both_stuck())
       finger_force_ = step_.stick_force;
     else if (slips(segment.mode.finger))
-      finger_force_ = of_finger(drive, segment.mode);
+      finger_force_ = of_finger(drive, segment.mode, lines.finger_load);
   }
 
   const Polynomial<T>& position() const { return step_.position; }
@@ -168,10 +168,11 @@ class BySeries {
     return SeriesFlow<T>(mode.equation(), start, span, true);
   }
   /// Of a rigid finger, or skin, that slips.
-  Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode) const {
+  Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-    Polynomial<T> force = -branch.slope * step_.velocity;
-    force += Line<T>{-along(mode.finger, branch.force - branch.slope * branch.from), T(0)};
+    Polynomial<T> force = -branch.slope * load.value * step_.velocity;
+    const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
+    force += Line<T>{at_rest * load.value, at_rest * load.rate};
     return force;
   }
 

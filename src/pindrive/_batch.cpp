@@ -22,9 +22,9 @@
 #include <utility>
 #include <vector>
 
-#include "_batch_numbers.hpp"
 #include "_batch_rows.hpp"
 #include "_kernel.hpp"
+#include "batch_numbers.hpp"
 #include "interrupt.hpp"
 #include "pindrive/batch.hpp"
 #include "pindrive/energy.hpp"
@@ -36,9 +36,8 @@ using nb::literals::operator""_a;
 
 namespace {
 
-using pe::Column, pe::Ledger, pe::no_column, pe::Row, pe::Rows, pe::Summary;
-using Block = pd::detail::KernelBlock;
-using pd::detail::PlainNumber;
+using pd::batch::Block, pd::batch::no_column, pd::batch::PlainNumber, pd::batch::Row;
+using pe::Column, pe::Rows;
 
 constexpr std::size_t least_share = 64;  // points that a thread takes at a time, at most a block
 constexpr std::size_t keep = 1U << 12;   // segments that a thread keeps room for
@@ -138,7 +137,7 @@ class Batch {
         bounds_(bounds),
         size_(size_of(inputs)),
         names_(outputs),
-        rows_(outputs.begin(), outputs.end()),
+        rows_(rows_of(outputs)),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
         numbers_(rows_.size(), size()),
@@ -208,6 +207,13 @@ class Batch {
     std::vector<pd::Segment<double>> segments;
   };
 
+  static std::vector<Row> rows_of(const std::vector<std::string>& names) {
+    std::vector<Row> rows;
+    for (const std::string& name : names)
+      if (!rows.emplace_back(name.c_str()).exists())
+        throw std::invalid_argument("there is no number " + name);
+    return rows;
+  }
   static std::size_t size_of(const Inputs& inputs) {
     std::size_t size = 1;
     for (std::size_t axis = 0; axis < inputs[0].ndim(); ++axis) size *= inputs[0].shape(axis);
@@ -329,22 +335,18 @@ class Batch {
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
     const pd::Drive<double> drive = drive_of(p);
     const pd::Inputs<double> inputs = inputs_of(p);
-    Summary summary{};
-    static_cast<pd::Summary<double>&>(summary) =
+    const pd::Summary<double> summary =
         pd::summarise(drive, inputs, p[settling_band], segments, go_on);
     const pd::Motion<double> motion(drive, inputs, segments.data(), segments.size(),
                                     summary.outcome);
     if (left != Left::nothing) {
       ++general_;
-      const auto [segment, tau] = motion.locate(summary.duration, pd::Side::left);
-      const auto moved = segment->after(tau);
-      summary.final_position = segment->flow.position.at(moved, tau);
-      summary.final_velocity = segment->flow.velocity.at(moved, tau);
+      const pd::batch::Summary all = pd::batch::with_end(summary, motion);
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         const Row& row = rows_[k];
         if (row.energy) continue;
         if (left == Left::all || row.column == PlainNumber::settling_time)
-          numbers_[k][i] = row.of(summary);
+          numbers_[k][i] = row.of(all);
       }
     }
     if (left == Left::all) {
@@ -353,7 +355,7 @@ class Batch {
       if (events_.size() > 0) events_[i] = static_cast<std::int32_t>(summary.events);
     }
     if (!energy_) return;
-    const Ledger ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
+    const auto ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
       if (rows_[k].energy) numbers_[k][i] = rows_[k].energy(ledger);
   }

@@ -49,10 +49,10 @@ using Dual = pd::Dual<double>;
 /// A contact: kinetic, static, stiffness, and the rows (speed, force) of its curve.
 using ContactNumbers = std::tuple<double, double, double, Rows>;
 /// Mass, stiffness, damping; plate, finger; rows (time, value) of mouse velocity and plate load, one
-/// row for a constant; displacement, velocity, skin stretch; rows of the force and of the
-/// velocity across; duration.
+/// row for a constant; displacement, velocity, skin stretch; rows of the force, of the velocity
+/// across and of the finger's load; duration.
 using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumbers, Rows, Rows,
-                           double, double, double, Rows, Rows, double>;
+                           double, double, double, Rows, Rows, Rows, double>;
 
 /// A tuple of Python's as the struct with the same fields.
 template <class Struct, class Tuple>
@@ -169,12 +169,7 @@ nb::dict segments(const CoreMotion<T>& motion) {
 /// Of each segment that is a step of a series, what its acceleration stays below; NaN of a closed form.
 Array<double> acceleration_bounds(const CoreMotion<double>& motion) {
   return column<double>(motion, [view = motion.view()](const pd::Segment<double>& segment) {
-    return view.along(segment, [](const auto& along) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(along)>, pd::BySeries<double>>)
-        return pd::largest_size(along.acceleration());
-      else
-        return std::numeric_limits<double>::quiet_NaN();
-    });
+    return pd::acceleration_bound(view, segment);
   });
 }
 
@@ -304,15 +299,15 @@ NB_MODULE(_core, m) {
       [](double mass, double stiffness, double damping, const ContactNumbers& plate,
          const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
          double displacement, double velocity, double skin_stretch, const Rows& force,
-         const Rows& across_velocity, double duration) {
+         const Rows& across_velocity, const Rows& finger_load, double duration) {
         const Numbers numbers(mass, stiffness, damping, plate, finger, mouse_velocity, plate_load,
                               displacement, velocity, skin_stretch, force, across_velocity,
-                              duration);
+                              finger_load, duration);
         return run<double>(numbers, numbers);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
-      "across_velocity"_a, "duration"_a,
+      "across_velocity"_a, "finger_load"_a, "duration"_a,
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
       "(time, value), one row for a constant.");

@@ -91,12 +91,12 @@ class Derivative:
 
     def ledger(self, duration: float) -> dict: ...
 
-def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, force: Sequence[tuple[float, float]], across_velocity: Sequence[tuple[float, float]], duration: float) -> Motion:
+def simulate(mass: float, stiffness: float, damping: float, plate: tuple[float, float, float, Sequence[tuple[float, float]]], finger: tuple[float, float, float, Sequence[tuple[float, float]]], mouse_velocity: Sequence[tuple[float, float]], plate_load: Sequence[tuple[float, float]], displacement: float, velocity: float, skin_stretch: float, force: Sequence[tuple[float, float]], across_velocity: Sequence[tuple[float, float]], finger_load: Sequence[tuple[float, float]], duration: float) -> Motion:
     """
     Simulates one pin from its release until its ending is known or the duration is over. Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows (time, value), one row for a constant.
     """
 
-def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], float]) -> Derivative:
+def differentiate(numbers: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float], along: tuple[float, float, float, tuple[float, float, float, Sequence[tuple[float, float]]], tuple[float, float, float, Sequence[tuple[float, float]]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float, float, float, Sequence[tuple[float, float]], Sequence[tuple[float, float]], Sequence[tuple[float, float]], float]) -> Derivative:
     """
     The derivatives of a motion along a direction; both as the arguments of simulate.
     """

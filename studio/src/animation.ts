@@ -57,29 +57,51 @@ export class Animation {
     context.lineWidth = 1;
     const shift = scale * plateDistance(view.lines[0]!.values, time);
     const pitch = w / 14;
-    for (let mark = ((shift % pitch) + pitch) % pitch - pitch; mark < w + pitch; mark += pitch) {
-      line(context, [[mark, height], [mark + 0.6 * (height - plateTop), plateTop]]);
+    for (let mark = (((shift % pitch) + pitch) % pitch) - pitch; mark < w + pitch; mark += pitch) {
+      line(context, [
+        [mark, height],
+        [mark + 0.6 * (height - plateTop), plateTop],
+      ]);
     }
-    line(context, [[0, plateTop], [w, plateTop]]);
+    line(context, [
+      [0, plateTop],
+      [w, plateTop],
+    ]);
     // The housing of the mouse, open below, with a hole for the pin.
     context.strokeStyle = look.text;
     context.lineWidth = 2.5;
-    line(context, [[0.06 * w, bottom], [0.06 * w, top], [middle - 0.24 * w, top]]);
-    line(context, [[middle + 0.24 * w, top], [0.96 * w, top], [0.96 * w, bottom]]);
+    line(context, [
+      [0.06 * w, bottom],
+      [0.06 * w, top],
+      [middle - 0.24 * w, top],
+    ]);
+    line(context, [
+      [middle + 0.24 * w, top],
+      [0.96 * w, top],
+      [0.96 * w, bottom],
+    ]);
     // The spring from the housing to the electromagnet.
     const magnet = 0.085 * w;
     const springY = 0.6 * height;
     const [from, to, coils] = [0.06 * w, pin - magnet, 9];
     context.lineWidth = 1.5;
     context.strokeStyle = look.text;
-    const points: [number, number][] = [[from, springY], [from + 0.03 * w, springY]];
+    const points: [number, number][] = [
+      [from, springY],
+      [from + 0.03 * w, springY],
+    ];
     const begin = from + 0.03 * w;
     const part = (to - 0.02 * w - begin) / (2 * coils);
-    for (let i = 0; i < 2 * coils; ++i) points.push([begin + (i + 0.5) * part, springY + (i % 2 ? 1 : -1) * 0.05 * height]);
+    for (let i = 0; i < 2 * coils; ++i)
+      points.push([begin + (i + 0.5) * part, springY + (i % 2 ? 1 : -1) * 0.05 * height]);
     points.push([to - 0.02 * w, springY], [to, springY]);
     line(context, points);
     // Electromagnet and pin, in the colour of what they do.
-    const name = { carried: "carried by the plate", resting: "resting on the finger", gripping: "gripped by the skin" };
+    const name = {
+      carried: "carried by the plate",
+      resting: "at rest",
+      gripping: "gripped by the skin",
+    };
     context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;
     context.fillRect(pin - magnet, 0.48 * height, 2 * magnet, plateTop - 0.48 * height - 1);
     context.fillRect(pin - 0.012 * w, top - 0.05 * height, 0.024 * w, 0.25 * height);
@@ -98,13 +120,32 @@ export class Animation {
     // Friction forces on the pin, as arrows.
     const largest = Math.max(
       ...(["plate_force", "finger_force"] as const).map((of) =>
-        curves.columns[of]!.reduce((most, force) => Math.max(most, Math.abs(force) || 0), 0)), 1e-12);
-    arrow(context, pin, plateTop - 4, (columnAt(curves, "plate_force", time) / largest) * 0.2 * w, look.events.stick!);
-    arrow(context, pin, top - 0.02 * height, (columnAt(curves, "finger_force", time) / largest) * 0.2 * w, look.events.slip!);
+        curves.columns[of]!.reduce((most, force) => Math.max(most, Math.abs(force) || 0), 0),
+      ),
+      1e-12,
+    );
+    arrow(
+      context,
+      pin,
+      plateTop - 4,
+      (columnAt(curves, "plate_force", time) / largest) * 0.2 * w,
+      look.events.stick!,
+    );
+    arrow(
+      context,
+      pin,
+      top - 0.02 * height,
+      (columnAt(curves, "finger_force", time) / largest) * 0.2 * w,
+      look.events.slip!,
+    );
     context.fillStyle = look.text;
     context.fillText(`${(1e3 * time).toFixed(2)} ms`, 8, 0.06 * height + 4);
     context.textAlign = "right";
-    context.fillText(phase ? name[phase.kind] : Math.abs(sliding) > 0 ? "sliding" : "at rest", w - 8, 0.06 * height + 4);
+    context.fillText(
+      phase ? name[phase.kind] : Math.abs(sliding) > 0 ? "sliding" : "at rest",
+      w - 8,
+      0.06 * height + 4,
+    );
   }
 }
 
@@ -113,7 +154,10 @@ function arrow(context: CanvasRenderingContext2D, x: number, y: number, length: 
   const head = Math.sign(length) * Math.min(7, Math.abs(length));
   context.strokeStyle = context.fillStyle = color;
   context.lineWidth = 3;
-  line(context, [[x, y], [x + length - head, y]]);
+  line(context, [
+    [x, y],
+    [x + length - head, y],
+  ]);
   context.beginPath();
   context.moveTo(x + length, y);
   context.lineTo(x + length - head, y - 5);

@@ -19,7 +19,11 @@ export function answerOf(core: Core, input: Input, duration: number | null): Rec
   const values = names.flatMap((name) => [...motion.evaluate(name, times)]);
   motion.free();
   return {
-    end: outcome.end, status: outcome.status, numbers: bits(numbers), segments: bits(segments),
-    times: bits(times), values: bits(values),
+    end: outcome.end,
+    status: outcome.status,
+    numbers: bits(numbers),
+    segments: bits(segments),
+    times: bits(times),
+    values: bits(values),
   };
 }

@@ -8,7 +8,10 @@ export class Canvas {
 
   /** `ratio`: height over width; `redraw` is called when the size has changed. */
   constructor(
-    className: string, label: string, private readonly ratio: number, private readonly redraw: () => void,
+    className: string,
+    label: string,
+    private readonly ratio: number,
+    private readonly redraw: () => void,
   ) {
     this.element = h("canvas", { class: className, role: "img", "aria-label": label });
     new ResizeObserver(() => this.resize()).observe(this.element);

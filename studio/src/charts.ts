@@ -6,7 +6,7 @@ import type { Channel } from "./recording";
 import { columnAt } from "./sample";
 import { SERIES, unitOf } from "./table";
 import type { Look } from "./theme";
-import { curvesOf, currentCurves, eventPath, isOpen, type Line, type View } from "./view";
+import { currentCurves, curvesOf, eventPath, isOpen, type Line, type View } from "./view";
 
 interface Panel {
   readonly title: string;
@@ -19,7 +19,12 @@ const PANELS: readonly Panel[] = [
   { title: "Position", symbol: "x", names: ["position"], channel: "position" },
   { title: "Velocity", symbol: "x′", names: ["velocity"], channel: "velocity" },
   { title: "Acceleration", symbol: "x″", names: ["acceleration"], channel: "acceleration" },
-  { title: "Friction of plate (line) and finger (dashes)", symbol: "R", names: ["plate_force", "finger_force"], channel: "force" },
+  {
+    title: "Friction of plate (line) and finger (dashes)",
+    symbol: "R",
+    names: ["plate_force", "finger_force"],
+    channel: "force",
+  },
   { title: "Skin stretch", symbol: "s", names: ["stretch"], channel: null },
 ];
 const POINTS = 4000; // of a recording that one plot draws
@@ -36,7 +41,10 @@ export class Charts {
   private view: View | null = null;
   private placing = false;
 
-  constructor(private look: Look, private readonly actions: ChartActions) {
+  constructor(
+    private look: Look,
+    private readonly actions: ChartActions,
+  ) {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -57,7 +65,9 @@ export class Charts {
     const times = currentTimes(view);
     const milliseconds = scaledColumn(times, 1e3);
     for (const { plot, panel } of this.plots) {
-      const columns = inOrder(view).flatMap((line) => namesFor(panel, line).map((name) => column(line, name, times.length)));
+      const columns = inOrder(view).flatMap((line) =>
+        namesFor(panel, line).map((name) => column(line, name, times.length)),
+      );
       plot.batch(() => {
         plot.setData([milliseconds, ...columns] as unknown as uPlot.AlignedData, false);
         plot.setScale("x", { min: 0, max: 1e3 * view.end });
@@ -96,7 +106,9 @@ export class Charts {
     const { look } = this;
     const { font } = look;
     const axis = { stroke: look.muted, font, grid: { stroke: look.grid, width: 1 }, ticks: { show: false } };
-    const lines = inOrder(this.view!).flatMap((line) => namesFor(panel, line).map((name, i) => series(line, name, i, look)));
+    const lines = inOrder(this.view!).flatMap((line) =>
+      namesFor(panel, line).map((name, i) => series(line, name, i, look)),
+    );
     return {
       width: Math.max(this.element.clientWidth, 200),
       height: this.heightOf(last),
@@ -106,11 +118,32 @@ export class Charts {
       cursor: {
         y: false,
         drag: { x: false, y: false },
-        points: { size: 7, fill: (plot: uPlot, i: number) => String((plot.series[i]!.stroke as (u: uPlot, i: number) => string)(plot, i)) },
+        points: {
+          size: 7,
+          fill: (plot: uPlot, i: number) =>
+            String((plot.series[i]!.stroke as (u: uPlot, i: number) => string)(plot, i)),
+        },
       },
       axes: [
-        { ...axis, size: last ? 20 : 8, values: last ? plainValues : () => [], label: last ? "time t, ms" : undefined, labelSize: 18, labelFont: font, gap: 2 },
-        { ...axis, size: 52, values: plainValues, label: `${panel.symbol}, ${unitOf(SERIES.get(panel.names[0]!)!)}`, labelSize: 18, labelFont: font, gap: 3, space: 28 },
+        {
+          ...axis,
+          size: last ? 20 : 8,
+          values: last ? plainValues : () => [],
+          label: last ? "time t, ms" : undefined,
+          labelSize: 18,
+          labelFont: font,
+          gap: 2,
+        },
+        {
+          ...axis,
+          size: 52,
+          values: plainValues,
+          label: `${panel.symbol}, ${unitOf(SERIES.get(panel.names[0]!)!)}`,
+          labelSize: 18,
+          labelFont: font,
+          gap: 3,
+          space: 28,
+        },
       ],
       series: [{}, ...lines],
       hooks: {
@@ -186,7 +219,10 @@ export class Charts {
         const [x, y] = [plot.valToPos(1e3 * time, "x", true), plot.valToPos(value, "y", true)];
         const color = this.look.events[kind]!;
         ctx.beginPath();
-        eventPath(kind, x, y, 4 * ratio).forEach(([px, py], i) => (i ? ctx.lineTo(px, py) : ctx.moveTo(px, py)));
+        for (const [i, [px, py]] of eventPath(kind, x, y, 4 * ratio).entries()) {
+          if (i) ctx.lineTo(px, py);
+          else ctx.moveTo(px, py);
+        }
         ctx.closePath();
         ctx.fillStyle = isOpen(contact) ? this.look.surface : color;
         ctx.strokeStyle = color;
@@ -231,7 +267,8 @@ function column(line: Line, name: QuantityName, count: number): (number | null)[
 }
 
 function extent(
-  columns: readonly (readonly (number | null)[])[], overlay: { readonly values: Float64Array } | null,
+  columns: readonly (readonly (number | null)[])[],
+  overlay: { readonly values: Float64Array } | null,
 ): { min: number; max: number } {
   let [min, max] = [0, 0];
   for (const values of columns) {
@@ -277,4 +314,3 @@ function overlayOf(view: View, panel: Panel): { times: Float64Array; values: Flo
 function plainValues(_: uPlot, splits: number[]): string[] {
   return splits.map((value) => String(Number(value.toPrecision(6))).replace("-", "−"));
 }
-

@@ -1,15 +1,42 @@
 // What is wrong with values that are each in range: rows, contacts, the skin, the drive together.
 import type { Rows } from "./core";
+import {
+  byCoefficient,
+  CONTACTS,
+  type Found,
+  frictionKeys,
+  frictionOf,
+  givenFriction,
+  type Value,
+  type Values,
+} from "./friction";
 import { brief, counted, floatRepr, general } from "./python";
-import { DRIVE, part, required, type Quantity } from "./table";
-
-export type Value = number | Rows;
-/** The values of keys that are given, SI. */
-export type Values = Readonly<Record<string, Value>>;
-/** The same with what holds where a key is left out; null where nothing does. */
-export type Found = Readonly<Record<string, Value | null | undefined>>;
+import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
+/** What a release has beside what it has over time. */
+export const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
+
+/** The keys that a motion depends on here; of those that may have rows, each. */
+const MOVES: ReadonlySet<string> = new Set([
+  ...["mass", "stiffness", "damping", "damping_ratio"].map((name) => `drive.${name}`),
+  ...CONTACTS.flatMap((contact) => [...frictionKeys(contact, false), ...frictionKeys(contact, true)]),
+  ...Object.values(TABLES.pressedBy).flatMap((parts) => Object.keys(parts)),
+  "finger.stiffness",
+  ...[...RELEASED, ...TABLES.overTime, "settling_band"].map((name) => `motion.${name}`),
+]);
+const MAY_CHANGE: ReadonlySet<string> = new Set(TABLES.overTime.map((name) => `motion.${name}`));
+
+/** Why a key of a device file with a value is not simulated here; empty where it is. */
+export function notSimulated(key: string, value: Value | null): string {
+  const takes = "the studio does not simulate it; `pindrive simulate` does";
+  if (!MOVES.has(key)) return `${key}: ${takes}`;
+  const curve = CONTACTS.some((contact) =>
+    [false, true].some((kind) => frictionKeys(contact, kind)[2] === key),
+  );
+  if (Array.isArray(value) && !curve && !MAY_CHANGE.has(key)) return `${key}: rows: ${takes}`;
+  return "";
+}
 
 /** A value that is refused; its words have no place yet. */
 export class Refusal extends Error {
@@ -25,11 +52,13 @@ export class Refusal extends Error {
 /** Refuses rows out of order, or so close that the slope between them is out of range. */
 export function checkRows(rows: Rows, quantity: Quantity): void {
   const key = quantity.key;
-  const curve = quantity.rowsOf === "curve";
+  const ofSlope = TABLES.slopes[quantity.rowsOf!];
+  const curve = ofSlope !== undefined;
   const name = `${curve ? "speed" : "time"}`;
   const unit = curve ? "m/s" : "s";
-  const steps = !curve && key !== MOUSE;
-  const why = key === MOUSE ? " (a jump would take an infinite force)" : "";
+  const continuous = TABLES.continuous.includes(key);
+  const steps = !curve && !continuous;
+  const why = continuous ? " (a jump would take an infinite force)" : "";
   for (let i = 1; i < rows.length; ++i) {
     const [before, given] = [rows[i - 1]![0], rows[i]![0]];
     const [label, shown] = [`${key}[${i}] ${name}`, `${floatRepr(given)} ${unit}`];
@@ -41,7 +70,7 @@ export function checkRows(rows: Rows, quantity: Quantity): void {
       throw new Refusal(label, `greater than ${one}${third}`, shown);
     }
   }
-  const slope = part(curve ? "curve.slope" : "profile.rate");
+  const slope = part(ofSlope ?? "profile.rate");
   const worst = steepest(rows);
   const limits = slope.bounds![1]!;
   if (Math.abs(worst) > limits.upper!) {
@@ -63,26 +92,81 @@ function steepest(rows: Rows): number {
 
 // ---- what does not fit together ----------------------------------------------------------------------
 
-export function checkCurve(rows: Rows, kinetic: number): void {
-  const [speed, force] = rows[0]!;
-  if (speed !== 0) throw new Refusal("curve[0] speed", "0 m/s", `${floatRepr(speed)} m/s`);
-  if (force !== kinetic) {
-    const words = `the kinetic friction, ${floatRepr(kinetic)} N`;
-    throw new Refusal("curve[0] force", words, `${floatRepr(force)} N`);
+/** Refuses friction given both by forces and by coefficients; `given` are keys. */
+export function checkOneKind(contact: string, given: readonly string[]): void {
+  const [force, coefficient] = [false, true].map((kind) =>
+    frictionKeys(contact, kind).find((key) => given.includes(key)),
+  );
+  if (!force || !coefficient) return;
+  const words = `left out where ${force} gives the friction as a force`;
+  throw new Refusal(coefficient, words, `both, ${coefficient} and ${force}`);
+}
+
+/** Refuses a coefficient of the finger without a touch force, or that without the other. */
+export function checkTouch(coefficients: boolean, touch: Value | null | undefined): void {
+  if (coefficients && touch == null) {
+    throw new Refusal("touch_force", "given where a coefficient gives the finger's friction", "none");
+  }
+  if (!coefficients && touch != null) {
+    const words = "left out where the finger's friction is given as a force";
+    throw new Refusal("touch_force", words, `${floatRepr(touch as number)} N`);
   }
 }
 
-export function checkStatic(still: number, kinetic: number): void {
+/** What a key of friction is, and its unit behind a number: a force or a coefficient. */
+function kindOf(key: string): {
+  readonly name: string;
+  readonly what: string;
+  readonly noun: string;
+  readonly unit: string;
+} {
+  const name = key.split(".")[1]!;
+  return name.includes("coefficient")
+    ? { name, what: "coefficient", noun: "friction coefficient", unit: "" }
+    : { name, what: "force", noun: "friction", unit: " N" };
+}
+
+export function checkCurve(rows: Rows, kinetic: number, key: string): void {
+  const { name, what, noun, unit } = kindOf(key);
+  const [speed, value] = rows[0]!;
+  if (speed !== 0) throw new Refusal(`${name}[0] speed`, "0 m/s", `${floatRepr(speed)} m/s`);
+  if (value !== kinetic) {
+    const words = `the kinetic ${noun}, ${floatRepr(kinetic)}${unit}`;
+    throw new Refusal(`${name}[0] ${what}`, words, `${floatRepr(value)}${unit}`);
+  }
+}
+
+export function checkStatic(still: number, kinetic: number, key: string): void {
   if (still >= kinetic) return;
-  const words = `at least the kinetic friction, ${floatRepr(kinetic)} N`;
-  throw new Refusal("static", words, `${floatRepr(still)} N`);
+  const { name, noun, unit } = kindOf(key);
+  const words = `at least the kinetic ${noun}, ${floatRepr(kinetic)}${unit}`;
+  throw new Refusal(name, words, `${floatRepr(still)}${unit}`);
 }
 
 export function checkSkin(values: Found): void {
-  const [curve, stiffness] = [values["finger.curve"] as Rows | null, values["finger.stiffness"]];
+  const [curve, stiffness] = [frictionOf(values, "finger").curve, values["finger.stiffness"]];
   if (!curve || curve.length < 2 || stiffness == null) return;
   const words = "one row for a compliant finger, whose skin would lag behind it";
   throw new Refusal("finger.curve", words, counted(curve.length, "row"));
+}
+
+/** Refuses a load that changes on a finger with a stiffness or a curve. */
+export function checkFingerLoad(values: Found): void {
+  const load = values["motion.finger_load"];
+  if (!Array.isArray(load) || load.every(([, y]) => y === load[0]![1])) return;
+  const rigid = values["finger.stiffness"] == null;
+  if (rigid && (frictionOf(values, "finger").curve?.length ?? 0) < 2) return;
+  const words = `constant for a finger with ${rigid ? "a curve" : "a stiffness"}`;
+  throw new Refusal("finger_load", words, `a Profile of ${load.length} rows`);
+}
+
+/** What an input is at t = 0. */
+function initial(given: Value): number {
+  if (typeof given === "number") return given;
+  const after = given.findIndex(([time]) => time > 0);
+  if (after <= 0) return given[after < 0 ? given.length - 1 : 0]![1];
+  const [[t0, y0], [t1, y1]] = [given[after - 1]!, given[after]!];
+  return y0 + ((y1 - y0) / (t1 - t0)) * (0 - t0);
 }
 
 export function checkStretch(values: Found): void {
@@ -92,7 +176,8 @@ export function checkStretch(values: Found): void {
   if (typeof stiffness !== "number") {
     throw new Refusal("skin_stretch", "left out for a rigid finger", given);
   }
-  const largest = staticOf(values, "finger") / stiffness;
+  const largest =
+    (frictionOf(values, "finger").still * initial(values["motion.finger_load"] ?? 1)) / stiffness;
   if (Math.abs(stretch) <= largest) return;
   const words = `at most static friction over stiffness, ${floatRepr(largest)} m, either way`;
   throw new Refusal("skin_stretch", words, given);
@@ -106,12 +191,10 @@ export function checkDrive(values: Found): void {
   const rounded = Number(ratio.toPrecision(12));
   if (rounded !== 0 && !(rounded >= limits.lower! && rounded <= limits.upper!)) {
     const words = `such that the damping ratio is ${limits.words}`;
-    throw new Refusal(
-      "damping", words, `${floatRepr(damping)} N*s/m, which makes it ${general(ratio)}`,
-    );
+    throw new Refusal("damping", words, `${floatRepr(damping)} N*s/m, which makes it ${general(ratio)}`);
   }
-  for (const table of ["plate", "finger"]) {
-    const worst = Math.abs(steepest((values[`${table}.curve`] as Rows | null) ?? []));
+  for (const table of CONTACTS) {
+    const worst = Math.abs(steepest(frictionOf(values, table).curve ?? []));
     if (worst <= limits.upper! * critical) continue;
     const words = `at most ${brief(limits.upper!)} times critical damping`;
     throw new Refusal(`${table} curve slope`, words, `${general(worst)} N*s/m`);
@@ -144,15 +227,12 @@ export function dampingOf(values: Found): number {
   return 2 * num(values, "drive.damping_ratio") * Math.sqrt(mass) * Math.sqrt(stiffness);
 }
 
-export function kineticOf(values: Found, contact: string): number {
-  return (
-    (values[`${contact}.kinetic`] as number | null | undefined) ??
-    (values[`${contact}.curve`] as Rows)[0]![1]
-  );
-}
-
-export function staticOf(values: Found, contact: string): number {
-  return (values[`${contact}.static`] as number | null | undefined) ?? kineticOf(values, contact);
+/** Refuses a release whose end is not known: its hand moves across the axis for ever. */
+function checkEnd(values: Found): void {
+  const across = values["motion.across_velocity"] ?? 0;
+  const last = typeof across === "number" ? across : across[across.length - 1]![1];
+  if (last === 0 || values["motion.duration"] != null) return;
+  throw new Refusal("duration", "given where the hand moves across the axis at the end", "None");
 }
 
 /** What is wrong with values that a person set, in one line; empty where nothing is. */
@@ -167,15 +247,25 @@ export function problemOf(values: Values): string {
         if (words) throw new Refusal(key, words, `${floatRepr(value)} ${quantity.unit ?? ""}`.trim());
       }
     }
-    for (const table of ["plate", "finger"]) {
-      const curve = found[`${table}.curve`] as Rows | null;
-      if (curve) checkCurve(curve, kineticOf(found, table));
-      checkStatic(staticOf(found, table), kineticOf(found, table));
+    const other = Object.entries(values)
+      .map(([key, value]) => notSimulated(key, value))
+      .find(Boolean);
+    if (other) return other;
+    for (const table of CONTACTS) {
+      const coefficients = byCoefficient(found, table);
+      checkOneKind(table, Object.keys(values));
+      if (table === "finger") checkTouch(coefficients, found["finger.touch_force"]);
+      const [, ofStatic, ofCurve] = frictionKeys(table, coefficients);
+      const { kinetic, still, curve } = givenFriction(found, table);
+      if (curve) checkCurve(curve, kinetic, ofCurve);
+      checkStatic(still, kinetic, ofStatic);
     }
     checkSkin(found);
+    checkFingerLoad(found);
     checkStretch(found);
     checkDrive(found);
     checkPhase(found);
+    checkEnd(found);
   } catch (error) {
     if (error instanceof Refusal) return error.message;
     throw error;

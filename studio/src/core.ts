@@ -12,7 +12,13 @@ export interface Input {
 }
 
 export const QUANTITIES = [
-  "position", "velocity", "acceleration", "plate_force", "finger_force", "stretch", "stretch_rate",
+  "position",
+  "velocity",
+  "acceleration",
+  "plate_force",
+  "finger_force",
+  "stretch",
+  "stretch_rate",
 ] as const;
 export type QuantityName = (typeof QUANTITIES)[number];
 export type Side = "left" | "right";
@@ -22,9 +28,20 @@ export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "cross"] as const;
 export type Transition = (typeof TRANSITIONS)[number];
 const CONTACT_STATES: Readonly<Record<number, ContactState>> = {
-  [-1]: "slips backward", 0: "sticks", 1: "slips forward", 2: "absent", 3: "grips",
+  [-1]: "slips backward",
+  0: "sticks",
+  1: "slips forward",
+  2: "absent",
+  3: "grips",
+  4: "slips across",
 };
-export type ContactState = "slips backward" | "sticks" | "slips forward" | "absent" | "grips";
+export type ContactState =
+  | "slips backward"
+  | "sticks"
+  | "slips forward"
+  | "absent"
+  | "grips"
+  | "slips across";
 
 export interface Outcome {
   readonly status: number;
@@ -60,9 +77,9 @@ type Exports = { readonly memory: WebAssembly.Memory } & Readonly<
 >;
 
 const MORE = 1; // PINDRIVE_MORE: there was more than fitted
-const INTERFACE = 1; // PINDRIVE_INTERFACE that this file is written for
+const INTERFACE = 2; // PINDRIVE_INTERFACE that this file is written for
 const OUTCOME_BYTES = 56;
-const SEGMENT_BYTES = 56;
+const SEGMENT_BYTES = 72;
 const EVENT_BYTES = 32;
 
 export class Core {
@@ -87,7 +104,7 @@ export class Core {
     const compiled = await WebAssembly.compile(module);
     const imports: Record<string, Record<string, () => number>> = {};
     for (const { module: from, name } of WebAssembly.Module.imports(compiled)) {
-      (imports[from] ??= {})[name] = () => 8; // EBADF: the core has no files
+      imports[from] = { ...imports[from], [name]: () => 8 }; // EBADF: the core has no files
     }
     const instance = await WebAssembly.instantiate(compiled, imports);
     return new Core(instance.exports as unknown as Exports);
@@ -126,16 +143,17 @@ export class Core {
     });
   }
 
-  /** The numbers of many releases, a row of `numberNames` each; NaN where a point cannot be. */
+  /** Numbers of many releases, a row of `outputs` for each point; NaN where a point cannot be. */
   batch(
     input: Input,
     varied: Readonly<Record<string, Float64Array>>,
+    outputs: readonly string[],
     points: number,
     band: number,
-  ): { numbers: Float64Array; status: Int32Array; end: Int32Array; error: Int32Array } {
+  ): Float64Array {
     const names = Object.keys(varied);
-    const width = this.numberNames.length;
-    const bytes = names.length * (8 + 8 * points) + 8 * points * width + 12 * points;
+    const width = outputs.length;
+    const bytes = names.length * (8 + 8 * points) + 8 * points * width + 4 * width;
     return this.withInput(input, (drive, release) =>
       this.borrowed(bytes, (at) => {
         const numbersAt = at;
@@ -146,24 +164,36 @@ export class Core {
           next += 8 * points;
           return column;
         });
-        const codes = next;
-        const table = codes + 12 * points;
-        return this.named(names, (addresses) => {
-          addresses.forEach((address, i) => {
-            this.view().setUint32(table + 8 * i, address, true);
-            this.view().setUint32(table + 8 * i + 4, columns[i]!, true);
+        const table = next;
+        const asked = table + 8 * names.length;
+        return this.named([...names, ...outputs], (addresses) => {
+          const view = this.view();
+          addresses.slice(0, names.length).forEach((address, i) => {
+            view.setUint32(table + 8 * i, address, true);
+            view.setUint32(table + 8 * i + 4, columns[i]!, true);
           });
-          const [status, end, error] = [0, 4, 8].map((offset) => codes + offset * points);
+          addresses.slice(names.length).forEach((address, i) => {
+            view.setUint32(asked + 4 * i, address, true);
+          });
           this.call(
-            "batch", drive, release, table, names.length, points, band, 0, 0, numbersAt,
-            status!, end!, error!,
+            "batch",
+            drive,
+            release,
+            table,
+            names.length,
+            points,
+            band,
+            asked,
+            width,
+            0,
+            0,
+            numbersAt,
+            0,
+            0,
+            0,
+            0,
           );
-          return {
-            numbers: new Float64Array(this.buffer, numbersAt, points * width).slice(),
-            status: new Int32Array(this.buffer, status!, points).slice(),
-            end: new Int32Array(this.buffer, end!, points).slice(),
-            error: new Int32Array(this.buffer, error!, points).slice(),
-          };
+          return new Float64Array(this.buffer, numbersAt, points * width).slice();
         });
       }),
     );
@@ -207,15 +237,18 @@ export class Core {
 
   private named<T>(names: readonly string[], use: (addresses: number[]) => T): T {
     const texts = names.map((name) => new TextEncoder().encode(`${name}\0`));
-    return this.borrowed(texts.reduce((sum, text) => sum + text.length, 0), (at) => {
-      let next = at;
-      const addresses = texts.map((text) => {
-        new Uint8Array(this.buffer, next).set(text);
-        next += text.length;
-        return next - text.length;
-      });
-      return use(addresses);
-    });
+    return this.borrowed(
+      texts.reduce((sum, text) => sum + text.length, 0),
+      (at) => {
+        let next = at;
+        const addresses = texts.map((text) => {
+          new Uint8Array(this.buffer, next).set(text);
+          next += text.length;
+          return next - text.length;
+        });
+        return use(addresses);
+      },
+    );
   }
 
   private withInput<T>(input: Input, use: (drive: number, release: number) => T): T {
@@ -275,13 +308,17 @@ export class Motion {
     this.outcome = core.borrowed(OUTCOME_BYTES, (at) => {
       core.call("outcome_of", handle, at);
       const view = core.view();
-      const [steadySince, period, knownUntil, simulated, cycleBegin] = [8, 16, 24, 32, 40].map(
-        (offset) => view.getFloat64(at + offset, true),
+      const [steadySince, period, knownUntil, simulated, cycleBegin] = [8, 16, 24, 32, 40].map((offset) =>
+        view.getFloat64(at + offset, true),
       ) as [number, number, number, number, number];
       return {
         status: view.getInt32(at, true),
         end: ENDS[view.getInt32(at + 4, true)]!,
-        steadySince, period, knownUntil, simulated, cycleBegin,
+        steadySince,
+        period,
+        knownUntil,
+        simulated,
+        cycleBegin,
         segments: view.getUint32(at + 48, true),
       };
     });
@@ -314,8 +351,8 @@ export class Motion {
         found.push({
           begin,
           end: view.getFloat64(at + 8, true),
-          plate: CONTACT_STATES[view.getInt32(at + 40, true)]!,
-          finger: CONTACT_STATES[view.getInt32(at + 44, true)]!,
+          plate: CONTACT_STATES[view.getInt32(at + 48, true)]!,
+          finger: CONTACT_STATES[view.getInt32(at + 52, true)]!,
         });
       }
       return found;
@@ -349,9 +386,7 @@ export class Motion {
   }
 
   energy(duration: number): Record<string, number> {
-    return this.named(this.core.energyNames, (at) =>
-      this.core.call("energy", this.handle, duration, at),
-    );
+    return this.named(this.core.energyNames, (at) => this.core.call("energy", this.handle, duration, at));
   }
 
   certificate(duration: number): Record<string, number> {

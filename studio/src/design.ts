@@ -1,23 +1,31 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import { MOUSE, dampingOf, kineticOf, staticOf, type Value, type Values } from "./checks";
+import { dampingOf, MOUSE, RELEASED } from "./checks";
 import type { Input, Rows } from "./core";
 import type { Device } from "./device";
-import { DRIVE } from "./table";
+import {
+  byCoefficient,
+  CONTACTS,
+  frictionKeys,
+  frictionOf,
+  frictionParts,
+  givenFriction,
+  normalForce,
+  type Value,
+  type Values,
+} from "./friction";
+import { DRIVE, TABLES } from "./table";
 
 export interface Design extends Device {
   /** Whether its curves are drawn beside those of the current one. */
   readonly shown: boolean;
 }
 
-const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
-const OVER_TIME = ["mouse_velocity", "plate_load"] as const;
-
 export function isRows(value: Value | null | undefined): value is Rows {
   return Array.isArray(value);
 }
 
 /** What holds for a key: what is given, or what holds where it is left out; null: nothing. */
-export function valueOf(values: Values, key: string): Value | null {
+export function valueFor(values: Values, key: string): Value | null {
   return values[key] ?? DRIVE.get(key)!.absent ?? null;
 }
 
@@ -29,22 +37,22 @@ export function coreInput(values: Values): Input {
     stiffness: values["drive.stiffness"] as number,
     damping: dampingOf(values),
   };
-  for (const contact of ["plate", "finger"]) {
-    const curve = values[`${contact}.curve`];
-    if (isRows(curve)) curves[contact] = curve;
-    drive[`${contact}.kinetic`] = kineticOf(values, contact);
-    drive[`${contact}.static`] = staticOf(values, contact);
+  for (const contact of CONTACTS) {
+    const { kinetic, still, curve } = frictionOf(values, contact);
+    if (curve) curves[contact] = curve;
+    drive[`${contact}.kinetic`] = kinetic;
+    drive[`${contact}.static`] = still;
   }
   const stiffness = values["finger.stiffness"];
   if (typeof stiffness === "number") drive["finger.stiffness"] = stiffness;
   const release: Record<string, number> = {};
   for (const name of RELEASED) {
-    const value = valueOf(values, `motion.${name}`);
+    const value = valueFor(values, `motion.${name}`);
     if (typeof value === "number") release[name] = value;
   }
   const profiles: Record<string, Rows> = {};
-  for (const name of OVER_TIME) {
-    const value = valueOf(values, `motion.${name}`)!;
+  for (const name of TABLES.overTime) {
+    const value = valueFor(values, `motion.${name}`)!;
     // One that never changes is a constant, as it is in Python.
     const changes = isRows(value) && value.some(([, y]) => y !== value[0]![1]);
     profiles[name] = changes ? value : [[0, isRows(value) ? value[0]![1] : value]];
@@ -63,6 +71,7 @@ export function withValue(values: Values, key: string, value: Value | null): Val
   const moved = new Set([key]);
   for (const [other, quantity] of DRIVE) {
     const follows = quantity.follows ?? [];
+    if (values[other] === undefined && frictionParts(other).some((name) => moved.has(name))) moved.add(other);
     if (moved.has(other) || !follows.some((name) => moved.has(name))) continue;
     moved.add(other);
     const given = values[other];
@@ -87,24 +96,34 @@ function quotient(values: Values, keys: readonly string[]): number | null {
 }
 
 function numberOf(values: Values, key: string): number | null {
-  const [contact, name] = key.split(".") as [string, string];
-  if (name === "kinetic") return kineticOf(values, contact);
-  if (name === "static") return staticOf(values, contact);
-  const value = valueOf(values, key);
+  const [contact] = key.split(".") as [string];
+  for (const coefficients of [false, true]) {
+    const [kinetic, still] = frictionKeys(contact, coefficients);
+    if (key !== kinetic && key !== still) continue;
+    if (coefficients && !byCoefficient(values, contact)) return null;
+    const friction = (coefficients ? givenFriction : frictionOf)(values, contact);
+    return key === kinetic ? friction.kinetic : friction.still;
+  }
+  const value = valueFor(values, key);
   return typeof value === "number" ? value : null;
 }
 
 /** How the core's numbers change with one key, a part of its value: the rate that withValue has. */
 export function direction(values: Values, key: string, part: number): Input {
   const relative: Record<string, number> = { [key]: part };
-  for (const [other, quantity] of DRIVE) {
-    const [over, under] = quantity.follows ?? [];
-    if (over === undefined || other === key) continue;
-    const rate = (relative[over] ?? 0) - (under === undefined ? 0 : (relative[under] ?? 0));
-    if (rate) relative[other] = rate;
-  }
   const of = (name: string): number => relative[name] ?? 0;
   const input = coreInput(values);
+  // What follows from coefficients is known once these have followed one another.
+  const follow = (pressed: boolean): void => {
+    for (const [other, quantity] of DRIVE) {
+      const [over, under] = quantity.follows ?? [];
+      if (over === undefined || other === key) continue;
+      if (pressed && frictionParts(other).length) continue;
+      const rate = of(over) - (under === undefined ? 0 : of(under));
+      if (rate) relative[other] = rate;
+    }
+  };
+  follow(false);
   const byRatio = values["drive.damping"] === undefined;
   const drive: Record<string, number> = {
     mass: of("drive.mass") * input.drive.mass!,
@@ -117,15 +136,20 @@ export function direction(values: Values, key: string, part: number): Input {
   };
   const scaled = (rows: Rows, rate: number): Rows => rows.map(([, y]) => [0, rate * y] as const);
   const curves: Record<string, Rows> = {};
-  for (const contact of ["plate", "finger"]) {
+  for (const contact of CONTACTS) {
     const curve = input.curves[contact];
+    const coefficients = byCoefficient(values, contact);
+    const [ofKinetic, ofStatic, ofCurve] = frictionKeys(contact, coefficients);
+    const pressed = coefficients ? pressRate(values, contact, of) : 0;
     // Of a curve the first force is the kinetic friction; without static friction that is it, too.
-    const kinetic = of(curve ? `${contact}.curve` : `${contact}.kinetic`);
-    const still = values[`${contact}.static`] === undefined ? kinetic : of(`${contact}.static`);
+    const kinetic = of(curve ? ofCurve : ofKinetic) + pressed;
+    const still = values[ofStatic] === undefined ? kinetic : of(ofStatic) + pressed;
     if (curve) curves[contact] = scaled(curve, kinetic);
     drive[`${contact}.kinetic`] = kinetic * input.drive[`${contact}.kinetic`]!;
     drive[`${contact}.static`] = still * input.drive[`${contact}.static`]!;
+    if (coefficients) relative[`${contact}.static`] = still;
   }
+  follow(true);
   const stiffness = of("finger.stiffness");
   if (stiffness) drive["finger.stiffness"] = stiffness * input.drive["finger.stiffness"]!;
   const release: Record<string, number> = {};
@@ -134,10 +158,20 @@ export function direction(values: Values, key: string, part: number): Input {
     if (rate) release[name] = rate * input.release[name]!;
   }
   const profiles: Record<string, Rows> = {};
-  for (const name of OVER_TIME) {
+  for (const name of TABLES.overTime) {
     profiles[name] = scaled(input.profiles[name]!, of(`motion.${name}`));
   }
   return { drive, curves, release, profiles };
+}
+
+/** How what presses on a contact changes, a part of it. */
+function pressRate(values: Values, contact: string, of: (key: string) => number): number {
+  const parts = Object.entries(TABLES.pressedBy[contact]!);
+  const sizes = parts.map(
+    ([key, factor]) => factor * ((valueFor(values, key) as number | null) ?? 0) * of(key),
+  );
+  const load = normalForce(values, contact);
+  return load ? sizes.reduce((sum, size) => sum + size, 0) / load : 0;
 }
 
 /** The keys with a value of their own that is not 0, which derivatives and fits may change. */
@@ -150,7 +184,7 @@ export function variedKeys(values: Values): string[] {
 }
 
 export function settlingBand(values: Values): number {
-  return valueOf(values, "motion.settling_band") as number;
+  return valueFor(values, "motion.settling_band") as number;
 }
 
 /** The plate's velocity in the housing at a time, m/s. */

@@ -1,6 +1,6 @@
 // The named designs: tabs, one of them current; which others are drawn; the ghost.
 import { button, h, refill } from "./dom";
-import { currentDesign, withDesign, type State } from "./state";
+import { currentDesign, type State, withDesign } from "./state";
 import type { Look } from "./theme";
 
 type Change = (state: State, kind: string) => void;
@@ -19,7 +19,12 @@ export class Designs {
 
   update(state: State, look: Look): void {
     this.state = state;
-    const structure = JSON.stringify([state.current, state.ghost !== null, look.dark, state.designs.map(({ name, shown }) => [name, shown])]);
+    const structure = JSON.stringify([
+      state.current,
+      state.ghost !== null,
+      look.dark,
+      state.designs.map(({ name, shown }) => [name, shown]),
+    ]);
     if (structure === this.shown) return;
     this.shown = structure;
     const { designs, current } = state;
@@ -29,32 +34,67 @@ export class Designs {
       sample.style.borderTop = `3px ${own.dash.length ? "dashed" : "solid"} ${own.color}`;
       const choose = h("input", { type: "radio", name: "design", id: `design-${i}`, checked: i === current });
       choose.addEventListener("change", () => this.change((now) => ({ ...now, current: i })));
-      const see = h("input", { type: "checkbox", checked: i === current || design.shown, disabled: i === current, "aria-label": `draw ${design.name} beside the current design` });
+      const see = h("input", {
+        type: "checkbox",
+        checked: i === current || design.shown,
+        disabled: i === current,
+        "aria-label": `draw ${design.name} beside the current design`,
+      });
       see.addEventListener("change", () => this.change((now) => withDesign(now, { shown: see.checked }, i)));
-      return h("li", {}, choose, h("label", { for: `design-${i}` }, sample, h("span", { class: "design-name" }, design.name || "unnamed")), see);
+      return h(
+        "li",
+        {},
+        choose,
+        h(
+          "label",
+          { for: `design-${i}` },
+          sample,
+          h("span", { class: "design-name" }, design.name || "unnamed"),
+        ),
+        see,
+      );
     });
-    const name = h("input", { type: "text", id: "design-name", value: currentDesign(state).name, "aria-label": "name of the current design" });
+    const name = h("input", {
+      type: "text",
+      id: "design-name",
+      value: currentDesign(state).name,
+      "aria-label": "name of the current design",
+    });
     name.addEventListener("change", () => this.change((now) => withDesign(now, { name: name.value })));
     refill(this.element, [
       h("ul", { "aria-label": "designs; the box draws one beside the current one" }, ...rows),
       name,
-      h("div", { class: "buttons" },
-        button("Copy", "A new design like this one", () => this.change((now) => {
-          const copy = { ...currentDesign(now), name: `${currentDesign(now).name} ${now.designs.length + 1}`, shown: true };
-          return { ...now, designs: [...now.designs, copy], current: now.designs.length };
-        })),
+      h(
+        "div",
+        { class: "buttons" },
+        button("Copy", "A new design like this one", () =>
+          this.change((now) => {
+            const copy = {
+              ...currentDesign(now),
+              name: `${currentDesign(now).name} ${now.designs.length + 1}`,
+              shown: true,
+            };
+            return { ...now, designs: [...now.designs, copy], current: now.designs.length };
+          }),
+        ),
         this.removal(state),
-        button(state.ghost ? "Drop ghost" : "Keep ghost", "Keep this curve behind the others to compare with", () =>
-          this.change((now) => ({ ...now, ghost: now.ghost ? null : currentDesign(now).values })))),
+        button(
+          state.ghost ? "Drop ghost" : "Keep ghost",
+          "Keep this curve behind the others to compare with",
+          () => this.change((now) => ({ ...now, ghost: now.ghost ? null : currentDesign(now).values })),
+        ),
+      ),
     ]);
   }
 
   private removal(state: State): HTMLButtonElement {
-    const found = button("Delete", "Delete this design", () => this.change((now) => ({
-      ...now,
-      designs: now.designs.filter((_, i) => i !== now.current),
-      current: Math.max(0, now.current - 1),
-    })));
+    const found = button("Delete", "Delete this design", () =>
+      this.change((now) => ({
+        ...now,
+        designs: now.designs.filter((_, i) => i !== now.current),
+        current: Math.max(0, now.current - 1),
+      })),
+    );
     found.disabled = state.designs.length < 2;
     return found;
   }

@@ -1,14 +1,26 @@
 // Device files: TOML with units, read into the values of a drive and its release, and written again.
 // What is wrong is said in the lines that the command prints: file, key, value and bound.
 import {
-  MOUSE, Refusal, checkCurve, checkDrive, checkRows, checkSkin, checkStatic, checkStretch,
-  type Value, type Values,
+  checkCurve,
+  checkDrive,
+  checkFingerLoad,
+  checkOneKind,
+  checkRows,
+  checkSkin,
+  checkStatic,
+  checkStretch,
+  checkTouch,
+  MOUSE,
+  notSimulated,
+  Refusal,
 } from "./checks";
 import type { Row, Rows } from "./core";
+import { CONTACTS, frictionKeys, type Value, type Values } from "./friction";
 import { closest, floatRepr, general, quoted } from "./python";
-import { DRIVE, INPUTS, TABLES, columnsOf, required, type Quantity } from "./table";
-import { TomlError, isTable, parseToml, type TomlTable, type TomlValue } from "./toml";
-import { UnitError, toSi } from "./units";
+import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
+import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
+import { toSi, UnitError } from "./units";
+import { fits } from "./whole";
 
 export interface Device {
   readonly name: string;
@@ -32,9 +44,7 @@ export function decodeText(bytes: Uint8Array, file: string): string {
     return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
     if (bytes[0] === 0x89 && bytes[1] === 0x48 && bytes[2] === 0x44 && bytes[3] === 0x46) {
-      throw new DeviceError([
-        `${file}: is a NetCDF file; \`pindrive map\` draws one that a sweep wrote`,
-      ]);
+      throw new DeviceError([`${file}: is a NetCDF file; \`pindrive map\` draws one that a sweep wrote`]);
     }
     throw new DeviceError([`${file}: is not UTF-8 text, at byte ${firstBadByte(bytes)}`]);
   }
@@ -61,9 +71,7 @@ function firstBadByte(bytes: Uint8Array): number {
 }
 
 /** The device that a file describes. `rows`: what stands in CSV files that it names, SI, by key. */
-export function readDevice(
-  text: string, file: string, rows: Readonly<Record<string, Rows>> = {},
-): Device {
+export function readDevice(text: string, file: string, rows: Readonly<Record<string, Rows>> = {}): Device {
   return new Reader(readTables(text, file), file, rows).device();
 }
 
@@ -124,11 +132,18 @@ class Reader {
     const before = problems.length;
     this.readValues(whole ? TABLES.tables : TABLES.alone, meant);
     if (hand) this.values["motion.mouse_velocity"] = this.values["scan.hand_speed"] ?? null;
+    for (const key of DRIVE.keys()) {
+      const words = this.isGiven(key) && key in this.values ? notSimulated(key, this.values[key]!) : "";
+      if (words) problems.push(`${file}: ${words}`);
+    }
     this.checkContacts();
-    const complete = problems.length === before;
-    if (complete || this.allRead(whole)) this.checkTogether();
+    const complete = problems.length === before && this.allRead(whole);
+    if (complete) this.checkTogether();
+    if (complete && whole) {
+      for (const { check, keys } of fits(this.values, tables)) this.attempt(check, ...keys);
+    }
     if (problems.length) throw new DeviceError(problems);
-    this.attempt(() => checkDrive(this.values), "");
+    this.attempt(() => checkDrive(this.values));
     if (problems.length) throw new DeviceError(problems);
     const of = tables.device!;
     const given = [...DRIVE.keys()].filter((key) => this.isGiven(key) || (hand && key === MOUSE));
@@ -172,9 +187,7 @@ class Reader {
     for (const name of ["name", "description"]) {
       const value = this.tables.device![name] ?? "";
       if (typeof value === "string") continue;
-      this.problems.push(
-        `${this.file}: device.${name} must be text in quotes, got ${quoted(value)}`,
-      );
+      this.problems.push(`${this.file}: device.${name} must be text in quotes, got ${quoted(value)}`);
     }
   }
 
@@ -195,40 +208,47 @@ class Reader {
     }
   }
 
-  /** Adds what a check refuses, with the place of `key`, of which its label may be the last part. */
-  private attempt(check: () => void, key = ""): void {
+  /** Adds what a check refuses, with its key: the first of `keys` of which its label is the last part. */
+  private attempt(check: () => void, ...keys: string[]): void {
     try {
       check();
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       const own = error.label.split("[")[0]!;
-      const full = key.endsWith(`.${own}`) ? key : own;
+      const full = keys.find((key) => key.endsWith(`.${own}`)) ?? own;
       this.problems.push(`${this.file}: ${full}${error.message.slice(own.length)}`);
     }
   }
 
   private checkContacts(): void {
-    for (const table of ["plate", "finger"]) {
-      for (const name of ["coefficient", "static_coefficient", "coefficient_curve"]) {
-        if (!this.isGiven(`${table}.${name}`)) continue;
-        this.problems.push(`${this.file}: ${table}.${name}: the studio takes friction as a force, ${table}.kinetic`);
-        return;
-      }
-      const [curve, still] = [this.values[`${table}.curve`], this.values[`${table}.static`]];
-      let kinetic = this.values[`${table}.kinetic`];
+    for (const table of CONTACTS) {
+      const all = [...frictionKeys(table, false), ...frictionKeys(table, true)];
+      const given = all.filter((key) => this.values[key] != null);
+      const coefficients = given.some((key) => frictionKeys(table, true).includes(key));
+      const before = this.problems.length;
+      this.attempt(() => checkOneKind(table, given));
+      if (this.problems.length > before) continue;
+      const [ofKinetic, ofStatic, ofCurve] = frictionKeys(table, coefficients);
+      const [curve, still] = [this.values[ofCurve], this.values[ofStatic]];
+      let kinetic = this.values[ofKinetic];
       if (Array.isArray(curve)) {
         const rows = curve as Rows;
         kinetic ??= rows[0]![1];
-        this.attempt(() => checkCurve(rows, kinetic as number), `${table}.curve`);
+        this.attempt(() => checkCurve(rows, kinetic as number, ofCurve), ofCurve);
       }
       if (typeof still === "number" && typeof kinetic === "number") {
-        this.attempt(() => checkStatic(still, kinetic as number), `${table}.static`);
+        this.attempt(() => checkStatic(still, kinetic as number, ofStatic), ofStatic);
+      }
+      const touch = "finger.touch_force";
+      if (table === "finger" && given.length && touch in this.values) {
+        this.attempt(() => checkTouch(coefficients, this.values[touch]), touch);
       }
     }
   }
 
   private checkTogether(): void {
     this.attempt(() => checkSkin(this.values), "finger.curve");
+    this.attempt(() => checkFingerLoad(this.values), "motion.finger_load");
     this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
   }
 }
@@ -278,9 +298,7 @@ function readValue(value: TomlValue, quantity: Quantity): Value {
 }
 
 /** A number from text with a unit, or a bare one where the quantity has no unit. Throws in words. */
-export function readNumber(
-  value: TomlValue, quantity: Quantity, example: string, label: string,
-): number {
+export function readNumber(value: TomlValue, quantity: Quantity, example: string, label: string): number {
   const bare = typeof value === "bigint" ? String(value) : typeof value === "number" ? floatRepr(value) : "";
   let found: number;
   try {
@@ -303,7 +321,8 @@ function readRows(value: TomlValue, quantity: Quantity): Rows {
   const key = quantity.key;
   const [across, along] = columnsOf(quantity);
   const [first, second] = TABLES.columns[quantity.rowsOf!]!.map((name) => name.split(".").pop()!) as [
-    string, string,
+    string,
+    string,
   ];
   const last = quantity.rows![quantity.rows!.length - 1]!;
   const examples = [usualOf(across, last[0]), usualOf(quantity, last[1])] as const;

@@ -5,7 +5,9 @@ type Properties = Readonly<Record<string, unknown>>;
 
 /** An element with properties ("class", "on…" listeners, "aria-…" attributes) and children. */
 export function h<K extends keyof HTMLElementTagNameMap>(
-  tag: K, properties: Properties = {}, ...children: Child[]
+  tag: K,
+  properties: Properties = {},
+  ...children: Child[]
 ): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -57,5 +59,11 @@ export function download(name: string, content: BlobPart, type: string): void {
 
 /** A name of a file from a title. */
 export function fileName(title: string): string {
-  return title.trim().toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-+|-+$/g, "") || "design";
+  return (
+    title
+      .trim()
+      .toLowerCase()
+      .replace(/[^\p{L}\p{N}]+/gu, "-")
+      .replace(/^-+|-+$/g, "") || "design"
+  );
 }

@@ -1,14 +1,19 @@
 // The curves as a picture for a paper: SVG, and PNG made of it.
-import type { QuantityName } from "./core";
+
 import { ticks, tickText } from "./canvas";
+import type { QuantityName } from "./core";
 import { columnAt } from "./sample";
 import { SERIES, TABLES, unitOf } from "./table";
 import { currentCurves, curvesOf, eventPath, isOpen, type View } from "./view";
 
 const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, GAP, BOTTOM] = [640, 150, 64, 12, 30, 14, 40];
 const NAMES: readonly (readonly [QuantityName, string])[] = [
-  ["position", "x"], ["velocity", "x′"], ["acceleration", "x″"], ["plate_force", "plate friction"],
-  ["finger_force", "finger friction"], ["stretch", "skin stretch"],
+  ["position", "x"],
+  ["velocity", "x′"],
+  ["acceleration", "x″"],
+  ["plate_force", "plate friction"],
+  ["finger_force", "finger friction"],
+  ["stretch", "skin stretch"],
 ];
 
 /** The curves of all designs that are shown, on white, as SVG with text as text. */
@@ -18,13 +23,16 @@ export function figureSvg(view: View, title: string): string {
   const panels = names.map(([name, symbol], i) => panel(view, name, symbol, TOP + i * (HEIGHT + GAP)));
   const bottom = TOP + names.length * (HEIGHT + GAP) - GAP;
   const toX = across(view);
-  const labels = ticks(0, 1e3 * view.end, 7).map((time) => label(toX(time / 1e3), bottom + 15, tickText(time), "middle"));
+  const labels = ticks(0, 1e3 * view.end, 7).map((time) =>
+    label(toX(time / 1e3), bottom + 15, tickText(time), "middle"),
+  );
   return [
     `<svg xmlns="http://www.w3.org/2000/svg" width="${WIDTH}" height="${height}" viewBox="0 0 ${WIDTH} ${height}" font-family="sans-serif" font-size="11">`,
     `<title>${escaped(title)}</title>`,
     `<rect width="100%" height="100%" fill="white"/>`,
     label(LEFT, 18, title, "start"),
-    ...panels, ...labels,
+    ...panels,
+    ...labels,
     label((LEFT + WIDTH - RIGHT) / 2, height - 8, "time t, ms", "middle"),
     "</svg>",
   ].join("\n");
@@ -44,7 +52,8 @@ function panel(view: View, name: QuantityName, symbol: string, top: number): str
   });
   let [min, max] = [0, 0];
   for (const { values } of lines) {
-    for (const value of values) if (!Number.isNaN(value)) [min, max] = [Math.min(min, value), Math.max(max, value)];
+    for (const value of values)
+      if (!Number.isNaN(value)) [min, max] = [Math.min(min, value), Math.max(max, value)];
   }
   const margin = 0.08 * (max - min || 1);
   const toY = (value: number): number => top + ((max + margin - value) / (max - min + 2 * margin)) * HEIGHT;
@@ -53,28 +62,42 @@ function panel(view: View, name: QuantityName, symbol: string, top: number): str
   const parts = [`<g data-quantity="${name}">`];
   for (const { kind, begin, end } of current?.phases ?? []) {
     const [x, width] = [toX(begin), Math.max(toX(end) - toX(begin), 0.5)];
-    parts.push(`<rect x="${fixed(x)}" y="${top}" width="${fixed(width)}" height="${HEIGHT}" fill="${palette[kind]}" opacity="0.25"/>`);
+    parts.push(
+      `<rect x="${fixed(x)}" y="${top}" width="${fixed(width)}" height="${HEIGHT}" fill="${palette[kind]}" opacity="0.25"/>`,
+    );
   }
   for (const tick of ticks((min - margin) * scale, (max + margin) * scale, 5)) {
     const y = toY(tick / scale);
-    parts.push(`<path d="M${LEFT} ${fixed(y)}H${WIDTH - RIGHT}" stroke="#ddd" stroke-width="0.6"/>`, label(LEFT - 5, y + 4, tickText(tick), "end"));
+    parts.push(
+      `<path d="M${LEFT} ${fixed(y)}H${WIDTH - RIGHT}" stroke="#ddd" stroke-width="0.6"/>`,
+      label(LEFT - 5, y + 4, tickText(tick), "end"),
+    );
   }
-  parts.push(`<path d="M${LEFT} ${top}V${top + HEIGHT}H${WIDTH - RIGHT}" fill="none" stroke="#000" stroke-width="0.6"/>`);
-  parts.push(`<text transform="translate(14 ${top + HEIGHT / 2}) rotate(-90)" text-anchor="middle">${symbol}, ${unitOf(quantity)}</text>`);
+  parts.push(
+    `<path d="M${LEFT} ${top}V${top + HEIGHT}H${WIDTH - RIGHT}" fill="none" stroke="#000" stroke-width="0.6"/>`,
+  );
+  parts.push(
+    `<text transform="translate(14 ${top + HEIGHT / 2}) rotate(-90)" text-anchor="middle">${symbol}, ${unitOf(quantity)}</text>`,
+  );
   for (const { line, curves, values } of [...lines].reverse()) {
     const own = TABLES.curves[line.index % TABLES.curves.length]!;
     const [color, width] = line.kind === "ghost" ? ["#aaa", 2.4] : [own.color, 1.3];
     const dash = line.kind === "other" && own.dash.length ? ` stroke-dasharray="${own.dash.join(" ")}"` : "";
     let path = "";
     values.forEach((value, i) => {
-      if (!Number.isNaN(value)) path += `${path ? "L" : "M"}${fixed(toX(curves.times[i]!))} ${fixed(toY(value))}`;
+      if (!Number.isNaN(value))
+        path += `${path ? "L" : "M"}${fixed(toX(curves.times[i]!))} ${fixed(toY(value))}`;
     });
-    parts.push(`<path d="${path}" fill="none" stroke="${color}" stroke-width="${width}"${dash} data-line="${escaped(line.name)}"/>`);
+    parts.push(
+      `<path d="${path}" fill="none" stroke="${color}" stroke-width="${width}"${dash} data-line="${escaped(line.name)}"/>`,
+    );
   }
   for (const { kind, contact, time } of current?.events.slice(0, 200) ?? []) {
     const points = eventPath(kind, toX(time), toY(columnAt(current!, name, time)), 3);
     const color = palette[kind]!;
-    parts.push(`<polygon points="${points.map((point) => point.map(fixed).join(",")).join(" ")}" fill="${isOpen(contact) ? "white" : color}" stroke="${color}"/>`);
+    parts.push(
+      `<polygon points="${points.map((point) => point.map(fixed).join(",")).join(" ")}" fill="${isOpen(contact) ? "white" : color}" stroke="${color}"/>`,
+    );
   }
   return `${parts.join("\n")}\n</g>`;
 }
@@ -88,7 +111,10 @@ function fixed(value: number): string {
 }
 
 function escaped(text: string): string {
-  return text.replace(/[&<>"]/g, (sign) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[sign]!);
+  return text.replace(
+    /[&<>"]/g,
+    (sign) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[sign]!,
+  );
 }
 
 /** A picture of SVG text, at so many times its size. */

@@ -1,8 +1,9 @@
 // A recording fitted: its time offset, and parameters by Gauss-Newton steps with exact derivatives.
-import type { Values } from "./checks";
-import { CoreError, type Core, type Motion, type QuantityName } from "./core";
-import { coreInput, direction, isRows, withValue } from "./design";
+
 import { problemOf } from "./checks";
+import { type Core, CoreError, type Motion, type QuantityName } from "./core";
+import { coreInput, direction, isRows, withValue } from "./design";
+import type { Values } from "./friction";
 import type { Channel, Recording } from "./recording";
 
 export interface FitResult {
@@ -61,7 +62,9 @@ function residuals(core: Core, data: Data, values: Values, offset: number): Floa
     const found = new Float64Array(data.times.length * data.channels.length);
     data.channels.forEach(({ name, values: given, weight }, c) => {
       const model = measured(motion, name, times);
-      model.forEach((y, i) => (found[c * times.length + i] = (given[i]! - y) * weight));
+      model.forEach((y, i) => {
+        found[c * times.length + i] = (given[i]! - y) * weight;
+      });
     });
     return found;
   } finally {
@@ -98,7 +101,11 @@ export function fitOffset(core: Core, recording: Recording, values: Values): num
 
 /** The values of `keys`, and the offset if it is free, with the least squares near where they are. */
 export function fit(
-  core: Core, recording: Recording, start: Values, keys: readonly string[], offset: number,
+  core: Core,
+  recording: Recording,
+  start: Values,
+  keys: readonly string[],
+  offset: number,
   freeOffset: boolean,
 ): FitResult {
   const data = thinned(recording);
@@ -136,13 +143,19 @@ function clamped(change: number): number {
 function scaled(values: Values, key: string, factor: number): Values {
   const value = values[key]!;
   return withValue(
-    values, key, isRows(value) ? value.map(([x, y]) => [x, y * factor] as const) : value * factor,
+    values,
+    key,
+    isRows(value) ? value.map(([x, y]) => [x, y * factor] as const) : value * factor,
   );
 }
 
 /** Columns: what the residuals lose as a key grows by a part of itself, and as the offset grows. */
 function derivatives(
-  core: Core, data: Data, values: Values, offset: number, keys: readonly string[],
+  core: Core,
+  data: Data,
+  values: Values,
+  offset: number,
+  keys: readonly string[],
   freeOffset: boolean,
 ): Float64Array[] {
   const input = coreInput(values);
@@ -151,7 +164,9 @@ function derivatives(
   const column = (of: (name: Channel) => Float64Array): Float64Array => {
     const found = new Float64Array(times.length * data.channels.length);
     data.channels.forEach(({ name, weight }, c) => {
-      of(name).forEach((y, i) => (found[c * times.length + i] = y * weight));
+      of(name).forEach((y, i) => {
+        found[c * times.length + i] = y * weight;
+      });
     });
     return found.map((y) => (Number.isFinite(y) ? y : 0));
   };
@@ -170,7 +185,11 @@ function derivatives(
         if (name === "position") return motion.evaluate("velocity", times);
         if (name === "velocity") return motion.evaluate("acceleration", times);
         const step = 1e-6 * (data.times[data.times.length - 1]! - data.times[0]!);
-        const later = measured(motion, name, times.map((t) => t + step));
+        const later = measured(
+          motion,
+          name,
+          times.map((t) => t + step),
+        );
         return measured(motion, name, times).map((y, i) => (later[i]! - y) / step);
       };
       columns.push(column((name) => rate(name).map((y, i) => (data.times[i]! > offset ? -y : 0))));
@@ -182,9 +201,7 @@ function derivatives(
 }
 
 /** The change that solves the normal equations with the diagonal enlarged; null: singular. */
-function solve(
-  columns: readonly Float64Array[], rest: Float64Array, damping: number,
-): number[] | null {
+function solve(columns: readonly Float64Array[], rest: Float64Array, damping: number): number[] | null {
   const n = columns.length;
   const dot = (a: Float64Array, b: Float64Array): number => a.reduce((sum, y, i) => sum + y * b[i]!, 0);
   const rows = columns.map((a, i) => [

@@ -1,10 +1,12 @@
 // A number over two parameters: the points of a grid, as the core takes them.
-import type { Values } from "./checks";
+
 import type { Input } from "./core";
 import { coreInput, settlingBand, withValue } from "./design";
-import { SIZE, type MapTask, type Product } from "./mapgrid";
-import { rangeOf, valueAt, type Range } from "./range";
-import { DRIVE } from "./table";
+import type { Values } from "./friction";
+import { byCoefficient } from "./friction";
+import { type MapTask, type Product, SIZE } from "./mapgrid";
+import { type Range, rangeOf, valueAt } from "./range";
+import { DRIVE, TABLES } from "./table";
 
 export interface Axes {
   readonly x: Range;
@@ -34,25 +36,47 @@ function flat(input: Input): Flat {
   return { ...input.drive, ...input.release, ...Object.fromEntries(profiles.map(([k, r]) => [k, r[0]![1]])) };
 }
 
-/** The grid. What follows an axis is a product of powers of both: it needs each axis alone. */
+/**
+ * The grid. What follows an axis is a product of powers of both, or a sum where both press on a contact: it
+ * needs each axis alone.
+ */
 export function mapTask(
-  values: Values, x: string, y: string, axes: Axes, number: number, limits: MapTask["limits"],
+  values: Values,
+  x: string,
+  y: string,
+  axes: Axes,
+  number: string,
+  limits: MapTask["limits"],
 ): MapTask {
   const own = (key: string): string => key.replace(/^(drive|motion)\./, "");
-  const lines = ([[x, axes.x], [y, axes.y]] as const).map(([key, range]) =>
-    [...gridValues(range)].map((value) => coreInput(withValue(values, key, value))),
-  );
+  const lines = (
+    [
+      [x, axes.x],
+      [y, axes.y],
+    ] as const
+  ).map(([key, range]) => [...gridValues(range)].map((value) => coreInput(withValue(values, key, value))));
   const base = coreInput(values);
   const [along, across] = lines.map((line) => line.map(flat)) as [Flat[], Flat[]];
   const origin = flat(base);
   const ones = new Float64Array(SIZE).fill(1);
+  const adds = (contact: string): boolean =>
+    contact in TABLES.pressedBy &&
+    byCoefficient(values, contact) &&
+    [x, y].every((key) => key in TABLES.pressedBy[contact]!);
   const varied: Record<string, Product> = {};
   for (const name of Object.keys(origin)) {
     const changes = (line: readonly Flat[]): boolean => line.some((at) => at[name] !== origin[name]);
     const byX = name === own(x) || (changes(along) && name !== own(y));
     const byY = name === own(y) || (changes(across) && name !== own(x));
     if (!byX && !byY) continue;
-    const [u, v] = [along, across].map((line) => Float64Array.from(line, (at) => at[name]!)) as [Float64Array, Float64Array];
+    const [u, v] = [along, across].map((line) => Float64Array.from(line, (at) => at[name]!)) as [
+      Float64Array,
+      Float64Array,
+    ];
+    if (byX && byY && adds(name.split(".")[0]!)) {
+      varied[name] = { x: u, y: v.map((value) => value - origin[name]!), sum: true };
+      continue;
+    }
     const both = byX && byY && origin[name];
     varied[name] = { x: byX ? u : ones, y: both ? v.map((value) => value / origin[name]!) : byY ? v : ones };
   }
@@ -60,7 +84,8 @@ export function mapTask(
   for (const [contact, rows] of Object.entries(base.curves)) {
     const scale = (input: Input): number => (rows[0]![1] ? input.curves[contact]![0]![1] / rows[0]![1] : 1);
     const [u, v] = lines.map((line) => Float64Array.from(line, scale)) as [Float64Array, Float64Array];
-    if ([...u, ...v].some((one) => one !== 1)) curves[contact] = { x: u, y: v };
+    if (![...u, ...v].some((one) => one !== 1)) continue;
+    curves[contact] = adds(contact) ? { x: u, y: v.map((one) => one - 1), sum: true } : { x: u, y: v };
   }
   return { input: base, varied, curves, band: settlingBand(values), number, limits };
 }

@@ -1,7 +1,8 @@
 // The map kept up to date: the newest task goes to a thread of its own as soon as that is idle.
-import type { Values } from "./checks";
-import { withValue } from "./design";
+
 import type { Core } from "./core";
+import { withValue } from "./design";
+import type { Values } from "./friction";
 import { axesOf, mapTask } from "./map";
 import { computeMap, type MapResult, type MapTask } from "./mapgrid";
 import { MapView } from "./mapview";
@@ -21,7 +22,9 @@ export class MapRunner {
   private state: State | null = null;
 
   constructor(
-    private readonly core: Core, wasm: ArrayBuffer, look: Look,
+    private readonly core: Core,
+    wasm: ArrayBuffer,
+    look: Look,
     change: (values: Values, kind: string) => void,
   ) {
     this.view = new MapView(look, (x, y) => {
@@ -53,19 +56,26 @@ export class MapRunner {
     const { x, y } = state.map;
     const axes = axesOf(values, x, y);
     const limits = Object.entries(state.specification).map(([name, { atMost, atLeast }]) => ({
-      number: this.core.numberNames.indexOf(name), atMost: atMost ?? Infinity, atLeast: atLeast ?? -Infinity,
+      number: name,
+      atMost: atMost ?? Infinity,
+      atLeast: atLeast ?? -Infinity,
     }));
     this.view.show({
-      x, y, axes, number: state.number, limited: limits.length > 0,
+      x,
+      y,
+      axes,
+      number: state.number,
+      limited: limits.length > 0,
       at: [values[x] as number, values[y] as number],
     });
-    this.next = () => mapTask(values, x, y, axes, this.core.numberNames.indexOf(state.number), limits);
+    this.next = () => mapTask(values, x, y, axes, state.number, limits);
     setTimeout(() => this.send()); // after what is seen at once
   }
 
   private send(): void {
     if (this.busy || !this.next) return;
-    const task = (this.task = this.next());
+    const task = this.next();
+    this.task = task;
     this.next = null;
     if (this.worker) {
       this.busy = true;

@@ -2,10 +2,10 @@
 import { Canvas, tickText } from "./canvas";
 import { h } from "./dom";
 import type { Axes } from "./map";
-import { SIZE, type MapResult } from "./mapgrid";
-import { partOf, valueAt, type Range } from "./range";
-import { DRIVE, NUMBERS, digits, label, text, unitOf } from "./table";
-import { mapColor, type Look } from "./theme";
+import { type MapResult, SIZE } from "./mapgrid";
+import { partOf, type Range, valueAt } from "./range";
+import { DRIVE, digits, label, NUMBERS, text, unitOf } from "./table";
+import { type Look, mapColor } from "./theme";
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [56, 74, 10, 40];
 
@@ -27,7 +27,10 @@ export class MapView {
   private range: readonly [number, number] = [NaN, NaN];
   private ends: readonly [string, string] = ["", ""];
 
-  constructor(private look: Look, private readonly moved: (x: number, y: number) => void) {
+  constructor(
+    private look: Look,
+    private readonly moved: (x: number, y: number) => void,
+  ) {
     this.canvas = new Canvas("map", "Map", 0.78, () => this.draw());
     const { element } = this.canvas;
     // A group with a description: arrow keys move the dot, as dragging does.
@@ -57,7 +60,10 @@ export class MapView {
   show(shown: MapShown): void {
     this.shown = shown;
     const [x, y] = [DRIVE.get(shown.x)!, DRIVE.get(shown.y)!];
-    this.canvas.element.setAttribute("aria-label", `${label(NUMBERS.get(shown.number)!)} over ${x.name} and ${y.name}`);
+    this.canvas.element.setAttribute(
+      "aria-label",
+      `${label(NUMBERS.get(shown.number)!)} over ${x.name} and ${y.name}`,
+    );
     this.draw();
   }
 
@@ -65,7 +71,10 @@ export class MapView {
     const finite = result.values.filter(Number.isFinite).sort();
     const [least, most] = [finite[0] ?? NaN, finite[finite.length - 1] ?? NaN];
     // A few points far out would take all the colours: the scale ends before them.
-    const [low, high] = [0.02, 0.98].map((part) => finite[Math.round(part * (finite.length - 1))] ?? NaN) as [number, number];
+    const [low, high] = [0.02, 0.98].map((part) => finite[Math.round(part * (finite.length - 1))] ?? NaN) as [
+      number,
+      number,
+    ];
     const far = most - least > 2 * (high - low) && high > low;
     const [lower, upper] = far ? [low, high] : [least, most];
     this.range = [lower, upper];
@@ -87,9 +96,14 @@ export class MapView {
     context.putImageData(pixels, 0, 0);
     const number = this.shown ? NUMBERS.get(this.shown.number)! : null;
     const met = result.met.reduce((sum, one) => sum + one, 0);
-    const extent = number && finite.length ? `from ${text(number, least)} to ${text(number, most)}` : "has no value here";
-    const share = this.shown?.limited ? `; ${Math.round((100 * met) / result.met.length)} % of the points meet the specification` : "";
-    this.words.textContent = number ? `${label(number)} ${extent}${share}. Drag the dot, or move it with the arrow keys.` : "";
+    const extent =
+      number && finite.length ? `from ${text(number, least)} to ${text(number, most)}` : "has no value here";
+    const share = this.shown?.limited
+      ? `; ${Math.round((100 * met) / result.met.length)} % of the points meet the specification`
+      : "";
+    this.words.textContent = number
+      ? `${label(number)} ${extent}${share}. Drag the dot, or move it with the arrow keys.`
+      : "";
     this.draw();
   }
 
@@ -135,7 +149,11 @@ export class MapView {
       LEFT + partOf(shown.axes.x, shown.at[0]) * width,
       TOP + (1 - partOf(shown.axes.y, shown.at[1])) * height,
     ];
-    for (const [radius, color] of [[8, "#000000"], [6.5, "#ffffff"], [4, look.curves[1]!.color]] as const) {
+    for (const [radius, color] of [
+      [8, "#000000"],
+      [6.5, "#ffffff"],
+      [4, look.curves[1]!.color],
+    ] as const) {
       context.beginPath();
       context.arc(px, py, radius, 0, 2 * Math.PI);
       context.fillStyle = color;
@@ -144,16 +162,24 @@ export class MapView {
   }
 
   private axis(
-    context: CanvasRenderingContext2D, key: string, range: Range,
-    place: (part: number) => [number, number], align: CanvasTextAlign,
+    context: CanvasRenderingContext2D,
+    key: string,
+    range: Range,
+    place: (part: number) => [number, number],
+    align: CanvasTextAlign,
   ): void {
     const quantity = DRIVE.get(key)!;
     const across = align === "center";
     context.textAlign = align;
     context.textBaseline = across ? "top" : "middle";
+    let end = -Infinity; // of the last text along a narrow axis, which the next must not touch
     for (const value of axisTicks(range)) {
-      const part = partOf(range, value);
-      context.fillText(tickText(value * quantity.displayScale), ...place(part));
+      const words = tickText(value * quantity.displayScale);
+      const [x, y] = place(partOf(range, value));
+      const half = context.measureText(words).width / 2;
+      if (across && x - half < end) continue;
+      end = x + half + 4;
+      context.fillText(words, x, y);
     }
     const name = `${symbolOf(key)}${unitOf(quantity) ? `, ${unitOf(quantity)}` : ""}`;
     const [x, y] = place(0.5);
@@ -177,8 +203,16 @@ export class MapView {
     const [lower, upper] = this.range;
     if (Number.isNaN(lower)) return;
     const [below, above] = this.ends;
-    for (const [part, value, sign] of [[0, upper, above], [0.5, (upper + lower) / 2, ""], [1, lower, below]] as const) {
-      context.fillText(`${sign}${digits(value * number.displayScale, 3)}`, left + 14, TOP + 6 + part * (height - 12));
+    for (const [part, value, sign] of [
+      [0, upper, above],
+      [0.5, (upper + lower) / 2, ""],
+      [1, lower, below],
+    ] as const) {
+      context.fillText(
+        `${sign}${digits(value * number.displayScale, 3)}`,
+        left + 14,
+        TOP + 6 + part * (height - 12),
+      );
     }
     context.fillText(unitOf(number), left, TOP + height + 12);
   }
@@ -201,4 +235,3 @@ function axisTicks(range: Range): number[] {
   }
   return found;
 }
-

@@ -1,26 +1,27 @@
 // The page: the state, what is computed of it at each change, and the parts that show it.
 import { Animation } from "./animation";
 import { Charts } from "./charts";
-import { problemOf, type Values } from "./checks";
-import { CoreError, type Core } from "./core";
-import { DeviceError, decodeText, readDevice } from "./device";
+import { problemOf } from "./checks";
+import { type Core, CoreError } from "./core";
 import { Designs } from "./designs";
+import { DeviceError, decodeText, readDevice } from "./device";
 import { button, card, download, fileName, h, option } from "./dom";
 import { figureSvg, pngOf } from "./figure";
 import { acceptDrops, choose, type Given } from "./files";
 import { fit, fitOffset } from "./fit";
 import { FitPanel } from "./fitpanel";
+import type { Values } from "./friction";
 import { MapControls, mapKeys } from "./mapcontrols";
 import { MapRunner } from "./maprunner";
 import { Panel } from "./panel";
 import { PhasePlane } from "./phaseplane";
 import { Player } from "./player";
 import { RecordingError, readRecording } from "./recording";
-import { Bars, EventsTable, NumbersTable, effects, sentence } from "./results";
+import { Bars, EventsTable, effects, NumbersTable, sentence } from "./results";
 import { simulateAll } from "./sample";
-import { History, currentDesign, toHash, withDesign, type State } from "./state";
+import { currentDesign, History, type State, toHash, withDesign } from "./state";
 import { NUMBERS } from "./table";
-import { currentLook, setScheme, type Scheme } from "./theme";
+import { currentLook, type Scheme, setScheme } from "./theme";
 import { currentCurves, currentValues, type Line, type Overlay, type View } from "./view";
 import { deviceFile, eventsCsv, samplesCsv } from "./write";
 
@@ -48,18 +49,29 @@ export class Page {
   private readonly undo = button("Undo", "Undo (Ctrl+Z)", () => this.step("undo"));
   private readonly redo = button("Redo", "Redo (Ctrl+Shift+Z)", () => this.step("redo"));
 
-  constructor(readonly core: Core, wasm: ArrayBuffer, state: State) {
+  constructor(
+    readonly core: Core,
+    wasm: ArrayBuffer,
+    state: State,
+  ) {
     this.history = new History(state);
     this.charts = new Charts(this.look, { cursor: (time) => this.setCursor(time, true) });
     this.phase = new PhasePlane(this.look);
     this.animation = new Animation(this.look);
-    this.player = new Player((time) => this.setCursor(time), () => ({ curves: currentCurves(this.view), end: this.view.end }));
+    this.player = new Player(
+      (time) => this.setCursor(time),
+      () => ({ curves: currentCurves(this.view), end: this.view.end }),
+    );
     this.map = new MapRunner(core, wasm, this.look, (values, kind) => this.setValues(values, kind));
     this.fitting = new FitPanel({
       open: () => choose(".csv,.txt", (file) => void this.takeFile(file)),
       remove: () => this.setOverlay(null),
       offset: (offset) => this.setOverlay({ ...this.overlay!, offset }),
-      fitOffset: () => this.setOverlay({ ...this.overlay!, offset: fitOffset(this.core, this.overlay!.recording, currentValues(this.view)) }),
+      fitOffset: () =>
+        this.setOverlay({
+          ...this.overlay!,
+          offset: fitOffset(this.core, this.overlay!.recording, currentValues(this.view)),
+        }),
       fit: (keys, freeOffset) => this.fit(keys, freeOffset),
     });
     acceptDrops((file) => void this.takeFile(file));
@@ -73,24 +85,41 @@ export class Page {
 
   mount(parent: HTMLElement): void {
     const main = h(
-      "main", { id: "main" },
+      "main",
+      { id: "main" },
       this.problem,
-      h("div", { class: "column" },
+      h(
+        "div",
+        { class: "column" },
         card("curves", "Motion", this.words, this.player.element, this.charts.element, legend()),
         card("bars-card", "Derivatives", this.bars.element),
-        card("events", "Events", this.events.element)),
-      h("div", { class: "columns" },
-        h("div", { class: "column" },
+        card("events", "Events", this.events.element),
+      ),
+      h(
+        "div",
+        { class: "columns" },
+        h(
+          "div",
+          { class: "column" },
           card("device-view", "Device", this.animation.element),
           card("plane", "Phase plane", this.phase.element),
-          card("fit-card", "Recording", this.fitting.element)),
-        h("div", { class: "column" },
+          card("fit-card", "Recording", this.fitting.element),
+        ),
+        h(
+          "div",
+          { class: "column" },
           card("map-card", "Map", this.controls.element, this.map.element, this.controls.specification),
-          card("numbers", "Numbers", this.numbers.element))),
+          card("numbers", "Numbers", this.numbers.element),
+        ),
+      ),
     );
-    const aside = h("aside", { "aria-label": "designs and parameters" },
-      
-      card("designs-card", "Designs", this.designs.element), card("parameters-card", "Parameters", this.panel.element));
+    const aside = h(
+      "aside",
+      { "aria-label": "designs and parameters" },
+
+      card("designs-card", "Designs", this.designs.element),
+      card("parameters-card", "Parameters", this.panel.element),
+    );
     parent.append(this.header(), h("div", { class: "layout" }, aside, main));
     this.render();
   }
@@ -164,7 +193,14 @@ export class Page {
       return;
     }
     try {
-      const found = fit(this.core, this.overlay.recording, currentValues(this.view), keys, this.overlay.offset, freeOffset);
+      const found = fit(
+        this.core,
+        this.overlay.recording,
+        currentValues(this.view),
+        keys,
+        this.overlay.offset,
+        freeOffset,
+      );
       this.overlay = { ...this.overlay, offset: found.offset };
       this.fitting.setResult(found);
       this.setValues(found.values, "");
@@ -230,7 +266,8 @@ export class Page {
     const number = NUMBERS.get(state.number)!;
     this.bars.update(
       curves ? effects(this.core, currentValues(this.view), state.number, curves.duration) : [],
-      number, curves?.numbers[state.number] ?? NaN,
+      number,
+      curves?.numbers[state.number] ?? NaN,
     );
     this.map.update(state);
     this.undo.disabled = !this.history.canUndo;
@@ -250,12 +287,24 @@ export class Page {
 
   private lines(state: State): { lines: Line[]; end: number } {
     const shown: Omit<Line, "result">[] = [
-      { name: currentDesign(state).name || "current", kind: "current", values: currentDesign(state).values, index: state.current },
+      {
+        name: currentDesign(state).name || "current",
+        kind: "current",
+        values: currentDesign(state).values,
+        index: state.current,
+      },
       ...(state.ghost ? [{ name: "ghost", kind: "ghost" as const, values: state.ghost, index: -1 }] : []),
       ...state.designs.flatMap((design, index) =>
-        design.shown && index !== state.current ? [{ name: design.name, kind: "other" as const, values: design.values, index }] : []),
+        design.shown && index !== state.current
+          ? [{ name: design.name, kind: "other" as const, values: design.values, index }]
+          : [],
+      ),
     ];
-    const { end, found } = simulateAll(this.core, shown.map(({ values }) => values), null);
+    const { end, found } = simulateAll(
+      this.core,
+      shown.map(({ values }) => values),
+      null,
+    );
     return { lines: shown.map((line, i) => ({ ...line, result: found[i]! })), end };
   }
 
@@ -274,25 +323,59 @@ export class Page {
   // ---- the head of the page ------------------------------------------------------------------------
 
   private header(): HTMLElement {
-    const scheme = h("select", { id: "scheme", "aria-label": "colours" }, option("auto", "auto"), option("light", "light"), option("dark", "dark"));
+    const scheme = h(
+      "select",
+      { id: "scheme", "aria-label": "colours" },
+      option("auto", "auto"),
+      option("light", "light"),
+      option("dark", "dark"),
+    );
     scheme.addEventListener("change", () => {
       setScheme(scheme.value as Scheme);
       this.setLook();
     });
-    const save = h("select", { id: "save", "aria-label": "save as" }, option("", "Save as …"),
-      option("toml", "Device file (TOML)"), option("csv", "Samples (CSV)"), option("events", "Events (CSV)"),
-      option("svg", "Curves (SVG)"), option("png", "Curves (PNG)"), option("link", "Link to this state"));
+    const save = h(
+      "select",
+      { id: "save", "aria-label": "save as" },
+      option("", "Save as …"),
+      option("toml", "Device file (TOML)"),
+      option("csv", "Samples (CSV)"),
+      option("events", "Events (CSV)"),
+      option("svg", "Curves (SVG)"),
+      option("png", "Curves (PNG)"),
+      option("link", "Link to this state"),
+    );
     save.addEventListener("change", () => {
       void this.save(save.value);
       save.value = "";
     });
     return h(
-      "header", {},
-      h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); document.getElementById("main")!.scrollIntoView(); } }, "To the curves"),
+      "header",
+      {},
+      h(
+        "a",
+        {
+          class: "skip",
+          href: "#main",
+          onclick: (event: Event) => {
+            event.preventDefault();
+            document.getElementById("main")!.scrollIntoView();
+          },
+        },
+        "To the curves",
+      ),
       h("h1", {}, "pindrive studio"),
-      h("div", { class: "buttons" },
-        button("Open …", "A device file (TOML) or a recording (CSV)", () => choose(".toml,.csv,.txt", (file) => void this.takeFile(file))),
-        save, this.undo, this.redo, scheme),
+      h(
+        "div",
+        { class: "buttons" },
+        button("Open …", "A device file (TOML) or a recording (CSV)", () =>
+          choose(".toml,.csv,.txt", (file) => void this.takeFile(file)),
+        ),
+        save,
+        this.undo,
+        this.redo,
+        scheme,
+      ),
     );
   }
 
@@ -322,17 +405,26 @@ export class Page {
     const curves = currentCurves(this.view)!;
     const keep = curves.times.map((time, i) => (i > 0 && time === curves.times[i - 1] ? 0 : 1));
     const thin = (column: Float64Array): Float64Array => column.filter((_, i) => keep[i] === 1);
-    const columns = Object.fromEntries(Object.entries(curves.columns).map(([name, column]) => [name, thin(column)]));
+    const columns = Object.fromEntries(
+      Object.entries(curves.columns).map(([name, column]) => [name, thin(column)]),
+    );
     return { ...curves, times: thin(curves.times), columns };
   }
 }
 
 /** What the signs in the plots mean. */
 function legend(): HTMLElement {
-  const entry = (classes: string, words: string): HTMLElement => h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
-  return h("p", { class: "legend note" },
-    entry("swatch carried", "carried by the plate"), entry("swatch resting", "resting on the finger"), entry("swatch gripping", "gripped by skin"),
-    entry("mark stick plate", "sticks"), entry("mark slip plate", "breaks loose"), entry("mark cross plate", "reverses"),
-    h("span", {}, "filled at the plate, open at the finger"));
+  const entry = (classes: string, words: string): HTMLElement =>
+    h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
+  return h(
+    "p",
+    { class: "legend note" },
+    entry("swatch carried", "carried by the plate"),
+    entry("swatch resting", "at rest"),
+    entry("swatch gripping", "gripped by skin"),
+    entry("mark stick plate", "sticks"),
+    entry("mark slip plate", "breaks loose"),
+    entry("mark cross plate", "reverses"),
+    h("span", {}, "filled at the plate, open at the finger"),
+  );
 }
-

@@ -1,14 +1,19 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { problemOf, type Value, type Values } from "./checks";
-import { isRows, valueOf, withValue } from "./design";
+import { notSimulated, problemOf } from "./checks";
+import { isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
-import { h, symbol } from "./dom";
-import { partOf, rangeOf, valueAt, type Range } from "./range";
-import { DRIVE, TABLES, columnsOf, plausible, text, unitOf, type Quantity } from "./table";
+import { h, option, symbol } from "./dom";
+import type { Value, Values } from "./friction";
+import { byCoefficient, frictionKeys, frictionOf, givenFriction, withKind } from "./friction";
+import { partOf, type Range, rangeOf, valueAt } from "./range";
+import { columnsOf, DRIVE, plausible, type Quantity, TABLES, text, unitOf } from "./table";
 import { fieldText, written } from "./write";
 
 const GROUPS: readonly (readonly [string, string])[] = [
-  ["drive", "Drive"], ["plate", "Plate"], ["finger", "Finger"], ["motion", "Release"],
+  ["drive", "Drive"],
+  ["plate", "Plate"],
+  ["finger", "Finger"],
+  ["motion", "Release"],
 ];
 const STEPS = 1000;
 
@@ -27,8 +32,11 @@ export class Panel {
   constructor(private readonly change: Change) {
     for (const [table, title] of GROUPS) {
       const rows = [...DRIVE.values()]
-        .filter((quantity) => quantity.key.startsWith(`${table}.`))
-        .map((quantity) => (quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity)));
+        .filter(({ key }) => key.startsWith(`${table}.`) && !notSimulated(key, null))
+        .map((quantity) =>
+          quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity),
+        );
+      if (table in TABLES.pressedBy) rows.unshift(this.kind(table, title));
       this.controls.push(...rows);
       this.element.append(
         h("details", { open: true }, h("summary", {}, title), ...rows.map(({ element }) => element)),
@@ -45,23 +53,48 @@ export class Panel {
     this.change(withValue(this.values, key, value), kind);
   }
 
+  /** Whether friction is given by forces or by coefficients. */
+  private kind(contact: string, title: string): Control {
+    const select = h(
+      "select",
+      { id: `${contact}-kind`, "aria-label": `friction of the ${title.toLowerCase()} given as` },
+      option("force", "forces"),
+      option("coefficient", "coefficients"),
+    );
+    select.addEventListener("change", () =>
+      this.change(withKind(this.values, contact, select.value === "coefficient"), ""),
+    );
+    return {
+      element: h("label", { class: "kind", for: select.id }, "friction as", select),
+      update: (values) => (select.value = byCoefficient(values, contact) ? "coefficient" : "force"),
+    };
+  }
+
   /** A number, which may be left out unless it is mandatory, and may be rows where those exist. */
   private number(quantity: Quantity): Control {
     const { key } = quantity;
     const id = key.replace(".", "-");
     const unit = unitOf(quantity);
     const slider = h("input", {
-      type: "range", id: `${id}-slider`, min: 0, max: STEPS, step: 1,
+      type: "range",
+      id: `${id}-slider`,
+      min: 0,
+      max: STEPS,
+      step: 1,
       "aria-label": `${nameOf(quantity)}, ${quantity.meaning}`,
     });
     const field = h("input", {
-      type: "text", id, inputmode: "decimal", autocomplete: "off", spellcheck: "false",
+      type: "text",
+      id,
+      inputmode: "decimal",
+      autocomplete: "off",
+      spellcheck: "false",
       "aria-describedby": `${id}-note`,
     });
     const note = h("p", { class: "problem", id: `${id}-note`, role: "status" });
     const rows = quantity.rows ? rowsEditor(quantity, (value) => this.set(key, value, "")) : null;
     let range: Range = rangeOf(quantity, 0);
-    const optional = !quantity.mandatory && !partner(key);
+    const optional = !quantity.mandatory && !partner(key) && !PRESSED.includes(key);
     const given = optional
       ? h("input", { type: "checkbox", id: `${id}-given`, "aria-label": `give ${nameOf(quantity)}` })
       : null;
@@ -69,7 +102,12 @@ export class Panel {
     const type = (content: string): void => {
       try {
         const bare = /^[\s+\-−]?[\d.]+(e[+-]?\d+)?\s*$/i.test(content.trim());
-        const value = readNumber(bare && unit ? `${content.trim()} ${quantity.displayUnit}` : content.trim(), quantity, quantity.usual!, key);
+        const value = readNumber(
+          bare && unit ? `${content.trim()} ${quantity.displayUnit}` : content.trim(),
+          quantity,
+          quantity.usual!,
+          key,
+        );
         const problem = problemOf(withValue(this.values, key, value));
         note.textContent = problem;
         if (!problem) this.set(key, value, "");
@@ -91,16 +129,19 @@ export class Panel {
 
     const words = `${quantity.meaning}. ${quantity.bounds![1]!.words ?? quantity.bounds![0]!.words ?? ""}${quantity.remark ? `; ${quantity.remark}` : ""}.`;
     const element = h(
-      "div", { class: "parameter", title: words },
+      "div",
+      { class: "parameter", title: words },
       h("label", { for: id, class: "name" }, given, h("span", {}, nameOf(quantity)), symbol(quantity.symbol)),
       h("span", { class: "value" }, field, h("span", { class: "unit" }, unit)),
-      slider, rows?.element ?? null, note,
+      slider,
+      rows?.element ?? null,
+      note,
     );
     const update = (values: Values): void => {
       const own = values[key];
-      const value = valueOf(values, key);
+      const value = valueFor(values, key);
       const damping = partner(key);
-      element.hidden = damping !== null && own === undefined;
+      element.hidden = (damping !== null && own === undefined) || !meant(key, values);
       if (given) given.checked = own !== undefined;
       const constant = typeof value === "number";
       const enabled = own !== undefined || !optional;
@@ -117,7 +158,11 @@ export class Panel {
       if (document.activeElement !== slider) slider.value = String(Math.round(STEPS * partOf(range, value)));
       slider.setAttribute("aria-valuetext", text(quantity, value));
       const shown = fieldText(quantity, value);
-      if (field.value !== shown && (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true")) field.value = shown;
+      if (
+        field.value !== shown &&
+        (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true")
+      )
+        field.value = shown;
       if (!note.textContent || field.getAttribute("aria-invalid") !== "true") {
         note.textContent = plausible(quantity, value)
           ? ""
@@ -130,10 +175,9 @@ export class Panel {
   /** What holds usually, or what holds now. */
   private usual(quantity: Quantity): number {
     const [contact, name] = quantity.key.split(".") as [string, string];
-    const kinetic = this.values[`${contact}.kinetic`];
-    if (name === "static" && typeof kinetic === "number") return kinetic * 1.2;
-    const limit = this.values["finger.static"] ?? this.values["finger.kinetic"];
-    if (name === "skin_stretch" && typeof limit === "number") {
+    if (name.startsWith("static")) return givenFriction(this.values, contact).kinetic * 1.2;
+    if (name === "skin_stretch") {
+      const limit = frictionOf(this.values, "finger").still;
       return limit / 2 / ((this.values["finger.stiffness"] as number | undefined) ?? Infinity);
     }
     return quantity.default ?? quantity.example ?? quantity.absent ?? 0;
@@ -143,12 +187,29 @@ export class Panel {
     const { key } = quantity;
     const editor = rowsEditor(quantity, (value) => this.set(key, value, ""));
     const element = h(
-      "div", { class: "parameter", title: `${quantity.meaning}. ${quantity.remark ?? ""}` },
+      "div",
+      { class: "parameter", title: `${quantity.meaning}. ${quantity.remark ?? ""}` },
       h("span", { class: "name" }, h("span", {}, nameOf(quantity)), symbol(quantity.symbol)),
       editor.element,
     );
-    return { element, update: (values) => editor.update((values[key] as Value | undefined) ?? null, null) };
+    const update = (values: Values): void => {
+      element.hidden = !meant(key, values);
+      editor.update((values[key] as Value | undefined) ?? null, null);
+    };
+    return { element, update };
   }
+}
+
+/** What a contact whose friction is given by coefficients must have. */
+const PRESSED: readonly string[] = ["plate.coefficient", "finger.coefficient", "finger.touch_force"];
+
+/** Whether a key means something in the way in which the friction of its contact is given. */
+function meant(key: string, values: Values): boolean {
+  const contact = key.split(".")[0]!;
+  if (!(contact in TABLES.pressedBy)) return true;
+  const coefficients = byCoefficient(values, contact);
+  if (key in TABLES.pressedBy[contact]!) return coefficients || values[key] !== undefined;
+  return !frictionKeys(contact, !coefficients).includes(key);
 }
 
 function nameOf(quantity: Quantity): string {
@@ -164,25 +225,46 @@ function partner(key: string): string | null {
 function absentWords(key: string, values: Values): string {
   const name = key.split(".")[1]!;
   const words: Record<string, string> = {
-    static: "as kinetic", stiffness: "rigid", velocity: "plate's", skin_stretch: "none",
-    duration: "ending", kinetic: "of curve",
+    static: "as kinetic",
+    static_coefficient: "as coefficient",
+    stiffness: "rigid",
+    velocity: "plate's",
+    skin_stretch: "none",
+    duration: "ending",
+    kinetic: "of curve",
+    coefficient: "of curve",
   };
   const absent = DRIVE.get(key)!.absent;
-  return words[name] ?? (absent === undefined ? "" : text(DRIVE.get(key)!, absent)) ?? String(values[key] ?? "");
+  return (
+    words[name] ?? (absent === undefined ? "" : text(DRIVE.get(key)!, absent)) ?? String(values[key] ?? "")
+  );
 }
 
 /** Rows as lines of text: "0 mm/s, 22 mN". Empty: none. */
 function rowsEditor(
-  quantity: Quantity, set: (value: Value | null) => void,
+  quantity: Quantity,
+  set: (value: Value | null) => void,
 ): { element: HTMLElement; update: (value: Value | null, constant: number | null) => void } {
   const [across] = columnsOf(quantity);
   const heads = TABLES.columns[quantity.rowsOf!]!.map((name) => name.split(".").pop()!);
   const id = `${quantity.key.replace(".", "-")}-rows`;
-  const area = h("textarea", { id, rows: 3, spellcheck: "false", "aria-label": `${nameOf(quantity)}: rows of ${heads[0]} and ${quantity.name.split(".").pop()}, one in a line` });
+  const area = h("textarea", {
+    id,
+    rows: 3,
+    spellcheck: "false",
+    "aria-label": `${nameOf(quantity)}: rows of ${heads[0]} and ${quantity.name.split(".").pop()}, one in a line`,
+  });
   const note = h("p", { class: "problem", role: "status" });
   const apply = h("button", { type: "button" }, "Apply");
   const clear = h("button", { type: "button" }, "No rows");
-  const details = h("details", { class: "rows" }, h("summary", {}, "rows"), area, h("span", { class: "buttons" }, apply, clear), note);
+  const details = h(
+    "details",
+    { class: "rows" },
+    h("summary", {}, "rows"),
+    area,
+    h("span", { class: "buttons" }, apply, clear),
+    note,
+  );
   const example = quantity.rows!.map(([x, y]) => `${written(across, x)}, ${written(quantity, y)}`).join("\n");
   area.placeholder = example;
   let constant: number | null = null;
@@ -191,10 +273,16 @@ function rowsEditor(
       const lines = (area.value.trim() || example).split("\n").filter((row) => row.trim());
       const rows = lines.map((row, i) => {
         const cells = row.split(",");
-        if (cells.length !== 2) throw new Error(`row ${i} must be two values with a comma between, got ${JSON.stringify(row)}`);
+        if (cells.length !== 2)
+          throw new Error(`row ${i} must be two values with a comma between, got ${JSON.stringify(row)}`);
         return [
           readNumber(cells[0]!.trim(), across, across.usual!, `row ${i} ${heads[0]}`),
-          readNumber(asUnitless(cells[1]!.trim(), quantity), quantity, quantity.usual!, `row ${i} ${heads[1]}`),
+          readNumber(
+            asUnitless(cells[1]!.trim(), quantity),
+            quantity,
+            quantity.usual!,
+            `row ${i} ${heads[1]}`,
+          ),
         ] as const;
       });
       note.textContent = "";
@@ -211,7 +299,9 @@ function rowsEditor(
     element: details,
     update: (value, now) => {
       constant = now;
-      const shown = isRows(value) ? value.map(([x, y]) => `${written(across, x)}, ${written(quantity, y)}`).join("\n") : "";
+      const shown = isRows(value)
+        ? value.map(([x, y]) => `${written(across, x)}, ${written(quantity, y)}`).join("\n")
+        : "";
       if (document.activeElement !== area) area.value = shown;
       clear.disabled = !isRows(value);
     },

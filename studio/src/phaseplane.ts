@@ -39,7 +39,18 @@ export class PhasePlane {
     });
     if (!lines.length) return;
     const speed = plateVelocity(view.lines[0]!.values, view.state.cursor);
-    const [xs, ys] = [bounds(lines.map(({ x }) => x), 0, 1e3), bounds(lines.map(({ y }) => y), speed, 1e3)];
+    const [xs, ys] = [
+      bounds(
+        lines.map(({ x }) => x),
+        0,
+        1e3,
+      ),
+      bounds(
+        lines.map(({ y }) => y),
+        speed,
+        1e3,
+      ),
+    ];
     const toX = (x: number): number => LEFT + ((x - xs[0]) / (xs[1] - xs[0])) * (canvas.width - LEFT - RIGHT);
     const toY = (y: number): number => TOP + ((ys[1] - y) / (ys[1] - ys[0])) * (canvas.height - TOP - BOTTOM);
     context.lineWidth = 1;
@@ -48,13 +59,19 @@ export class PhasePlane {
     context.textAlign = "center";
     context.textBaseline = "top";
     for (const tick of ticks(...xs, Math.max(3, canvas.width / 90))) {
-      line(context, [[toX(tick), TOP], [toX(tick), canvas.height - BOTTOM]]);
+      line(context, [
+        [toX(tick), TOP],
+        [toX(tick), canvas.height - BOTTOM],
+      ]);
       context.fillText(tickText(tick), toX(tick), canvas.height - BOTTOM + 4);
     }
     context.textAlign = "right";
     context.textBaseline = "middle";
     for (const tick of ticks(...ys, Math.max(3, canvas.height / 50))) {
-      line(context, [[LEFT, toY(tick)], [canvas.width - RIGHT, toY(tick)]]);
+      line(context, [
+        [LEFT, toY(tick)],
+        [canvas.width - RIGHT, toY(tick)],
+      ]);
       context.fillText(tickText(tick), LEFT - 5, toY(tick));
     }
     context.textAlign = "center";
@@ -67,7 +84,10 @@ export class PhasePlane {
 
     context.strokeStyle = look.muted;
     context.setLineDash([3, 3]);
-    line(context, [[LEFT, toY(1e3 * speed)], [canvas.width - RIGHT, toY(1e3 * speed)]]);
+    line(context, [
+      [LEFT, toY(1e3 * speed)],
+      [canvas.width - RIGHT, toY(1e3 * speed)],
+    ]);
     context.fillStyle = look.muted;
     context.textAlign = "right";
     context.textBaseline = "bottom";
@@ -101,7 +121,9 @@ export class PhasePlane {
       context.fill();
       context.stroke();
     }
-    const [x, v] = (["position", "velocity"] as const).map((name) => columnAt(curves, name, view.state.cursor)) as [number, number];
+    const [x, v] = (["position", "velocity"] as const).map((name) =>
+      columnAt(curves, name, view.state.cursor),
+    ) as [number, number];
     context.beginPath();
     context.arc(toX(1e3 * x), toY(1e3 * v), 5, 0, 2 * Math.PI);
     context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;
@@ -124,14 +146,26 @@ function bounds(columns: readonly Float64Array[], also: number, scale: number): 
   return [(lower - margin) * scale, (upper + margin) * scale];
 }
 
-export function path(context: CanvasRenderingContext2D, points: readonly (readonly [number, number])[]): void {
+export function path(
+  context: CanvasRenderingContext2D,
+  points: readonly (readonly [number, number])[],
+): void {
   context.beginPath();
-  points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+  points.forEach(([x, y], i) => {
+    if (i) context.lineTo(x, y);
+    else context.moveTo(x, y);
+  });
   context.closePath();
 }
 
-export function line(context: CanvasRenderingContext2D, points: readonly (readonly [number, number])[]): void {
+export function line(
+  context: CanvasRenderingContext2D,
+  points: readonly (readonly [number, number])[],
+): void {
   context.beginPath();
-  points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+  points.forEach(([x, y], i) => {
+    if (i) context.lineTo(x, y);
+    else context.moveTo(x, y);
+  });
   context.stroke();
 }

@@ -6,10 +6,27 @@ import type { View } from "./view";
 
 export class Player {
   readonly element: HTMLElement;
-  private readonly slider = h("input", { type: "range", id: "cursor", min: 0, max: 1000, step: "any", "aria-label": "time of the cursor" });
+  private readonly slider = h("input", {
+    type: "range",
+    id: "cursor",
+    min: 0,
+    max: 1000,
+    step: "any",
+    "aria-label": "time of the cursor",
+  });
   private readonly play = button("Play", "Slow motion (space bar)", () => this.toggle());
-  private readonly listen = button("Listen", "Hear the motion: pitch is position, loudness is speed, a click is an event", () => this.hear());
-  private readonly speed = h("select", { "aria-label": "speed" }, option("5", "1/5"), option("20", "1/20", true), option("100", "1/100"));
+  private readonly listen = button(
+    "Listen",
+    "Hear the motion: pitch is position, loudness is speed, a click is an event",
+    () => this.hear(),
+  );
+  private readonly speed = h(
+    "select",
+    { "aria-label": "speed" },
+    option("5", "1/5"),
+    option("20", "1/20", true),
+    option("100", "1/100"),
+  );
   private readonly clock = h("output", { for: "cursor" });
   private readonly sound = new Sound();
   private running = 0;
@@ -27,7 +44,8 @@ export class Player {
   update(view: View): void {
     this.end = view.end;
     this.time = view.state.cursor;
-    if (document.activeElement !== this.slider || this.running) this.slider.value = String((1000 * this.time) / this.end);
+    if (document.activeElement !== this.slider || this.running)
+      this.slider.value = String((1000 * this.time) / this.end);
     const words = `${(1e3 * this.time).toFixed(2)} ms`;
     this.clock.textContent = words;
     this.slider.setAttribute("aria-valuetext", words);

@@ -62,8 +62,8 @@ export function stringRepr(value: string): string {
   const quote = value.includes("'") && !value.includes('"') ? '"' : "'";
   const inside = [...value].map((c) => {
     if (c === "\\" || c === quote) return `\\${c}`;
-    const escape = { "\n": "\\n", "\t": "\\t", "\r": "\\r" }[c];
-    if (escape) return escape;
+    const escaped = { "\n": "\\n", "\t": "\\t", "\r": "\\r" }[c];
+    if (escaped) return escaped;
     const code = c.codePointAt(0)!;
     return code < 0x20 || code === 0x7f ? `\\x${code.toString(16).padStart(2, "0")}` : c;
   });
@@ -119,6 +119,7 @@ function matching(a: string, b: string): number {
     lengths = next;
   }
   if (!size) return 0;
-  return size + matching(a.slice(0, atA), b.slice(0, atB)) +
-    matching(a.slice(atA + size), b.slice(atB + size));
+  return (
+    size + matching(a.slice(0, atA), b.slice(0, atB)) + matching(a.slice(atA + size), b.slice(atB + size))
+  );
 }

@@ -15,8 +15,10 @@ const SPREAD = 10; // from a tenth of the usual value to ten times it
 /** About the usual value, wide enough for the one that is given. */
 export function rangeOf(quantity: Quantity, value: number): Range {
   const [bounds, limits] = quantity.bounds!;
-  const usual = Math.abs(quantity.default ?? quantity.example ?? quantity.absent ?? 0) ||
-    Math.abs(quantity.rows?.[0]?.[1] ?? 0) || 1 / quantity.displayScale;
+  const usual =
+    Math.abs(quantity.default ?? quantity.example ?? quantity.absent ?? 0) ||
+    Math.abs(quantity.rows?.[0]?.[1] ?? 0) ||
+    1 / quantity.displayScale;
   if (bounds!.lower === undefined) {
     let reach = 5 * usual;
     while (reach < Math.abs(value)) reach *= 10;

@@ -1,7 +1,7 @@
 // A recording of a release: a CSV whose header names columns with their units, in SI.
 import { quoted, repr } from "./python";
 import { TABLES } from "./table";
-import { UnitError, toSi } from "./units";
+import { toSi, UnitError } from "./units";
 
 export const CHANNELS = {
   position: ["m", "mm"],
@@ -50,7 +50,7 @@ export function readRecording(text: string, file: string): Recording {
   headings.forEach((heading, index) => {
     const match = /^\s*([^[(]*?)\s*[[(]([^\])]*)[\])]\s*$/.exec(heading);
     const name = (match?.[1] ?? heading).trim().toLowerCase();
-    columns.set(name, [...(columns.get(name) ?? []), { index, unit: match?.[2]!.trim() ?? null }]);
+    columns.set(name, [...(columns.get(name) ?? []), { index, unit: match?.[2]?.trim() ?? null }]);
   });
   const names = Object.keys(CHANNELS) as Channel[];
   if (!columns.has("t") || !names.some((name) => columns.has(name))) {

@@ -1,9 +1,10 @@
 // The numbers of the motion beside those it is compared with, its events, and bars of derivatives.
-import type { Values } from "./checks";
-import { CoreError, type Core } from "./core";
+
+import { type Core, CoreError } from "./core";
 import { coreInput, direction, settlingBand, variedKeys } from "./design";
 import { h, refill } from "./dom";
-import { DRIVE, NUMBERS, TABLES, digits, label, text, unitOf, type Quantity } from "./table";
+import type { Values } from "./friction";
+import { DRIVE, digits, label, NUMBERS, type Quantity, TABLES, text, unitOf } from "./table";
 import { currentCurves, curvesOf, type View } from "./view";
 
 const ENDINGS: Readonly<Record<string, string>> = {
@@ -27,7 +28,8 @@ export function sentence(view: View, statusText: (status: number) => string): st
   const parts = [`Ending: ${ENDINGS[curves.end]}`];
   if (curves.end === "resting") parts[0] += ` at ${of("ending.position")}`;
   if (Number.isFinite(curves.numbers["ending.period"]!)) parts.push(`period ${of("ending.period")}`);
-  if (Number.isFinite(curves.numbers["transient.settling_time"]!)) parts.push(`settled after ${of("transient.settling_time")}`);
+  if (Number.isFinite(curves.numbers["transient.settling_time"]!))
+    parts.push(`settled after ${of("transient.settling_time")}`);
   const count = curves.events.length;
   parts.push(`${count} event${count === 1 ? "" : "s"}`);
   if (curves.status) parts.push(statusText(curves.status));
@@ -35,14 +37,24 @@ export function sentence(view: View, statusText: (status: number) => string): st
 }
 
 export class NumbersTable {
-  readonly element = h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": "table of numbers" });
+  readonly element = h("div", {
+    class: "scroll",
+    tabindex: 0,
+    role: "group",
+    "aria-label": "table of numbers",
+  });
 
   constructor(private readonly choose: (name: string) => void) {}
 
   update(view: View): void {
     const lines = view.lines.filter((line) => curvesOf(line));
-    const head = h("tr", {}, h("th", { scope: "col" }, "number"), h("th", { scope: "col" }, "unit"),
-      ...lines.map((line) => h("th", { scope: "col", class: "figure" }, line.name)));
+    const head = h(
+      "tr",
+      {},
+      h("th", { scope: "col" }, "number"),
+      h("th", { scope: "col" }, "unit"),
+      ...lines.map((line) => h("th", { scope: "col", class: "figure" }, line.name)),
+    );
     const rows: Node[] = [];
     let group = "";
     for (const quantity of NUMBERS.values()) {
@@ -51,18 +63,35 @@ export class NumbersTable {
       if (values.every((value) => value === undefined || Number.isNaN(value))) continue;
       if (kind !== group) {
         group = kind;
-        rows.push(h("tr", { class: "group" }, h("th", { colspan: 2 + lines.length, scope: "colgroup" }, kind)));
+        rows.push(
+          h("tr", { class: "group" }, h("th", { colspan: 2 + lines.length, scope: "colgroup" }, kind)),
+        );
       }
       const chosen = quantity.name === view.state.number;
       const chooses = kind === "transient" || kind === "ending";
       const name = chooses
-        ? h("button", { type: "button", class: "link", "aria-pressed": chosen, onclick: () => this.choose(quantity.name) }, label(quantity))
+        ? h(
+            "button",
+            {
+              type: "button",
+              class: "link",
+              "aria-pressed": chosen,
+              onclick: () => this.choose(quantity.name),
+            },
+            label(quantity),
+          )
         : label(quantity).replace(/^(energy|certificate) /, "");
-      rows.push(h(
-        "tr", { title: quantity.meaning, class: chosen ? "chosen" : undefined },
-        h("th", { scope: "row" }, name), h("td", { class: "unit" }, unitOf(quantity)),
-        ...values.map((value) => h("td", { class: "figure" }, value === undefined ? "" : digits(value * quantity.displayScale))),
-      ));
+      rows.push(
+        h(
+          "tr",
+          { title: quantity.meaning, class: chosen ? "chosen" : undefined },
+          h("th", { scope: "row" }, name),
+          h("td", { class: "unit" }, unitOf(quantity)),
+          ...values.map((value) =>
+            h("td", { class: "figure" }, value === undefined ? "" : digits(value * quantity.displayScale)),
+          ),
+        ),
+      );
     }
     refill(this.element, [h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows))]);
   }
@@ -78,7 +107,12 @@ function valueIn(curves: NonNullable<ReturnType<typeof curvesOf>>, quantity: Qua
 
 /** Which event follows which; a click puts the cursor there. */
 export class EventsTable {
-  readonly element = h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": "list of events" });
+  readonly element = h("div", {
+    class: "scroll",
+    tabindex: 0,
+    role: "group",
+    "aria-label": "list of events",
+  });
 
   constructor(private readonly goTo: (time: number) => void) {}
 
@@ -92,10 +126,24 @@ export class EventsTable {
       const since = time - before;
       before = time;
       return h(
-        "tr", {},
-        h("td", { class: "figure" }, h("button", { type: "button", class: "link", onclick: () => this.goTo(time) }, digits(1e3 * time, 5))),
+        "tr",
+        {},
+        h(
+          "td",
+          { class: "figure" },
+          h(
+            "button",
+            { type: "button", class: "link", onclick: () => this.goTo(time) },
+            digits(1e3 * time, 5),
+          ),
+        ),
         h("td", { class: "figure" }, digits(1e3 * since)),
-        h("td", { class: "event" }, h("span", { class: `mark ${kind} ${contact}`, "aria-hidden": "true" }), TABLES.events[kind]![contact]!),
+        h(
+          "td",
+          { class: "event" },
+          h("span", { class: `mark ${kind} ${contact}`, "aria-hidden": "true" }),
+          TABLES.events[kind]![contact]!,
+        ),
         h("td", { class: "figure" }, digits(1e3 * position)),
         h("td", { class: "figure" }, digits(Math.abs(velocity) < 1e-12 * fastest ? 0 : 1e3 * velocity)),
       );
@@ -103,7 +151,12 @@ export class EventsTable {
     const head = ["t, ms", "since, ms", "what happens", "x, mm", "x′, mm/s"];
     refill(this.element, [
       events.length
-        ? h("table", {}, h("thead", {}, h("tr", {}, ...head.map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows))
+        ? h(
+            "table",
+            {},
+            h("thead", {}, h("tr", {}, ...head.map((name) => h("th", { scope: "col" }, name)))),
+            h("tbody", {}, ...rows),
+          )
         : h("p", { class: "note" }, "No event: the contacts do not change."),
     ]);
   }
@@ -145,7 +198,8 @@ export class Bars {
       bar.style.width = `${(50 * part).toFixed(2)}%`;
       const relative = value ? ` (${signed(100 * (change / value))} %)` : "";
       return h(
-        "tr", { title: DRIVE.get(key)!.meaning },
+        "tr",
+        { title: DRIVE.get(key)!.meaning },
         h("th", { scope: "row" }, nameOf(key)),
         h("td", { class: "track" }, h("span", { class: "axis", "aria-hidden": "true" }), bar),
         h("td", { class: "figure" }, `${signed(change * number.displayScale)} ${unitOf(number)}${relative}`),
@@ -153,14 +207,26 @@ export class Bars {
     });
     refill(this.element, [
       rows.length
-        ? h("table", {}, h("caption", { class: "note" }, `What 1 % more of each parameter does to the ${label(number)}, to first order`), h("tbody", {}, ...rows))
+        ? h(
+            "table",
+            {},
+            h(
+              "caption",
+              { class: "note" },
+              `What 1 % more of each parameter does to the ${label(number)}, to first order`,
+            ),
+            h("tbody", {}, ...rows),
+          )
         : h("p", { class: "note" }, "No parameter differs from 0."),
     ]);
   }
 }
 
 export function nameOf(key: string): string {
-  return key.replace(/^(drive|motion)\./, "").replaceAll("_", " ").replace(".", " ");
+  return key
+    .replace(/^(drive|motion)\./, "")
+    .replaceAll("_", " ")
+    .replace(".", " ");
 }
 
 function signed(value: number): string {

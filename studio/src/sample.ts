@@ -1,7 +1,9 @@
 // What the plots show of motions: columns at common times, with both limits at each event.
-import type { Values } from "./checks";
-import { CoreError, type Core, type Motion, type QuantityName, type Transition } from "./core";
-import { coreInput, settlingBand, valueOf } from "./design";
+
+import { problemOf } from "./checks";
+import { type Core, CoreError, type Motion, type QuantityName, type Transition } from "./core";
+import { coreInput, plateVelocity, settlingBand, valueFor } from "./design";
+import type { Values } from "./friction";
 
 export type EventKind = Exclude<Transition, "none">;
 export type ContactName = "plate" | "finger" | "both";
@@ -50,7 +52,10 @@ interface Made {
 
 /** Motions of several designs over one window: as long as the longest of them, unless given. */
 export function simulateAll(
-  core: Core, designs: readonly Values[], windowEnd: number | null, samples = SAMPLES,
+  core: Core,
+  designs: readonly Values[],
+  windowEnd: number | null,
+  samples = SAMPLES,
 ): { end: number; found: Simulated[] } {
   const made = designs.map((values): Made | string => {
     try {
@@ -64,8 +69,8 @@ export function simulateAll(
   try {
     const end = windowEnd ?? good.reduce((most, { duration }) => Math.max(most, duration), 1e-3);
     const grid = commonTimes(good, end, samples);
-    const found = made.map((one): Simulated =>
-      typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) },
+    const found = made.map(
+      (one): Simulated => (typeof one === "string" ? { problem: one } : { curves: sampled(one, grid, end) }),
     );
     return { end, found };
   } finally {
@@ -74,8 +79,10 @@ export function simulateAll(
 }
 
 function begin(core: Core, values: Values): Made {
+  const problem = problemOf(values);
+  if (problem) throw new CoreError(problem);
   const motion = core.simulate(coreInput(values));
-  const given = valueOf(values, "motion.duration");
+  const given = valueFor(values, "motion.duration");
   const known = motion.outcome.knownUntil;
   const long = typeof given === "number" ? given : motion.duration(settlingBand(values));
   const duration = Math.min(long, known);
@@ -126,14 +133,16 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
     const column = new Float64Array(grid.times.length).fill(NaN);
     column.set(motion.evaluate(name, asked));
     const limits = motion.evaluate(name, before, "left");
-    left.forEach((index, i) => (column[index] = limits[i]!));
+    left.forEach((index, i) => {
+      column[index] = limits[i]!;
+    });
     columns[name] = column;
   }
   return {
     times: grid.times,
     columns,
     events: events.filter(({ time }) => time <= end),
-    phases: phasesOf(motion, Math.min(end, knownUntil)),
+    phases: phasesOf(motion, values, Math.min(end, knownUntil)),
     numbers: motion.numbers(duration, settlingBand(values)),
     energy: motion.energy(duration),
     certificate: motion.certificate(duration),
@@ -144,8 +153,8 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
   };
 }
 
-/** When the plate carries the pin, when it rests on the finger, when skin grips it. */
-function phasesOf(motion: Motion, end: number): Phase[] {
+/** When the plate carries the pin, when it is at rest, on the finger or a plate that stands, when skin grips it. */
+function phasesOf(motion: Motion, values: Values, end: number): Phase[] {
   const { cycleBegin, simulated } = motion.outcome;
   const found: Phase[] = [];
   const add = (kind: PhaseKind, begin: number, until: number): void => {
@@ -153,15 +162,19 @@ function phasesOf(motion: Motion, end: number): Phase[] {
     if (last && last.end === begin) found[found.indexOf(last)] = { ...last, end: until };
     else found.push({ kind, begin, end: until });
   };
-  const segments = motion.segments(end);
+  const segments = motion.segments(end).map((segment) => {
+    const times = [segment.begin, segment.begin + Math.min(segment.end - segment.begin, 1) / 2];
+    return { ...segment, stands: times.every((time) => plateVelocity(values, time) === 0) };
+  });
   const round = simulated - cycleBegin;
   for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
     for (const segment of segments) {
       if (rounds > 0 && segment.begin < cycleBegin) continue;
       const [begin, until] = [segment.begin + shift, Math.min(segment.end + shift, end)];
       if (begin >= end || until <= begin) continue;
-      if (segment.plate === "sticks") add("carried", begin, until);
-      if (segment.finger === "sticks") add("resting", begin, until);
+      const rests = segment.finger === "sticks" || (segment.plate === "sticks" && segment.stands);
+      if (rests) add("resting", begin, until);
+      else if (segment.plate === "sticks") add("carried", begin, until);
       if (segment.finger === "grips") add("gripping", begin, until);
     }
     if (!(round > 0) || simulated + shift >= end) break;

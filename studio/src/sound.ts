@@ -1,5 +1,5 @@
 // The motion as sound, slowed down: pitch is position, loudness is speed, a click is an event.
-import { columnAt, type Curves } from "./sample";
+import { type Curves, columnAt } from "./sample";
 
 const LASTS = 3; // s
 const POINTS = 600;
@@ -15,7 +15,8 @@ export class Sound {
       this.playing.stop();
       return false;
     }
-    const context = (this.context ??= new AudioContext());
+    this.context ??= new AudioContext();
+    const { context } = this;
     const times = Array.from({ length: POINTS }, (_, i) => (i * end) / (POINTS - 1));
     const along = (name: "position" | "velocity"): number[] =>
       times.map((time) => columnAt(curves, name, time) || 0);

@@ -1,7 +1,8 @@
 // The state of the page, its history, and the link that holds it whole.
-import type { Values } from "./checks";
+
 import type { Design } from "./design";
 import { readDevice } from "./device";
+import type { Values } from "./friction";
 import { TABLES } from "./table";
 
 /** A limit that a number must keep, SI. */
@@ -121,10 +122,9 @@ export async function fromHash(hash: string): Promise<State | null> {
 }
 
 export async function piped(
-  bytes: Uint8Array, through: CompressionStream | DecompressionStream,
+  bytes: Uint8Array,
+  through: CompressionStream | DecompressionStream,
 ): Promise<Uint8Array> {
   const stream = new Blob([bytes as BlobPart]).stream().pipeThrough(through);
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
-
-

@@ -31,7 +31,7 @@ export interface Quantity {
   readonly mandatory?: boolean;
   readonly alternative?: readonly string[];
   readonly follows?: readonly string[];
-  readonly rowsOf?: "curve" | "profile" | "places";
+  readonly rowsOf?: "curve" | "coefficient_curve" | "profile" | "places";
   readonly rows?: Rows;
   readonly mayBeConstant?: boolean;
   readonly usual?: string;
@@ -51,6 +51,21 @@ interface Tables {
   readonly tables: readonly string[];
   readonly alone: readonly string[];
   readonly around: readonly string[];
+  /** What the slopes between the rows of a curve are. */
+  readonly slopes: Readonly<Record<string, string>>;
+  /** The coefficient by which a friction force may be given instead, by key. */
+  readonly coefficients: Readonly<Record<string, string>>;
+  /** What presses on each contact: keys, and how much each one does. */
+  readonly pressedBy: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  /** What a release has over time, by name; which of that may have no steps, by key. */
+  readonly overTime: readonly string[];
+  readonly continuous: readonly string[];
+  /** How a coil is made; what it must say, with its meaning; what says what a magnet does instead. */
+  readonly coil: readonly string[];
+  readonly coilNeeds: Readonly<Record<string, string>>;
+  readonly magnet: readonly string[];
+  /** How many pins an array may have, and what a message calls them. */
+  readonly pins: readonly [number, string];
   readonly studyKeys: readonly string[];
   readonly inputRows: number;
   readonly units: {
@@ -91,8 +106,9 @@ function within(value: number, of: Bounds): boolean {
   const upper = of.upper ?? Infinity;
   const above = value > lower || (of.lowerClosed === true && value === lower);
   const below = value < upper || (of.upperClosed === true && value === upper);
-  return (above && below) || (of.infinite === true && value === Infinity) ||
-    (of.zero === true && value === 0);
+  return (
+    (above && below) || (of.infinite === true && value === Infinity) || (of.zero === true && value === 0)
+  );
 }
 
 /** What a value (SI) must be, if it is not: "finite and greater than 0 kg"; else empty. */

@@ -39,7 +39,8 @@ export function currentLook(): Look {
   const style = getComputedStyle(document.documentElement);
   const own = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   const { palette, curves } = TABLES;
-  const shade = (color: string): string => (dark ? lightened(color, color === "#000000" ? 0.85 : 0.35) : color);
+  const shade = (color: string): string =>
+    dark ? lightened(color, color === "#000000" ? 0.85 : 0.35) : color;
   return {
     dark,
     font: `${Math.round(0.86 * parseFloat(style.fontSize))}px system-ui, sans-serif`,
@@ -61,8 +62,15 @@ export function currentLook(): Look {
 
 /** Viridis by its stops: lightness grows evenly, for every kind of colour vision. */
 const VIRIDIS = [
-  [68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
-  [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37],
+  [68, 1, 84],
+  [71, 44, 122],
+  [59, 81, 139],
+  [44, 113, 142],
+  [33, 144, 141],
+  [39, 173, 129],
+  [92, 200, 99],
+  [170, 220, 50],
+  [253, 231, 37],
 ] as const;
 
 export function mapColor(part: number): readonly [number, number, number] {

@@ -15,9 +15,7 @@ export class TomlDate {
 export class TomlError extends Error {}
 
 export function isTable(value: unknown): value is TomlTable {
-  return (
-    typeof value === "object" && value !== null && !Array.isArray(value) && !(value instanceof TomlDate)
-  );
+  return typeof value === "object" && value !== null && !Array.isArray(value) && !(value instanceof TomlDate);
 }
 
 export function parseToml(text: string): TomlTable {
@@ -25,9 +23,9 @@ export function parseToml(text: string): TomlTable {
 }
 
 const BARE_KEY = /[A-Za-z0-9_-]/;
-// eslint-disable-next-line no-control-regex
+// biome-ignore lint/suspicious/noControlCharactersInRegex: TOML refuses them
 const CONTROL = /[\u0000-\u0008\u000a-\u001f\u007f]/;
-// eslint-disable-next-line no-control-regex
+// biome-ignore lint/suspicious/noControlCharactersInRegex: TOML refuses them
 const CONTROL_BUT_NEWLINE = /[\u0000-\u0008\u000b-\u001f\u007f]/;
 const DATE =
   /(?:\d{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12]\d|3[01])(?:[Tt ]\d{2}:\d{2}:\d{2}(?:\.\d+)?(?:[Zz]|[+-]\d{2}:\d{2})?)?|\d{2}:\d{2}:\d{2}(?:\.\d+)?)/y;
@@ -35,7 +33,13 @@ const NUMBER =
   /(?:0(?:x[\da-fA-F](?:_?[\da-fA-F])*|b[01](?:_?[01])*|o[0-7](?:_?[0-7])*)|[+-]?(?:0|[1-9](?:_?\d)*)(?:\.\d(?:_?\d)*)?(?:[eE][+-]?\d(?:_?\d)*)?)/y;
 const SPECIAL = /[+-]?(?:inf|nan)/y;
 const ESCAPES: Readonly<Record<string, string>> = {
-  b: "\b", t: "\t", n: "\n", f: "\f", r: "\r", '"': '"', "\\": "\\",
+  b: "\b",
+  t: "\t",
+  n: "\n",
+  f: "\f",
+  r: "\r",
+  '"': '"',
+  "\\": "\\",
 };
 
 /** What may no longer be changed, by where it stands. */
@@ -48,7 +52,10 @@ class Marks {
     let here: Marks = this;
     for (const name of key) {
       let next = here.nested.get(name);
-      if (!next) here.nested.set(name, (next = new Marks()));
+      if (!next) {
+        next = new Marks();
+        here.nested.set(name, next);
+      }
       here = next;
     }
     return here;
@@ -154,7 +161,8 @@ class Parser {
     const parent = this.nest(this.root, many ? key.slice(0, -1) : key);
     if (many) {
       const name = key[key.length - 1]!;
-      const list = parent[name] ?? (parent[name] = []);
+      parent[name] ??= [];
+      const list = parent[name];
       if (!Array.isArray(list)) throw this.error("Cannot overwrite a value");
       list.push(Object.create(null) as TomlTable);
     }
@@ -193,7 +201,8 @@ class Parser {
     let here: TomlValue = from;
     for (const name of key) {
       const table: TomlTable = here as TomlTable;
-      let next: TomlValue | undefined = table[name] ?? (table[name] = Object.create(null) as TomlTable);
+      table[name] ??= Object.create(null) as TomlTable;
+      let next: TomlValue | undefined = table[name];
       if (throughLists && Array.isArray(next)) next = next[next.length - 1];
       if (!isTable(next)) throw this.error("Cannot overwrite a value");
       here = next;
@@ -236,7 +245,10 @@ class Parser {
     const char = text[this.at];
     if (char === '"') return text.startsWith('"""', this.at) ? this.multiline('"') : this.basic();
     if (char === "'") return text.startsWith("'''", this.at) ? this.multiline("'") : this.literal();
-    for (const [word, value] of [["true", true], ["false", false]] as const) {
+    for (const [word, value] of [
+      ["true", true],
+      ["false", false],
+    ] as const) {
       if (text.startsWith(word, this.at)) {
         this.at += word.length;
         return value;

@@ -15,7 +15,7 @@ interface Unit {
   readonly dimension: ReadonlyMap<string, number>;
 }
 
-const NUMBER_AND_UNIT = /^\s*([+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))([^]*)$/i;
+const NUMBER_AND_UNIT = /^\s*([+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))(.*)$/is;
 const DECIMAL_COMMA = /^\s*[+-]?\d*,\d+(?![\d,])/;
 const ONE: Fraction = { over: 1n, under: 1n };
 const PLAIN: Readonly<Record<string, string>> = { "·": "*", "⋅": "*", "×": "*", "−": "-", "²": "^2" };

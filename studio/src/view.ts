@@ -1,5 +1,5 @@
 // What the page shows at one time: the state, and what was computed of it.
-import type { Values } from "./checks";
+import type { Values } from "./friction";
 import type { Recording } from "./recording";
 import type { ContactName, Curves, EventKind, Simulated } from "./sample";
 import { currentDesign, type State } from "./state";
@@ -41,14 +41,33 @@ export function currentValues(view: View): Values {
 }
 
 /** The shape of an event: a square sticks, a triangle breaks loose, a diamond reverses. */
-export function eventPath(kind: EventKind, x: number, y: number, size: number): readonly (readonly [number, number])[] {
+export function eventPath(
+  kind: EventKind,
+  x: number,
+  y: number,
+  size: number,
+): readonly (readonly [number, number])[] {
   if (kind === "stick") {
-    return [[x - size, y - size], [x + size, y - size], [x + size, y + size], [x - size, y + size]];
+    return [
+      [x - size, y - size],
+      [x + size, y - size],
+      [x + size, y + size],
+      [x - size, y + size],
+    ];
   }
   if (kind === "slip") {
-    return [[x, y - 1.25 * size], [x + 1.15 * size, y + 0.85 * size], [x - 1.15 * size, y + 0.85 * size]];
+    return [
+      [x, y - 1.25 * size],
+      [x + 1.15 * size, y + 0.85 * size],
+      [x - 1.15 * size, y + 0.85 * size],
+    ];
   }
-  return [[x, y - 1.35 * size], [x + 1.35 * size, y], [x, y + 1.35 * size], [x - 1.35 * size, y]];
+  return [
+    [x, y - 1.35 * size],
+    [x + 1.35 * size, y],
+    [x, y + 1.35 * size],
+    [x - 1.35 * size, y],
+  ];
 }
 
 /** Filled at the plate, open at the finger. */

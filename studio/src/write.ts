@@ -1,9 +1,10 @@
 // What the page writes: device files (TOML), samples and events (CSV).
-import { isRows, type Design } from "./design";
-import { floatRepr, general } from "./python";
+
 import type { QuantityName } from "./core";
+import { type Design, isRows } from "./design";
+import { floatRepr, general } from "./python";
 import type { Curves } from "./sample";
-import { DRIVE, SERIES, TABLES, columnsOf, type Quantity } from "./table";
+import { columnsOf, DRIVE, type Quantity, SERIES, TABLES } from "./table";
 import { TomlDate, type TomlTable, type TomlValue } from "./toml";
 import { toSi } from "./units";
 
@@ -32,7 +33,8 @@ export function deviceFile(design: Design): string {
     const value = design.values[key];
     if (value === undefined) continue;
     const [own, name] = key.split(".") as [string, string];
-    if (own !== table) lines.push("", `[${(table = own)}]`);
+    if (own !== table) lines.push("", `[${own}]`);
+    table = own;
     lines.push(`# ${quantity.symbol}: ${quantity.meaning}`);
     lines.push(`${name} = ${isRows(value) ? rowsText(quantity, value) : valueText(quantity, value)}`);
   }
@@ -68,7 +70,9 @@ export function samplesCsv(curves: Curves): string {
   const names = [...SERIES.keys()].filter((name) => name === "time" || curves.columns[name as QuantityName]);
   const head = names.map((name) => `${name === "time" ? "t" : name} [${SERIES.get(name)!.unit}]`).join(",");
   const rows = Array.from(curves.times, (time, i) =>
-    names.map((name) => floatRepr(name === "time" ? time : curves.columns[name as QuantityName]![i]!)).join(","),
+    names
+      .map((name) => floatRepr(name === "time" ? time : curves.columns[name as QuantityName]![i]!))
+      .join(","),
   );
   return `${[head, ...rows].join("\r\n")}\r\n`;
 }

@@ -215,7 +215,7 @@ static void mistakes(void) {
     refuses(pindrive_drive_set_curve(drive, "thumb", speeds, forces, 2), PINDRIVE_BAD_NAME,
             "the contacts plate and finger");
     refuses(pindrive_release_set_profile(release, "displacement", speeds, forces, 2),
-            PINDRIVE_BAD_NAME, "the profiles mouse_velocity, plate_load, force and across_velocity");
+            PINDRIVE_BAD_NAME, "the profiles mouse_velocity, plate_load, force, across_velocity and finger_load");
     refuses(pindrive_simulate(NULL, release, NULL, NULL, &motion), PINDRIVE_NULL, "drive");
     pindrive_drive_free(drive);
     pindrive_release_free(release);
@@ -245,31 +245,36 @@ static void stopping(void) {
 static void a_batch(void) {
   const double masses[3] = {0.008, -1, 0.012};
   const pindrive_varied varied = {"mass", masses}, unknown = {"weight", masses};
-  const size_t width = pindrive_number_count();
-  double *numbers = malloc(3 * width * sizeof *numbers);
+  const char *const outputs[3] = {pindrive_number_name(0), "energy.spring_start", "final.position"};
+  const char *const no_output = "energy.none";
+  double numbers[9];
+  int events[3];
   pindrive_status status[3];
   pindrive_end end[3];
   pindrive_error error[3];
   pindrive_drive *drive = the_drive();
   pindrive_release *release = the_release();
   pindrive_motion *motion;
-  expect(pindrive_batch(drive, release, &varied, 1, 3, 0.05, NULL, NULL, numbers, status, end,
-                        error) == PINDRIVE_OK,
+  expect(pindrive_batch(drive, release, &varied, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers, events,
+                        status, end, error) == PINDRIVE_OK,
          "batch");
   expect(error[0] == PINDRIVE_OK && error[1] == PINDRIVE_BAD_VALUE && error[2] == PINDRIVE_OK,
          "one point is refused");
-  expect(isnan(numbers[width]) && end[2] == PINDRIVE_END_RESTING, "and has no numbers");
+  expect(isnan(numbers[3]) && events[1] == 0 && end[2] == PINDRIVE_END_RESTING, "and has no numbers");
   pindrive_drive_set(drive, "mass", 0.012);
   motion = run(drive, release);
-  expect(fabs(numbers[2 * width] / number(motion, pindrive_number_name(0)) - 1) < 1e-14,
-         "as one motion has it");
-  refuses(pindrive_batch(drive, release, &unknown, 1, 3, 0.05, NULL, NULL, numbers, NULL, NULL,
-                         NULL),
+  expect(fabs(numbers[6] / number(motion, outputs[0]) - 1) < 1e-14, "as one motion has it");
+  expect(fabs(numbers[8] / number(motion, "ending.position") - 1) < 1e-14, "where it ends");
+  expect(events[2] > 0, "and its events");
+  refuses(pindrive_batch(drive, release, &unknown, 1, 3, 0.05, outputs, 3, NULL, NULL, numbers, NULL,
+                         NULL, NULL, NULL),
           PINDRIVE_BAD_NAME, "neither a drive nor a release has weight");
+  refuses(pindrive_batch(drive, release, &varied, 1, 3, 0.05, &no_output, 1, NULL, NULL, numbers,
+                         NULL, NULL, NULL, NULL),
+          PINDRIVE_BAD_NAME, "a batch has no number energy.none");
   pindrive_motion_free(motion);
   pindrive_drive_free(drive);
   pindrive_release_free(release);
-  free(numbers);
 }
 
 /* The position at a time to which steps lead. */
@@ -334,6 +339,20 @@ static void stepping(void) {
   pindrive_stepper_free(copy);
   expect(pindrive_stepper_new(drive, release, 0, &copy) == PINDRIVE_UNSUPPORTED, "no profiles");
   pindrive_release_set(release, "mouse_velocity", 0.10);
+  pindrive_release_set(release, "across_velocity", 0.02);
+  pindrive_release_set(release, "force", 0.01);
+  expect(pindrive_stepper_new(drive, release, 0, &copy) == PINDRIVE_OK, "one across, with a force");
+  expect(pindrive_stepper_now(copy, &now) == PINDRIVE_OK && now.plate == PINDRIVE_SLIP_OBLIQUE &&
+             now.across_velocity == 0.02 && now.force == 0.01 && now.force_rate == 0,
+         "its plate slips across");
+  expect(pindrive_stepper_set(copy, "force", 0.02, 1) == PINDRIVE_OK &&
+             pindrive_stepper_set(copy, "across_velocity", 0, 0) == PINDRIVE_OK &&
+             pindrive_stepper_now(copy, &now) == PINDRIVE_OK && now.plate == PINDRIVE_SLIP_BACKWARD &&
+             now.force == 0.02 && now.force_rate == 1,
+         "until that stops");
+  pindrive_stepper_free(copy);
+  pindrive_release_set(release, "across_velocity", 0);
+  pindrive_release_set(release, "force", 0);
   expect(pindrive_stepper_new(drive, release, 0, &copy) == PINDRIVE_OK, "another one");
   pindrive_motion_free(motion);
   motion = run(drive, release);

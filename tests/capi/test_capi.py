@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import re
 import shutil
@@ -110,6 +111,7 @@ class Case:
             "plate_load": [(0.0, 1.0)],
             "force": [(0.0, 0.0)],
             "across_velocity": [(0.0, 0.0)],
+            "finger_load": [(0.0, 1.0)],
         }
     )
 
@@ -127,6 +129,7 @@ class Case:
             *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
             *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
             self.inputs["across_velocity"],
+            self.inputs["finger_load"],
             n["duration"],
         )
 
@@ -169,6 +172,8 @@ def drawn(random: np.random.Generator) -> Case:
         if random.integers(2):
             n["duration"] = between(0.05, 0.3)
             case.inputs["across_velocity"] = [(t, between(-0.1, 0.1)) for t in times]
+    if kind == 3:
+        case.inputs["finger_load"] = [(t, between(0, 2)) for t in times]
     n["velocity"] = case.inputs["mouse_velocity"][0][1] if random.integers(2) else speed
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
@@ -273,7 +278,9 @@ class Segment(ctypes.Structure):
 
     _fields_ = (
         *((name, c_double) for name in ("begin", "end", "position", "velocity", "acceleration")),
-        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
+        ("acceleration_bound", c_double),
+        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_branch", "finger_branch")),
+        *((name, ctypes.c_int) for name in ("plate_event", "finger_event")),
     )
 
 
@@ -313,6 +320,46 @@ def test_codes_are_those_of_python(c: Interface) -> None:
         assert c.library.pindrive_status_text(int(code)).decode() == Status(int(code)).explanation
 
 
+IN_C = {
+    "Motion": dict.fromkeys(
+        ("position", "velocity", "acceleration", "plate_force", "finger_force", "stretch"),
+        "evaluate",
+    )
+    | {
+        **{"stretch_rate": "evaluate", "segments": "segment_of", "transient": "numbers"},
+        **{"ledger": "energy", "acceleration_bounds": "segment_of", "status": "outcome_of"},
+        **dict.fromkeys(("known_until", "end", "cycle_begin", "until"), "outcome_of"),
+        "segment_count": "outcome_of",
+    },
+    "": {"simulate_batch": "batch", "statuses": "status_text"},
+}
+"""The function of pindrive.h for what the extension calls otherwise."""
+OF_THE_EXTENSION = {"kernel_widths", "elementary", "settling_band", "event_limit"}
+"""How it computes, and its constants: of these C has no function."""
+
+
+def test_what_python_can_do_with_the_core_c_can() -> None:
+    header = (ROOT / "capi" / "pindrive.h").read_text("utf-8")
+    functions = set(re.findall(r"pindrive_(\w+)\(", header))
+    stub = ast.parse((ROOT / "src" / "pindrive" / "_core.pyi").read_text("utf-8"))
+    asked = 0
+    for node in stub.body:
+        if isinstance(node, ast.ClassDef):
+            names = [each.name for each in node.body if isinstance(each, ast.FunctionDef)]
+        elif isinstance(node, ast.FunctionDef):
+            names = [node.name]
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names = [node.target.id]
+        else:
+            continue
+        of = IN_C["Motion" if isinstance(node, ast.ClassDef) else ""]
+        for name in names:
+            if name not in OF_THE_EXTENSION:
+                assert of.get(name, name) in functions, name
+                asked += 1
+    assert asked > 25
+
+
 def same(found: Any, expected: Any, case: int) -> None:
     """The same bits, NaN where NaN is."""
     assert_array_equal(np.asarray(found, float), np.asarray(expected, float), f"case {case}")
@@ -326,11 +373,14 @@ def compare(c: Interface, number: int, motion: c_void_p, core: Any) -> float:
     ending = [numbers[f"ending.{name}"] for name in ("steady_since", "period")]
     same((outcome.steady_since, outcome.period), ending, number)
     table = core.segments()
+    if isinstance(core, _core.Motion):
+        table["acceleration_bound"] = core.acceleration_bounds()
     assert outcome.segments == len(table["begin"])
     for i in range(0, outcome.segments, max(outcome.segments // 7, 1)):
         segment = Segment()
         c("segment_of", motion, c_size_t(i), byref(segment))
-        for name in table.keys() & {column[0] for column in Segment._fields_}:
+        assert table.keys() <= {column[0] for column in Segment._fields_}
+        for name in table:
             same(getattr(segment, name), table[name][i], number)
     return float(outcome.known_until)
 
@@ -402,6 +452,9 @@ class Instant(ctypes.Structure):
     _fields_ = (
         *((name, c_double) for name in ("time", "next_event", "mouse_velocity")),
         *((name, c_double) for name in ("mouse_velocity_rate", "plate_load", "plate_load_rate")),
+        *((name, c_double) for name in ("across_velocity", "across_velocity_rate")),
+        *((name, c_double) for name in ("force", "force_rate")),
+        *((name, c_double) for name in ("finger_load", "finger_load_rate")),
         *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
     )
 
@@ -409,12 +462,12 @@ class Instant(ctypes.Structure):
 def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
     """Whatever the steps, and the inputs that change on the way."""
     random = np.random.default_rng(17)
-    worst, steps, kept = 0.0, 0, 0
+    worst, steps, kept, oblique = 0.0, 0, 0, 0
     for number in range(150):
         case = drawn(random)
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
-        rows = {name: case.inputs[name] for name in ("mouse_velocity", "plate_load")}
-        case.inputs |= {"force": [(0.0, 0.0)], "across_velocity": [(0.0, 0.0)]}
+        rows = case.inputs
+        oblique += len(rows["across_velocity"]) > 1
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
         case.numbers["duration"] = changes[-1] + 0.2
         core = case.core()
@@ -461,6 +514,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         c.free(drive=drive, release=release, stepper=stepper)
     print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
     assert kept > 100
+    assert oblique > 10
 
 
 class Varied(ctypes.Structure):
@@ -491,7 +545,8 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
         "duration": np.where(random.integers(5, size=points) == 0, 0.1, inf),
     }
     varied["mass"][7] = -1.0
-    names = c.names("number")
+    motion, energy = c.names("number"), [f"energy.{name}" for name in c.names("energy")]
+    names = [*motion, *energy, "duration", "final.position", "final.velocity"]
     expected = pd.simulate_batch(
         pd.Drive(
             mass=0.01,
@@ -502,24 +557,26 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
         ),
         pd.Release(mouse_velocity=0.1),
         **{name.replace(".", "_"): values for name, values in varied.items()},
-        outputs=[name.replace(".", "_") for name in names] + ["ending", "status"],
+        outputs=[name.replace(".", "_") for name in names] + ["ending", "status", "events"],
     )
     drive, release = c.given(Case())
     listed = (Varied * len(varied))(
         *(Varied(name.encode(), doubles(values)) for name, values in varied.items())
     )
     numbers = np.empty((points, len(names)))
-    codes = [np.empty(points, np.int32) for _ in range(3)]
-    outputs = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in codes))
+    events, *codes = (np.empty(points, np.int32) for _ in range(4))
+    filled = (doubles(numbers), *(array.ctypes.data_as(c_void_p) for array in (events, *codes)))
+    outputs = (c_char_p * len(names))(*(name.encode() for name in names))
     c(
         *("batch", drive, release, listed, c_size_t(len(varied)), c_size_t(points)),
-        *(c_double(0.05), None, None, *outputs),
+        *(c_double(0.05), outputs, c_size_t(len(names)), None, None, *filled),
     )
     for k, name in enumerate(names):
         same(numbers[:, k], expected[name.replace(".", "_")].values, k)
     good = expected["status"].values == Status.ok
     assert_array_equal(codes[2] == 0, expected["status"].values < Status.incomplete)
     assert_array_equal(codes[1][good], expected["ending"].values[good])
+    assert_array_equal(events, expected["events"].values)
     assert not good[7] and good.sum() > 0.99 * points
     c.free(drive=drive, release=release)
 

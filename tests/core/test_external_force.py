@@ -156,5 +156,7 @@ def test_the_derivative_along_a_force(name: str) -> None:
 def test_what_is_refused() -> None:
     with pytest.raises(ValueError, match="force must be finite"):
         Release(0.06, force=float("nan"))
-    with pytest.raises(ValueError, match=r"force must be 0 N; `simulate` follows one, got 0\.1 N"):
+    with pytest.raises(
+        ValueError, match=r"force must be 0 N; `simulate` follows another, got 0\.1 N"
+    ):
         simulate_batch(RIGID, Release(0.06, force="100 mN"), mass=[0.01])

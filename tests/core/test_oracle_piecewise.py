@@ -90,6 +90,7 @@ def release(case: Case) -> Motion:
             skin_stretch=pin["skin_stretch"],
             force=profile(pin.get("force", [[0.0, 0.0]])),
             across_velocity=profile(pin.get("across", [[0.0, 0.0]])),
+            finger_load=profile(pin.get("finger_load", [[0.0, 1.0]])),
         ),
         duration=case["duration"],
     )

@@ -95,6 +95,7 @@ def test_the_template_shows_every_key() -> None:
         'plate_load = [["0 ms", 5], ["5 ms", 1]]',
         'force = [["0 ms", "10 mN"], ["20 ms", "0 mN"]]',
         'across_velocity = [["0 ms", "10 mm/s"], ["100 ms", "0 mm/s"]]',
+        'finger_load = [["0 ms", 1], ["20 ms", 0]]',
     ]
 
 

@@ -125,6 +125,28 @@ def test_check_reads_every_csv_that_a_file_names_and_changes_none() -> None:
     assert {file: file.read_bytes() for file in Path().iterdir()} == before
 
 
+def test_a_finger_that_lifts_is_a_csv_rows_or_set() -> None:
+    csv("lift.csv", "t [ms], finger_load [%]\n0, 100\n20, 100\n40, 0\n")
+    path = device(SPEED, f'{SPEED}\nfinger_load = "lift.csv"')
+    rows = ((0.0, 1.0), (0.02, 1.0), (0.04, 0.0))
+    assert load_device(path).release.finger_load.rows == rows  # type: ignore[union-attr]
+    written = '[["0 ms", 1], ["20 ms", 1], ["40 ms", 0]]'
+    for setting in (f"finger_load={written}", "finger_load=lift.csv"):
+        found = load_device(device(SPEED, SPEED, "plain.toml"), [setting]).release.finger_load
+        assert found.rows == rows  # type: ignore[union-attr]
+    assert (
+        load_device(device(SPEED, SPEED, "plain.toml"), ["finger_load=0.5"]).release.finger_load
+        == 0.5
+    )
+    assert refused("simulate", path, "--set", "finger.stiffness=1000 N/m") == (
+        "--set finger.stiffness: motion.finger_load must be constant for a finger with a "
+        "stiffness, got a Profile of 3 rows"
+    )
+    assert refused("simulate", path, "--set", 'finger_load=[["0 ms", 1], ["5 ms", -1]]') == (
+        "--set finger_load: motion.finger_load[1] value must be finite and at least 0, got -1"
+    )
+
+
 def test_check_says_what_a_csv_of_rows_holds() -> None:
     csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
     said = run("check", "speed.csv").stdout

@@ -25,8 +25,8 @@ struct Case {
   std::array<double, 2> limit{};  ///< static friction of plate and finger
   std::array<Rows, 2> curve;      ///< kinetic friction over speed; one row is Coulomb
   double skin{never};             ///< stiffness of the finger
-  Rows mouse_velocity, plate_load, force{{0}, {0}},
-      across{{0}, {0}};  ///< over time; one row is a constant
+  Rows mouse_velocity, plate_load, force{{0}, {0}}, across{{0}, {0}},
+      finger_load{{0}, {1}};  ///< over time; one row is a constant
   double displacement{}, velocity{}, duration{};
 };
 
@@ -47,17 +47,23 @@ inline void write(std::ostream& out, const Case& c) {
   out << "start " << c.displacement << ' ' << c.velocity << ' ' << c.duration << '\n';
   if (c.force.at.size() > 1 || c.force.value[0] != 0) rows("force", c.force);
   if (c.across.at.size() > 1 || c.across.value[0] != 0) rows("across", c.across);
+  if (c.finger_load.at.size() > 1 || c.finger_load.value[0] != 1)
+    rows("finger_load", c.finger_load);
 }
 
 /// False if the text is no such drive.
 inline bool read(std::istream& in, Case& c) {
   std::string name;
-  const auto rows = [&](Rows& r) {
+  const auto named = [&](Rows& r) {
     std::size_t count = 0;
-    in >> name >> count;
+    in >> count;
     r.at.resize(count);
     r.value.resize(count);
     for (std::size_t i = 0; i < count; ++i) in >> r.at[i] >> r.value[i];
+  };
+  const auto rows = [&](Rows& r) {
+    in >> name;
+    named(r);
   };
   in >> name >> c.mass >> c.stiffness >> c.damping >> name >> c.limit[0] >> c.limit[1];
   rows(c.curve[0]);
@@ -68,8 +74,10 @@ inline bool read(std::istream& in, Case& c) {
   rows(c.plate_load);
   in >> name >> c.displacement >> c.velocity >> c.duration;
   if (!in) return false;
-  for (int next; in >> std::ws && ((next = in.peek()) == 'f' || next == 'a');)
-    rows(next == 'f' ? c.force : c.across);
+  while (in >> std::ws && in.peek() != 'd' && in >> name) {  // until the next drive
+    if (name != "force" && name != "across" && name != "finger_load") return false;
+    named(name == "force" ? c.force : name == "across" ? c.across : c.finger_load);
+  }
   in.clear();
   return true;
 }

@@ -68,6 +68,10 @@ class Draw {
     if (chance(0.15))
       c.force = profile([&] { return chance(0.3) ? 0 : tidy(force_ * uniform(-1, 1)); }, last, 0.3);
     c.duration = last + period_ * uniform(0.3, long_ ? 12 : 2);
+    // A finger that presses and lifts is rigid and without a curve.
+    const auto touch = [&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); };
+    if (coulomb && chance(0.2))
+      c.finger_load = std::isinf(c.skin) ? profile(touch, last, 0.3) : Rows{{0}, {touch()}};
     return c;
   }
 

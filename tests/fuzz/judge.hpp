@@ -53,7 +53,8 @@ struct Given {
                profile(c.plate_load),
                std::numeric_limits<double>::quiet_NaN(),
                profile(c.force),
-               profile(c.across)} {}
+               profile(c.across),
+               profile(c.finger_load)} {}
   Given(const Given&) = delete;
   Given& operator=(const Given&) = delete;
 

@@ -10,7 +10,8 @@ leading coefficients of its guards are positive.
 Inputs are a mapping of SI values: mass, stiffness, damping, displacement, velocity (None: that of
 the plate), skin_stretch (None: as the start asks), mouse_velocity and load as rows (time, value),
 plate and finger as mappings with curve (rows of speed and force), static, and stiffness (None:
-rigid); and force, rows of an external force, unless there is none.
+rigid); and, unless there is none, force, rows of an external force, and finger_load, rows of a
+factor on the friction of a rigid finger without a curve.
 """
 
 from __future__ import annotations
@@ -130,9 +131,11 @@ class _Simulation:
         self.m, self.k, self.b = (mpf(inputs[n]) for n in ("mass", "stiffness", "damping"))
         self.mouse, self.load = Profile(inputs["mouse_velocity"]), Profile(inputs["load"])
         self.push = Profile(inputs.get("force", [[0.0, 0.0]]))
+        self.touch = Profile(inputs.get("finger_load", [[0.0, 1.0]]))
         self.law = {c: law for c in CONTACTS if (law := Friction.read(inputs[c]))}
         self.rigid = [c for c, law in self.law.items() if isinf(law.stiffness)]
-        knots = {t for profile in (self.mouse, self.load, self.push) for t, _ in profile.rows}
+        over_time = (self.mouse, self.load, self.push, self.touch)
+        knots = {t for profile in over_time for t, _ in profile.rows}
         self.knots = sorted(t for t in knots | {duration} if 0 < t <= duration)
         self.t, self.x = mpf(0), mpf(inputs["displacement"])
         given = inputs["velocity"]
@@ -221,6 +224,10 @@ class _Simulation:
             [self.load(self.t), self.load.slope(self.t) * h],
         )
 
+    def touched(self, h: mpf) -> Poly:
+        """The load of the finger over the step."""
+        return [self.touch(self.t), self.touch.slope(self.t) * h]
+
     def pushed(self, h: mpf) -> Poly:
         """What pushes the pin beside friction: inertia, and the external force."""
         inertia = self.m * self.mouse.slope(self.t)
@@ -248,7 +255,8 @@ class _Simulation:
                 push = plus(push, [finger.stiffness * (self.x - self.stretch)])
             else:
                 damping += finger.slopes[self.band["finger"]]
-                push = plus(push, [-self.side["finger"] * finger.at_zero(self.band["finger"])])
+                force = -self.side["finger"] * finger.at_zero(self.band["finger"])
+                push = plus(push, times(force, self.touched(h)))
         drag, spring, unit = damping * h / self.m, stiffness * h * h / self.m, h * h / self.m
         ramp = growing * h / self.m
         x = [self.x, self.v * h]
@@ -268,7 +276,7 @@ class _Simulation:
             side, band = self.side[contact], self.band[contact]
             if side:
                 line = plus([-side * law.at_zero(band)], times(-law.slopes[band], u[contact]))
-                found[contact] = by_line(load, line) if contact == "plate" else line
+                found[contact] = by_line(load if contact == "plate" else self.touched(h), line)
             elif contact not in self.rigid:
                 found[contact] = times(-law.stiffness, plus([self.stretch - self.x], x))
         held = [c for c in self.law if c not in found]
@@ -283,6 +291,8 @@ class _Simulation:
         found = {c: [law.static] for c, law in self.law.items()}
         if "plate" in found:
             found["plate"] = times(found["plate"][0], self.lines(h)[1])
+        if "finger" in found:
+            found["finger"] = times(found["finger"][0], self.touched(h))
         return found | {"both": plus(*found.values(), [mpf(0)])}
 
     def guards(self, x: Poly, h: mpf) -> list[Guard]:
@@ -368,10 +378,10 @@ class _Simulation:
         skin = self.law["finger"].stiffness if "finger" in self.law else mpf("inf")
         forces = self.friction(x, h)
         if "both" in forces:  # shared in proportion to static friction
-            total, own, limit = forces["both"], self.law["finger"].static, self.limits(h)["both"]
+            total, limits = forces["both"], self.limits(h)
 
             def finger(s: mpf) -> mpf:
-                return horner(total, s) * own / horner(limit, s)
+                return horner(total, s) * horner(limits["finger"], s) / horner(limits["both"], s)
         else:
             force = forces.get("finger", [mpf(0)])
 

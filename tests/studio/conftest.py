@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -15,7 +15,8 @@ import pytest
 from studio_cases import Ask
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD = ROOT / "studio" / "build"
+STUDIO = ROOT / "studio"
+BUILD = STUDIO / "build"
 PAGE = ROOT / "src" / "pindrive" / "studio.html"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
@@ -38,16 +39,49 @@ def page_file() -> Path:
 
 
 @pytest.fixture(scope="session")
-def node(page_file: Path) -> Ask:
-    """Asks the page's program in Node many things at once; one answer each."""
+def node_program(page_file: Path) -> str:
+    """Node itself."""
     program = shutil.which("node")
     if program is None:
         missing("node is missing; the extra `studio` brings it")
+    return program
+
+
+@pytest.fixture(scope="session")
+def node(node_program: str) -> Ask:
+    """Asks the page's program in Node many things at once; one answer each."""
+    return asking(node_program, BUILD / "node.mjs")
+
+
+@pytest.fixture
+def spoiled(node_program: str, tmp_path: Path) -> Callable[[str, str, str], Ask]:
+    """The same of the page with a text of one of its files, which is there once, replaced."""
+
+    def spoil(file: str, text: str, instead: str) -> Ask:
+        source, program = tmp_path / "src", tmp_path / "node.mjs"
+        shutil.copytree(STUDIO / "src", source)
+        (tmp_path / "build").mkdir()
+        shutil.copyfile(BUILD / "tables.json", tmp_path / "build" / "tables.json")
+        before = (source / file).read_text("utf-8")
+        assert before.count(text) == 1, f"{text!r} is {before.count(text)} times in {file}"
+        (source / file).write_text(before.replace(text, instead), "utf-8")
+        bundler = STUDIO / "node_modules" / "esbuild" / "bin" / "esbuild"
+        bundle = ("--bundle", "--format=esm", "--platform=node", f"--outfile={program}")
+        subprocess.run(
+            [node_program, bundler, source / "node.ts", *bundle], check=True, capture_output=True
+        )
+        return asking(node_program, program)
+
+    return spoil
+
+
+def asking(node: str, program: Path) -> Ask:
+    """What asks a program in Node."""
 
     def ask(questions: list[dict[str, Any]]) -> list[Any]:
         lines = "".join(json.dumps(question, ensure_ascii=False) + "\n" for question in questions)
         done = subprocess.run(
-            [program, BUILD / "node.mjs", BUILD / "core.wasm"],
+            [node, program, BUILD / "core.wasm"],
             input=lines,
             capture_output=True,
             text=True,

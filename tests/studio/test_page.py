@@ -12,13 +12,14 @@ import pytest
 from PIL import Image
 
 import pindrive as pd
-from command import EXAMPLE, SKIN, run
+from command import EXAMPLE, EXAMPLES, SKIN, run
 from pindrive.files.device import motion_of
 from pindrive.files.template import template
 from pindrive.fitting.recording import read_recording
 from studio_cases import NAMES, Ask, questions
 
 AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
+READER = EXAMPLES / "tactile-reader.toml"
 FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
 
@@ -61,7 +62,7 @@ def numbers_shown(page: Any) -> dict[str, float]:
 
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
-    """Which move as in Python: test_core.py."""
+    """Which are those of Python: test_core.py."""
     _, asked = questions(1000, 16)
     answers = page.evaluate(
         "asked => asked.map(q => pindrive.answerOf(pindrive.core, q.simulate, q.duration))", asked
@@ -101,10 +102,44 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     assert value(page, "plate.kinetic") == 0.03
 
 
-@pytest.mark.parametrize("device", [EXAMPLE, SKIN], ids=lambda path: path.stem)
-def test_what_is_shown_is_what_python_computes(page: Any, device: Path) -> None:
+def pushed(folder: Path) -> Path:
+    """A pin whose finger pushes, while the hand moves off the axis, by coefficients of friction."""
+    path = folder / "pushed.toml"
+    path.write_text(
+        EXAMPLE.read_text("utf-8")
+        .replace('kinetic = "22 mN"', 'coefficient = 0.225\npreload = "10 mN"')
+        .replace('static = "26.5 mN"', "static_coefficient = 0.27")
+        .replace('kinetic = "5 mN"', 'coefficient = 0.5\ntouch_force = "10 mN"')
+        .replace('static = "7.5 mN"', "static_coefficient = 0.75")
+        .replace(
+            "[motion]",
+            '[motion]\nforce = [["0 s", "10 mN"], ["20 ms", "0 N"]]\n'
+            'across_velocity = [["0 s", "30 mm/s"], ["40 ms", "0 m/s"]]',
+        ),
+        "utf-8",
+    )
+    assert pd.load_device(path).drive.plate.coefficient == 0.225
+    assert pd.load_device(path).drive.finger.coefficient == 0.5
+    return path
+
+
+@pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, None], ids=str)
+def test_what_is_shown_is_what_python_computes(
+    page: Any, device: Path | None, tmp_path: Path
+) -> None:
+    device = device or pushed(tmp_path)
     opened(page, device)
     motion = motion_of(pd.load_device(device))
+    curves = "pindrive.page.view.lines[0].result.curves"
+    phases = page.evaluate(f"{curves}.phases.map(({{kind, begin, end}}) => [kind, begin, end])")
+    window = page.evaluate("pindrive.page.view.end")
+    last = motion.segments[-1].end  # from where on a cycle goes on, of which Python keeps one round
+    for kind in ("carried", "resting"):
+        shown_ends = {end for name, *ends in phases if name == kind for end in ends if end <= last}
+        stuck = [s for s in motion.segments if s.mode == kind and s.begin < window]
+        ends = {end for s in stuck for end in (s.begin, min(s.end, window))}
+        assert shown_ends <= ends, kind
+        assert bool(shown_ends) == bool(ends), kind
     shown = numbers_shown(page)
     for name in NAMES:
         expected = float(motion.numbers()[name])
@@ -182,6 +217,48 @@ def test_every_file_goes_out_and_in_again(
     other.context.close()
 
 
+def test_friction_is_given_by_forces_or_by_coefficients(page: Any, tmp_path: Path) -> None:
+    before = numbers_shown(page)
+    assert page.locator("#plate-coefficient").is_hidden()
+    for contact in ("plate", "finger"):
+        page.select_option(f"#{contact}-kind", "coefficient")
+        settled(page)
+    assert value(page, "plate.coefficient") == pytest.approx(0.022 / (0.01 * 9.80665), rel=1e-14)
+    assert value(page, "finger.touch_force") == 0.01
+    assert value(page, "plate.kinetic") is None
+    assert page.locator("#plate-kinetic").is_hidden()
+    after = numbers_shown(page)
+    known = [name for name, number in before.items() if number is not None]
+    assert [after[name] for name in known] == pytest.approx([before[name] for name in known], 1e-9)
+    page.fill("#drive-mass", "20")  # and with it the weight
+    page.keyboard.press("Enter")
+    settled(page)
+    written = pd.load_device(saved(page, "toml", tmp_path))
+    assert written.drive.plate.kinetic == pytest.approx(0.044, rel=1e-14)
+    for contact in ("plate", "finger"):
+        page.select_option(f"#{contact}-kind", "force")
+        settled(page)
+    assert value(page, "plate.kinetic") == pytest.approx(0.044, rel=1e-14)
+    assert value(page, "finger.touch_force") is None
+
+
+def test_a_recording_is_dropped_and_shifted_by_hand(page: Any) -> None:
+    page.evaluate(
+        """() => {
+          const rows = Array.from({length: 20}, (_, i) => `${i},${Math.cos(i / 3)}`).join("\\n");
+          const data = new DataTransfer();
+          data.items.add(new File([`t [ms],position [mm]\\n${rows}\\n`], "dropped.csv"));
+          document.body.dispatchEvent(new DragEvent("drop", {dataTransfer: data, bubbles: true}));
+        }"""
+    )
+    page.wait_for_selector("#recording-words")
+    assert "dropped.csv: 20 samples of position" in page.locator("#recording-words").inner_text()
+    page.fill("#offset", "7.5")
+    page.keyboard.press("Enter")
+    settled(page)
+    assert page.evaluate("pindrive.page.view.overlay.offset") == 0.0075
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [("10 g", "10"), ("mass", "mas"), ("kinetic = ", "kinetic "), ("22 mN", "-1 mN")],
@@ -236,6 +313,14 @@ def test_the_map_holds_the_numbers_of_python_and_its_dot_moves(page: Any) -> Non
         assert device.drive.plate.static is not None
         assert found["values"][64 * j + i] == pytest.approx(time, rel=1e-9)
         assert found["met"][64 * j + i] == (time <= 0.1)
+    alpha = page.evaluate(
+        "(() => { const {image} = pindrive.page.map.view;"
+        " const {data} = image.getContext('2d').getImageData(0, 0, 64, 64);"
+        " return Array.from({length: 4096}, (_, i) => data[4 * i + 3]); })()"
+    )
+    shaded = np.reshape(alpha, (64, 64))[::-1].ravel() < 255  # rows from the smallest y
+    assert np.array_equal(shaded, np.array(found["met"]) == 0)
+    assert 0 < shaded.sum() < shaded.size
     canvas = page.locator("canvas.map")
     canvas.focus()
     page.keyboard.press("ArrowRight")

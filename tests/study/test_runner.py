@@ -102,7 +102,7 @@ def test_the_file_says_everything() -> None:
         assert set(data.coords) == {
             *("mass", "stiffness", "damping", "plate_kinetic", "finger_kinetic"),
             *("preload", "mouse_velocity", "displacement", "plate_load", "settling_band"),
-            *("force", "across_velocity"),
+            *("force", "across_velocity", "finger_load"),
         }
         assert data.transient_plate_reversals.notnull().all()
         assert "transient_peak_stretch" not in data, "the finger is rigid"

@@ -30,6 +30,7 @@ from pindrive.motion.contact import (
 from pindrive.motion.drive import (
     Drive,
     Profile,
+    check_finger_load,
     check_skin,
     check_stretch,
     check_times,
@@ -42,7 +43,7 @@ from pindrive.motion.friction import (
     friction_force,
     normal_force,
 )
-from pindrive.motion.release import CONTINUOUS, INPUTS, Release
+from pindrive.motion.release import CONTINUOUS, INPUTS, Release, initial
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.table import QUANTITIES, Refusal, check, refusal
@@ -72,7 +73,8 @@ class Problems(list[str]):
         except ValueError as error:
             said, where = error.args[0], self._place(*keys)
             if isinstance(said, Refusal):
-                named = [key for key in keys if key.endswith(f".{said.label}")]
+                own = said.label.partition("[")[0]
+                named = [key for key in keys if key.endswith(f".{own}")]
                 self.append(said.at(where, (named or keys)[0]))
             else:
                 self.append(f"{where}: {said}")
@@ -256,9 +258,13 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
     problems = Problems(place)
     problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
+    load = over_time(values["motion.finger_load"])
+    assert load is not None  # it is 1 unless given
+    load_keys = ("motion.finger_load", "finger.stiffness", "finger.curve")
+    problems.check(check_finger_load, load, finger, keys=load_keys)
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")
-        problems.check(check_stretch, stretch, finger, keys=stretch_keys)
+        problems.check(check_stretch, stretch, finger, initial(load), keys=stretch_keys)
     return problems
 
 
@@ -396,7 +402,7 @@ def friction_parts(key: str) -> tuple[str, ...]:
     if key not in COEFFICIENT_OF:
         return ()
     own, pressing = COEFFICIENT_OF[key], PRESSED_BY[key.partition(".")[0]]
-    return (own, *(QUANTITIES[name].key for name in pressing))
+    return (own, *DRIVE[own].follows, *(QUANTITIES[name].key for name in pressing))
 
 
 def written(key: str, value: float) -> str | float:

@@ -24,7 +24,7 @@ SINGLE: Final = 1024
 """Candidates of what only the general core follows."""
 LOOKS: Final = 40
 """Samples of each recording at which candidates are compared."""
-_OTHER: Final = ("finger.stiffness", "skin_stretch", "force", "across_velocity")
+_OTHER: Final = ("finger.stiffness", "skin_stretch", "force", "across_velocity", "finger_load")
 _PLAIN: Final = tuple(name for name in PLACES if name not in _OTHER)
 """What `simulate_batch` can vary."""
 
@@ -68,7 +68,10 @@ def _plain(model: Model) -> bool:
     free = all(p.key in _PLAIN or p.key.endswith("_offset") for p in model.parameters)
     constant = all(len(n[5]) == 1 and len(n[6]) == 1 for n in numbers)
     coulomb = all(len(contact[3]) <= 1 for n in numbers for contact in n[3:5])
-    left_alone = all(release.force == release.across_velocity == 0.0 for release in model.releases)
+    left_alone = all(
+        release.force == release.across_velocity == 0.0 and release.finger_load == 1.0
+        for release in model.releases
+    )
     measured = channels <= {"position", "velocity"}
     return measured and rigid and free and constant and coulomb and left_alone
 

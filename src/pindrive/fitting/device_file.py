@@ -62,6 +62,7 @@ def _values(device: DeviceFile, found: Fit) -> dict[str, Any]:
     values["motion.plate_load"] = release.plate_load
     values["motion.force"] = release.force
     values["motion.across_velocity"] = release.across_velocity
+    values["motion.finger_load"] = release.finger_load
     values["motion.skin_stretch"] = release.skin_stretch
     before = {k: v for k, v in device.values().items() if k not in device.derived}
     changed = {}

@@ -285,6 +285,7 @@ def _releases(given: Sequence[Recording], release: Release | Sequence[Release]) 
             each.skin_stretch,
             each.force,
             each.across_velocity,
+            each.finger_load,
         )
         for recording, each in zip(given, listed, strict=True)
     ]

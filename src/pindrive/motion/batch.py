@@ -236,11 +236,13 @@ def _constants(
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))
-    for name in ("force", "across_velocity"):
-        value, unit = getattr(release, name), QUANTITIES[name].unit
-        if value != 0.0:
-            given = "a Profile" if isinstance(value, Profile) else f"{value!r} {unit}"
-            raise ValueError(refusal(name, f"0 {unit}; `simulate` follows one", given))
+    for name in ("force", "across_velocity", "finger_load"):
+        value, quantity = getattr(release, name), QUANTITIES[name]
+        unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+        if value != quantity.absent:
+            given = "a Profile" if isinstance(value, Profile) else f"{value!r}{unit}"
+            required = f"{quantity.absent:g}{unit}; `simulate` follows another"
+            raise ValueError(refusal(name, required, given))
     has = {
         "mass": drive.mass,
         "stiffness": drive.stiffness,

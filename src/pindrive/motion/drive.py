@@ -78,12 +78,20 @@ def check_skin(finger: Contact) -> None:
         raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
 
 
-def check_stretch(stretch: float, finger: Contact) -> None:
-    """Refuse a stretch (m) that the finger's skin cannot have."""
+def check_finger_load(load: float | Profile, finger: Contact) -> None:
+    """Refuse a load that changes on a finger with a stiffness or a curve."""
+    if not isinstance(load, Profile) or not load.changes or (finger.rigid and not finger.curved):
+        return
+    required = "constant for a finger with " + ("a curve" if finger.rigid else "a stiffness")
+    raise ValueError(refusal("finger_load", required, f"a Profile of {len(load.times)} rows"))
+
+
+def check_stretch(stretch: float, finger: Contact, load: float) -> None:
+    """Refuse a stretch (m) that the finger's skin cannot have under a load."""
     given = f"{stretch!r} m"
     if finger.rigid:
         raise ValueError(refusal("skin_stretch", "left out for a rigid finger", given))
-    largest = finger.static_friction / finger.stiffness
+    largest = finger.static_friction * load / finger.stiffness
     if abs(stretch) > largest:
         required = f"at most static friction over stiffness, {largest!r} m, either way"
         raise ValueError(refusal("skin_stretch", required, given))

@@ -437,9 +437,10 @@ class Motion(lazy.NotebookHtml):
                 `finger_kinetic`, `finger_static`, `finger_stiffness`; of a contact given by a
                 coefficient `plate_coefficient`, `plate_static_coefficient`, `preload`,
                 `finger_coefficient`, `finger_static_coefficient`, `touch_force`; `mouse_velocity`,
-                `plate_load`, `force`, `across_velocity` (all rows of a profile together),
-                `displacement`, `velocity`, `skin_stretch`; or one row: `plate_curve[1].force`,
-                `plate_curve[1].speed`, `mouse_velocity[2].value`, `plate_load[2].time`.
+                `plate_load`, `force`, `across_velocity`, `finger_load` (all rows of a profile
+                together), `displacement`, `velocity`, `skin_stretch`; or one row:
+                `plate_curve[1].force`, `plate_curve[1].speed`, `mouse_velocity[2].value`,
+                `plate_load[2].time`.
 
         Returns:
             The derivatives of position, velocity, events and all numbers, with NaN and the reason

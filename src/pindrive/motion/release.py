@@ -11,6 +11,7 @@ from pindrive.motion.drive import (
     Drive,
     Profile,
     check_continuous,
+    check_finger_load,
     check_skin,
     check_stretch,
 )
@@ -29,6 +30,7 @@ CoreNumbers = tuple[
     float,
     float,
     float,
+    Rows,
     Rows,
     Rows,
     float,
@@ -50,6 +52,7 @@ PLACES: Final[dict[str, tuple[int, ...]]] = {
     "skin_stretch": (9,),
     "force": (10,),
     "across_velocity": (11,),
+    "finger_load": (12,),
 }
 """Where each number, or the rows of an input, stands among them."""
 ROWS: Final[dict[str, tuple[int, ...]]] = {
@@ -59,9 +62,10 @@ ROWS: Final[dict[str, tuple[int, ...]]] = {
     "plate_load": (6,),
     "force": (10,),
     "across_velocity": (11,),
+    "finger_load": (12,),
 }
 """Where all rows of a table stand."""
-INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity")
+INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
 """What a release has over time: a number or a `Profile` each."""
 
 CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
@@ -108,6 +112,9 @@ class Release:
             either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
             its friction opposes the whole sliding velocity. With one that lasts `simulate` needs a
             duration.
+        finger_load: factor on the finger's friction, from 0 to 1e12: how the touch force changes,
+            over the `touch_force` of a drive whose finger has a coefficient; constant or a
+            `Profile`. One that changes needs a rigid finger without a friction curve.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -120,6 +127,7 @@ class Release:
     skin_stretch: float | None
     force: float | Profile
     across_velocity: float | Profile
+    finger_load: float | Profile
 
     def __init__(
         self,
@@ -130,6 +138,7 @@ class Release:
         skin_stretch: float | str | None = None,
         force: float | str | Profile = default("force"),
         across_velocity: float | str | Profile = default("across_velocity"),
+        finger_load: float | str | Profile = default("finger_load"),
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
@@ -141,14 +150,19 @@ class Release:
         put(self, "skin_stretch", stretch)
         put(self, "force", _input("force", force))
         put(self, "across_velocity", _input("across_velocity", across_velocity))
+        put(self, "finger_load", _input("finger_load", finger_load))
 
     @property
     def initial_velocity(self) -> float:
         """x'(0), m/s: the one that was given, or the plate's."""
         if self.velocity is not None:
             return self.velocity
-        given = self.mouse_velocity
-        return given(0.0) if isinstance(given, Profile) else given
+        return initial(self.mouse_velocity)
+
+
+def initial(given: float | Profile) -> float:
+    """What an input is at t = 0."""
+    return given(0.0) if isinstance(given, Profile) else given
 
 
 def _input(name: str, given: float | str | Profile) -> float | Profile:
@@ -173,7 +187,7 @@ def check_fits(drive: Drive, release: Release) -> None:
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a friction curve at a compliant finger.
+            hold; a friction curve at a compliant finger; a finger load that changes at either.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -182,8 +196,9 @@ def check_fits(drive: Drive, release: Release) -> None:
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
     check_skin(drive.finger)
+    check_finger_load(release.finger_load, drive.finger)
     if release.skin_stretch is not None:
-        check_stretch(release.skin_stretch, drive.finger)
+        check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))
 
 
 def oblique_at_last(release: Release) -> bool:
@@ -208,6 +223,7 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         nan if release.skin_stretch is None else release.skin_stretch,
         _rows(release.force),
         _rows(release.across_velocity),
+        _rows(release.finger_load),
         inf if duration is None else duration,
     )
 

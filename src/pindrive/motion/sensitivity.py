@@ -48,7 +48,7 @@ _COEFFICIENTS = (
 """Parameters that the core knows by the forces that follow from them."""
 _ROW = re.compile(
     r"(?:(plate_curve|finger_curve)\[(\d+)\]\.(speed|force)"
-    r"|(mouse_velocity|plate_load|force|across_velocity)\[(\d+)\]\.(time|value))"
+    r"|(mouse_velocity|plate_load|force|across_velocity|finger_load)\[(\d+)\]\.(time|value))"
 )
 
 
@@ -423,9 +423,8 @@ def _in_range(numbers: CoreNumbers) -> bool:
     def increase(rows: Rows) -> bool:
         return all(a[0] < b[0] for a, b in pairwise(rows))
 
-    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_, stretch, force, across, _ = (
-        numbers
-    )
+    mass, stiffness, _, plate, finger, mouse_velocity, plate_load, *_ = numbers
+    *_, stretch, force, across, finger_load, _ = numbers
     contacts = all(
         static >= kinetic >= 0.0
         and give > 0.0
@@ -439,9 +438,11 @@ def _in_range(numbers: CoreNumbers) -> bool:
         and contacts
         and increase(mouse_velocity)
         and increase(across)
-        and all(a[0] <= b[0] for rows in (plate_load, force) for a, b in pairwise(rows))
-        and all(load >= 0.0 for _, load in plate_load)
-        and not abs(stretch) * finger[2] > finger[1]
+        and all(
+            a[0] <= b[0] for rows in (plate_load, force, finger_load) for a, b in pairwise(rows)
+        )
+        and all(load >= 0.0 for _, load in (*plate_load, *finger_load))
+        and not abs(stretch) * finger[2] > finger[1] * finger_load[0][1]
     )
 
 

@@ -93,9 +93,8 @@ def check_phase(duration: float, natural_frequency: float) -> None:
 
 def _plausible(numbers: CoreNumbers) -> bool:
     """Whether `warn_of` has nothing to say, quickly: a motion takes microseconds."""
-    mass, stiffness, damping, plate, finger, v_plate, load, x, v, _, force, across, duration = (
-        numbers
-    )
+    mass, stiffness, damping, plate, finger, v_plate, load, x, v, *_ = numbers
+    *_, force, across, finger_load, duration = numbers
     m0, m1, k0, k1, b1, plate1, finger1, skin0, skin1, speed1, load1, x1, v1, t0, t1 = _GLANCE
     return (
         m0 <= mass <= m1
@@ -105,8 +104,9 @@ def _plausible(numbers: CoreNumbers) -> bool:
         and finger[1] <= finger1
         and (skin0 <= finger[2] <= skin1 or finger[2] == inf)
         and not (plate[3] or finger[3])
-        and len(v_plate) == len(load) == len(force) == len(across) == 1
+        and len(v_plate) == len(load) == len(force) == len(across) == len(finger_load) == 1
         and force[0][1] == across[0][1] == 0.0
+        and finger_load[0][1] == 1.0
         and abs(v_plate[0][1]) <= speed1
         and load[0][1] <= load1
         and abs(x) <= x1

@@ -399,6 +399,9 @@ def parameters(motion: Motion) -> str:
         words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
     if isinstance(motion.release.plate_load, Profile) or motion.release.plate_load != 1.0:
         words.append(f"$λ$ = {_course('plate_load', _values(motion.release.plate_load))}")
+    if motion.release.finger_load != 1.0:
+        course = _course("finger_load", _values(motion.release.finger_load))
+        words.append(rf"$λ_\mathrm{{f}}$ = {course}")
     if motion.release.across_velocity != 0.0:
         across = _values(motion.release.across_velocity)
         words.append(f"$w$ = {_course('across_velocity', across)}")

@@ -360,6 +360,21 @@ _MOTION: Final = (
         seen=between(0.0, 5.0),
     ),
     Quantity(
+        "finger_load",
+        "λ_f",
+        "1",
+        "factor on the finger's friction: its touch force over time, over touch_force",
+        NON_NEGATIVE,
+        source="assumed: a finger that lifts off the pin within 20 ms",
+        absent=1.0,
+        remark="one value, rows over time, or a CSV of them; constant for a finger with a "
+        "stiffness or a curve",
+        example=1.0,
+        rows_of="profile",
+        rows=((0.0, 1.0), (0.020, 0.0)),
+        seen=between(0.0, 1e4),
+    ),
+    Quantity(
         "displacement",
         "x_0",
         "m",

@@ -106,7 +106,9 @@ _WHOLE: Final = {
 }
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
 """What is asked of a motion, beside its drive and its release."""
-_FOLLOWED: Final = ("motion.skin_stretch", "motion.force", "motion.across_velocity")
+_FOLLOWED: Final = tuple(
+    f"motion.{name}" for name in ("skin_stretch", "force", "across_velocity", "finger_load")
+)
 """Which points `simulate_batch` does not take."""
 _RELEASE: Final = tuple(field.name for field in fields(Release))
 Table = dict[str, Any]
@@ -200,6 +202,7 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
         or device.release.skin_stretch is not None
         or device.release.force != 0.0
         or device.release.across_velocity != 0.0
+        or device.release.finger_load != 1.0
         or not swept.keys().isdisjoint(_FOLLOWED)
     )
 
