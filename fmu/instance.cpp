@@ -296,10 +296,10 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
     changing.reset(made);
     std::size_t place = 0;
     for (const Input& input : inputs) {
-      if (!error)
-        error =
-            pindrive_stepper_set_along(made, input.name, value_of_input(place, along.data()),
-                                       value_of_input(place + 1, along.data()));
+      const double value_seed = value_of_input(place, along.data());
+      const double rate_seed = value_of_input(place + 1, along.data());
+      if (!error && (value_seed != 0 || rate_seed != 0))
+        error = pindrive_stepper_set_along(made, input.name, value_seed, rate_seed);
       place += 2;
     }
   }
