@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
 #include "interface.hpp"
 #ifdef _WIN32
 #include <windows.h>  // last: it defines near and far
@@ -26,7 +27,8 @@ int place_of(Variable::Kind kind, const char* name) {
     for (const Input& input : inputs) {
       const std::size_t length = std::strlen(input.name);
       if (std::strcmp(name, input.name) == 0) return place;
-      if (std::strncmp(name, input.name, length) == 0 && std::strcmp(name + length, rate_ending) == 0)
+      if (std::strncmp(name, input.name, length) == 0 &&
+          std::strcmp(name + length, rate_ending) == 0)
         return place + 1;
       place += 2;
     }

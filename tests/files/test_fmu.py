@@ -355,7 +355,10 @@ def test_it_says_what_is_refused(archive: Archive, capsys: pytest.CaptureFixture
         (lambda: unit.set(drive__mass=1.0), "drive.mass is a fixed parameter"),
         (lambda: unit.set(position=1.0), "position is an output"),
         (lambda: unit.set(plate_load=-1.0), "plate_load must be at least 0 and finite, not -1"),
-        (lambda: unit.slave.doStep(5.0, 1.0), "a step must begin where the last one ended, at 0 s, not at 5 s"),
+        (
+            lambda: unit.slave.doStep(5.0, 1.0),
+            "a step must begin where the last one ended, at 0 s, not at 5 s",
+        ),
         (lambda: bad.begin(drive__mass=-1.0), "mass must be above 0 and finite, not -1"),
     ):
         with pytest.raises(FMICallException):

@@ -1,4 +1,4 @@
-"""The library of FMUs for Windows, run by Wine where it is installed and that library was compiled."""
+"""The library of FMUs for Windows, run by Wine where it is installed."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ def test_the_windows_library_says_what_that_of_linux_does(tmp_path: Path) -> Non
     here = driven(tmp_path, "x86_64-linux-gnu", [], folder, linux)
     there = driven(tmp_path, "x86_64-windows-gnu", [WINE], f"Z:{folder}", windows)
     expected, found = (
-        np.array([[float.fromhex(word) for word in line.split()] for line in said.splitlines()[:-1]])
+        np.array(
+            [[float.fromhex(word) for word in line.split()] for line in said.splitlines()[:-1]]
+        )
         for said in (here, there)
     )
     assert expected.shape == (200, len(OUTPUTS))
