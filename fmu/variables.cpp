@@ -56,12 +56,11 @@ pindrive_error content_of(const char* path, std::vector<char>& content) {
   std::FILE* file = opened(path);
   if (!file) return fail(PINDRIVE_BAD_VALUE, "cannot read %.200s", path);
   content.clear();
-  std::size_t size = 0, got = 1;
-  while (got > 0) {
+  std::size_t size = 0;
+  do {
     content.resize(size + 4096);
-    got = std::fread(&content[size], 1, content.size() - size, file);
-    size += got;
-  }
+    size += std::fread(&content[size], 1, content.size() - size, file);
+  } while (size == content.size());
   std::fclose(file);
   content.resize(size);
   content.push_back('\0');
