@@ -64,7 +64,10 @@ FMU_COMPILE = (
     *("-std=c++17", "-Os", "-Xclang", "-Oz", "-g0", "-DPINDRIVE_WITHIN", "-ffp-contract=off"),
     *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
 )
-_WITHOUT_TABLES = ("-fno-unwind-tables", "-fno-asynchronous-unwind-tables")  # none is thrown through
+_WITHOUT_TABLES = (
+    "-fno-unwind-tables",
+    "-fno-asynchronous-unwind-tables",
+)  # none is thrown through
 FMU_COMPILE_FOR = {
     "so": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
     "dll": (),  # there the functions of FMI alone are exported, and unwinding needs its tables
@@ -442,7 +445,9 @@ def fmu_binary(name: str) -> Path:
     """The library that an FMU carries for a platform, compiled here."""
     target, suffix = FMU_PLATFORMS[name]
     sources = [*sorted((ROOT / "fmu").glob("*.cpp")), *(ROOT / "capi" / n for n in FMU_OF_CAPI)]
-    headers = [f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")]
+    headers = [
+        f"-I{ROOT / folder}" for folder in ("include", "capi", "fmu", "fmu/fmi2", "fmu/fmi3")
+    ]
     library = ROOT / "build" / "fmu" / name / f"pindrive.{suffix}"
     library.parent.mkdir(parents=True, exist_ok=True)
     zig = [str(BIN / "python"), "-m", "ziglang"]
@@ -450,7 +455,17 @@ def fmu_binary(name: str) -> Path:
         objects = [str(Path(folder, f"{source.stem}.o")) for source in sources]
         for source, compiled in zip(sources, objects, strict=True):
             options = [*FMU_COMPILE, *FMU_COMPILE_FOR[suffix], *headers]
-            compiling = [*zig, "c++", "-target", target, *options, "-c", str(source), "-o", compiled]
+            compiling = [
+                *zig,
+                "c++",
+                "-target",
+                target,
+                *options,
+                "-c",
+                str(source),
+                "-o",
+                compiled,
+            ]
             quietly(f"compiling {source.name} for {name}", compiling)
         part = Path(folder, library.name)
         linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]

@@ -93,8 +93,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   const pindrive_error error =
       type == fmi2CoSimulation
           ? made->instance.begin(folder_of(resources).data(), guid ? guid : "")
-          : fail(PINDRIVE_UNSUPPORTED,
-                 "a drive is for co-simulation: it solves its own equations");
+          : fail(PINDRIVE_UNSUPPORTED, "a drive is for co-simulation: it solves its own equations");
   return made->told(error) == fmi2OK ? made.release() : nullptr;
 }
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(c); }
@@ -151,8 +150,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   });
 }
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return attempt(c,
-                 [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
+  return attempt(c, [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
 }
 fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
   delete static_cast<Instance::State*>(*state);

@@ -83,8 +83,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3Strin
   made->environment = environment;
   made->events = events;
   made->may_end_early = may_end_early;
-  const pindrive_error error =
-      made->instance.begin(resources ? resources : "", token ? token : "");
+  const pindrive_error error = made->instance.begin(resources ? resources : "", token ? token : "");
   return made->told(error) == fmi3OK ? made.release() : nullptr;
 }
 void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
@@ -176,8 +175,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
   });
 }
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-  return attempt(c,
-                 [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
+  return attempt(c, [&](Instance& i) { return i.go_back(*static_cast<Instance::State*>(state)); });
 }
 fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
   delete static_cast<Instance::State*>(*state);

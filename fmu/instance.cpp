@@ -141,12 +141,12 @@ pindrive_error Instance::initialise() {
   return error;
 }
 
-pindrive_error Instance::variable(std::size_t reference, const Variable*& found) const {
-  if (reference < 1 || reference > variables_.size())
-    return fail(PINDRIVE_BAD_VALUE, "a value reference must be from 0 to %zu, not %zu",
-                variables_.size(), reference);
-  found = &variables_[reference - 1];
-  return PINDRIVE_OK;
+/// Null where it is refused.
+const Variable* Instance::variable(std::size_t reference) const {
+  if (reference >= 1 && reference <= variables_.size()) return &variables_[reference - 1];
+  fail(PINDRIVE_BAD_VALUE, "a value reference must be from 0 to %zu, not %zu", variables_.size(),
+       reference);
+  return nullptr;
 }
 
 /// Where a variable of a kind stands in the list of its kind; −1 for another kind, and for none.
@@ -183,16 +183,15 @@ pindrive_error Instance::next_event(double& time) {
 
 pindrive_error Instance::number(std::size_t reference, double& value) {
   if (reference == 0) return now(value);
-  const Variable* asked = nullptr;
-  pindrive_error error = variable(reference, asked);
-  if (error) return error;
+  const Variable* const asked = variable(reference);
+  if (!asked) return PINDRIVE_BAD_VALUE;
   if (asked->kind == Variable::parameter ||
       (asked->kind == Variable::input && !values_.initialised)) {
     value = values_.start[reference - 1];
     return PINDRIVE_OK;
   }
   pindrive_instant now;
-  error = instant(now);
+  const pindrive_error error = instant(now);
   if (error) return error;
   if (asked->kind == Variable::input) {
     const Input& input = inputs[asked->place / 2];
@@ -218,9 +217,8 @@ pindrive_error Instance::whole(std::size_t reference, int& value) {
 }
 
 pindrive_error Instance::set(std::size_t reference, double value) {
-  const Variable* given = nullptr;
-  pindrive_error error = variable(reference, given);
-  if (error) return error;
+  const Variable* const given = variable(reference);
+  if (!given) return PINDRIVE_BAD_VALUE;
   if (given->kind == Variable::output)
     return fail(PINDRIVE_BAD_VALUE, "%s is an output, which cannot be set", given->name);
   if (!values_.initialised) {
@@ -232,7 +230,7 @@ pindrive_error Instance::set(std::size_t reference, double value) {
     return fail(PINDRIVE_BAD_VALUE,
                 "%s is a fixed parameter: it is set before the initialisation ends", given->name);
   pindrive_instant now;
-  error = instant(now);
+  const pindrive_error error = instant(now);
   if (error) return error;
   const Input& input = inputs[given->place / 2];
   const bool rate = given->place % 2 == 1;
@@ -275,8 +273,8 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
                 "a derivative is had of outputs that are real, but not of the next event");
   std::vector<double> along(variables_.size(), 0.0);
   for (std::size_t i = 0; i < count; ++i) {
-    const Variable* known = nullptr;
-    if (const pindrive_error error = variable(knowns[i], known)) return error;
+    const Variable* const known = variable(knowns[i]);
+    if (!known) return PINDRIVE_BAD_VALUE;
     if (known->kind == Variable::output ||
         (known->kind == Variable::parameter && values_.initialised))
       return fail(PINDRIVE_BAD_VALUE,
@@ -296,10 +294,10 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
     changing.reset(made);
     std::size_t place = 0;
     for (const Input& input : inputs) {
-      if (!error)
-        error =
-            pindrive_stepper_set_along(made, input.name, value_of_input(place, along.data()),
-                                       value_of_input(place + 1, along.data()));
+      const double value_seed = value_of_input(place, along.data());
+      const double rate_seed = value_of_input(place + 1, along.data());
+      if (!error && (value_seed != 0 || rate_seed != 0))
+        error = pindrive_stepper_set_along(made, input.name, value_seed, rate_seed);
       place += 2;
     }
   }

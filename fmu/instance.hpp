@@ -58,7 +58,7 @@ class Instance {
                       std::unique_ptr<State>& state) const;
 
  private:
-  pindrive_error variable(std::size_t reference, const Variable*& found) const;
+  const Variable* variable(std::size_t reference) const;
   int place(std::size_t reference, Variable::Kind kind) const;
   const char* name(std::size_t reference) const;
   double value_of_input(std::size_t place, const double* values) const;

@@ -21,7 +21,7 @@ void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept { std::free(memory); }
 
-// NOLINTBEGIN(cert-dcl58-cpp,bugprone-reserved-identifier): names of the libraries, which they declare so
+// NOLINTBEGIN(bugprone-*,cert-*): names of the libraries, which they declare so
 namespace std {
 #if defined(__GLIBCXX__) || defined(_LIBCPP_VERSION)
 const nothrow_t nothrow{};
@@ -37,4 +37,4 @@ _LIBCPP_BEGIN_NAMESPACE_STD
 [[noreturn]] void __libcpp_verbose_abort(const char* /*format*/, ...) noexcept { abort(); }
 _LIBCPP_END_NAMESPACE_STD
 #endif
-// NOLINTEND(cert-dcl58-cpp,bugprone-reserved-identifier)
+// NOLINTEND(bugprone-*,cert-*)

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
 #include "interface.hpp"
 #ifdef _WIN32
 #include <windows.h>  // last: it defines near and far
@@ -26,7 +27,8 @@ int place_of(Variable::Kind kind, const char* name) {
     for (const Input& input : inputs) {
       const std::size_t length = std::strlen(input.name);
       if (std::strcmp(name, input.name) == 0) return place;
-      if (std::strncmp(name, input.name, length) == 0 && std::strcmp(name + length, rate_ending) == 0)
+      if (std::strncmp(name, input.name, length) == 0 &&
+          std::strcmp(name + length, rate_ending) == 0)
         return place + 1;
       place += 2;
     }
@@ -54,12 +56,11 @@ pindrive_error content_of(const char* path, std::vector<char>& content) {
   std::FILE* file = opened(path);
   if (!file) return fail(PINDRIVE_BAD_VALUE, "cannot read %.200s", path);
   content.clear();
-  std::size_t size = 0, got = 1;
-  while (got > 0) {
+  std::size_t size = 0;
+  do {
     content.resize(size + 4096);
-    got = std::fread(&content[size], 1, content.size() - size, file);
-    size += got;
-  }
+    size += std::fread(&content[size], 1, content.size() - size, file);
+  } while (size == content.size());
   std::fclose(file);
   content.resize(size);
   content.push_back('\0');

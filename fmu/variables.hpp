@@ -14,7 +14,11 @@ struct Input {
 };
 constexpr Input inputs[] = {
     {"mouse_velocity", &pindrive_instant::mouse_velocity, &pindrive_instant::mouse_velocity_rate},
-    {"plate_load", &pindrive_instant::plate_load, &pindrive_instant::plate_load_rate}};
+    {"plate_load", &pindrive_instant::plate_load, &pindrive_instant::plate_load_rate},
+    {"force", &pindrive_instant::force, &pindrive_instant::force_rate},
+    {"across_velocity", &pindrive_instant::across_velocity,
+     &pindrive_instant::across_velocity_rate},
+    {"finger_load", &pindrive_instant::finger_load, &pindrive_instant::finger_load_rate}};
 constexpr const char* rate_ending = "_rate";
 
 /// The places of outputs that are none of pindrive_quantity, which come first.

@@ -570,7 +570,8 @@ class Certifier {
     if (!brief_) instant_ = segment.begin;
     brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_;
     const auto began = [&](ContactState does, ContactState& was, T& since) {
-      if (does != was) since = segment.begin;
+      const bool slides_on = was == ContactState::slip_oblique && slips(does);
+      if (does != was && !slides_on) since = segment.begin;
       was = does;
       return since >= instant_;
     };
@@ -585,14 +586,12 @@ class Certifier {
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)
       s.plate_force = stage.load.value * kinetic(drive_.plate, T(0)) * drags / turns;
-    // What slid before it, and goes on, rests only where its speed is zero; a rigid stop keeps the pin
-    // from going with the plate.
-    const T u = s.v - stage.plate_velocity.value;
+    // A rigid stop keeps the pin from going with the plate.
     const int end = s.x < 0 ? -1 : 1;
     const bool at_stop = drive_.stops.rigid() && end * s.x >= drive_.stops.travel;
-    const bool on_plate = (plate ? abs(u) <= still : u == 0) && !oblique &&
+    const bool on_plate = abs(s.v - stage.plate_velocity.value) <= still && !oblique &&
                           !(at_stop && end * stage.plate_velocity.rate > 0);
-    const bool on_finger = (finger ? abs(s.v) <= still : s.v == 0) && drive_.finger.rigid();
+    const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
     const Beginning<T> now{s.x,
                            s.v,

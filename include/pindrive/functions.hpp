@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "pindrive/elementary.hpp"
@@ -41,7 +40,7 @@ inline double atan2(double y, double x) { return angle_of(y, x); }
 inline double hypot(double a, double b) {
   double more = std::abs(a), less = std::abs(b);
   if (more < less) std::swap(more, less);
-  if (!(more > 0 && more < std::numeric_limits<double>::infinity())) return more;
+  if (more == 0 || !std::isfinite(more)) return more;
   const double part = less / more;
   return more * std::sqrt(1 + part * part);
 }

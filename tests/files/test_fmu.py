@@ -28,6 +28,8 @@ SKIN = EXAMPLES / "stribeck-skin.toml"
 TIMES = (0.0, 0.013, 0.05, 0.11, 0.2)
 VELOCITIES = (0.06, 0.09, -0.04, -0.04, 0.02)
 LOADS = (1.0, 0.2, 1.5, 1.0, 0.0)
+FORCES = (0.0, 0.004, -0.01, -0.01, 0.002)  # N
+FINGER_LOADS = (1.0, 0.5, 1.5, 1.0, 0.3)
 END = 0.3
 
 
@@ -105,6 +107,8 @@ class Archive:
             Profile(TIMES, VELOCITIES),
             displacement=self.device.release.displacement,
             plate_load=Profile(TIMES, LOADS),
+            force=Profile(TIMES, FORCES),
+            finger_load=Profile(TIMES, FINGER_LOADS) if self.device.drive.finger.rigid else 1.0,
         )
         return simulate(self.device.drive, release, duration=END)
 
@@ -124,6 +128,19 @@ def test_a_strict_importer_finds_nothing_wrong(archive: Archive) -> None:
     assert float(named["drive.mass"].start) == archive.device.drive.mass
     assert named["drive.mass"].unit == "kg" and float(named["drive.mass"].min) > 0
     assert len(named) == len(variables)
+    inputs = {v.name: v for v in variables if v.causality == "input"}
+    expected = {"mouse_velocity", "plate_load", "force", "across_velocity"}
+    if archive.device.drive.finger.rigid:
+        expected.add("finger_load")
+    assert inputs.keys() == expected | {f"{name}_rate" for name in expected}
+    assert inputs["force"].unit == "N" and inputs["force_rate"].unit == "N/s"
+    assert ("motion.finger_load" in named) != archive.device.drive.finger.rigid
+    outputs = {v.name: v for v in variables if v.causality == "output"}
+    assert {name: v.unit for name, v in outputs.items()} == {
+        **{"position": "m", "velocity": "m/s", "acceleration": "m/s^2"},
+        **{"plate_force": "N", "finger_force": "N", "stretch": "m", "stretch_rate": "m/s"},
+        **{"next_event_time": "s", "plate_state": None, "finger_state": None},
+    }
 
 
 def test_the_libraries_are_small_and_need_no_other(archive: Archive) -> None:
@@ -147,11 +164,14 @@ def driven(unit: Unit, random: np.random.Generator, largest: float) -> Iterator[
     """Steps of random length under inputs that change, after each of them."""
     for i, (begin, end) in enumerate(pairwise((*TIMES, END))):
         assert unit.time == begin
-        unit.set(mouse_velocity=VELOCITIES[i], plate_load=LOADS[i])
-        slopes = {"mouse_velocity": rates(VELOCITIES, i), "plate_load": rates(LOADS, i)}
+        rows = {"mouse_velocity": VELOCITIES, "plate_load": LOADS, "force": FORCES}
+        if "finger_load" in unit.numbers:
+            rows["finger_load"] = FINGER_LOADS
+        unit.set(**{name: values[i] for name, values in rows.items()})
+        slopes = {name: rates(values, i) for name, values in rows.items()}
         if unit.version == 2 and i % 2:  # FMI 2 sets a rate in either way
             numbers = [unit.numbers[name] for name in slopes]
-            unit.slave.setRealInputDerivatives(numbers, [1, 1], [*slopes.values()])
+            unit.slave.setRealInputDerivatives(numbers, [1] * len(slopes), [*slopes.values()])
         else:
             unit.set(**{f"{name}_rate": slope for name, slope in slopes.items()})
         while unit.time < end:
@@ -235,6 +255,29 @@ def test_an_importer_of_its_own_drives_it(archive: Archive) -> None:
     assert (np.asarray(result["next_event_time"]) > time).all() and len(time) == 51
 
 
+@pytest.mark.parametrize("archive", [(MOUSE, 3), (SKIN, 2)], indirect=True, ids=str)
+def test_outputs_are_those_of_a_simulation(archive: Archive) -> None:
+    """Also under a velocity across, by which the plate does not stick."""
+    release = Release(0.06, displacement=0.002, across_velocity=0.01, force=0.003)
+    motion = simulate(archive.device.drive, release, duration=0.1)
+    unit = archive.unit().begin(
+        mouse_velocity=0.06, motion__displacement=0.002, across_velocity=0.01, force=0.003
+    )
+    times = np.linspace(0.0013, 0.097, 40)
+    known = {
+        **{name: getattr(motion, name)(times) for name in ("position", "velocity", "acceleration")},
+        **{f"{contact}_force": motion.force(contact, times) for contact in ("plate", "finger")},
+    }
+    if not archive.device.drive.finger.rigid:
+        known |= {"stretch": motion.stretch(times), "stretch_rate": motion.stretch_rate(times)}
+    found = []
+    for time in times:
+        unit.step(float(time))
+        found.append(unit.get(*known))
+    for (name, expected), values in zip(known.items(), np.transpose(found), strict=True):
+        assert np.abs(values - expected).max() <= 1e-11 * np.abs(expected).max(), name
+
+
 def test_derivatives_are_exact(archive: Archive) -> None:
     unit = archive.unit()
     if unit.version == 2:
@@ -312,7 +355,10 @@ def test_it_says_what_is_refused(archive: Archive, capsys: pytest.CaptureFixture
         (lambda: unit.set(drive__mass=1.0), "drive.mass is a fixed parameter"),
         (lambda: unit.set(position=1.0), "position is an output"),
         (lambda: unit.set(plate_load=-1.0), "plate_load must be at least 0 and finite, not -1"),
-        (lambda: unit.slave.doStep(5.0, 1.0), "a step must begin where the last one ended, at 0 s, not at 5 s"),
+        (
+            lambda: unit.slave.doStep(5.0, 1.0),
+            "a step must begin where the last one ended, at 0 s, not at 5 s",
+        ),
         (lambda: bad.begin(drive__mass=-1.0), "mass must be above 0 and finite, not -1"),
     ):
         with pytest.raises(FMICallException):

@@ -29,13 +29,14 @@ def fmu(
 ) -> None:
     """Write the drive of a device file as a functional mock-up unit (FMU) for co-simulation.
 
-    Mouse velocity and plate load are its inputs, each with its rate; all other values of the drive
-    and its release are parameters. It follows the pin exactly, whatever the steps of the importer.
+    What a release lets change over time is an input, with its rate: mouse velocity, plate load,
+    force, velocity across and, for a rigid finger, its load. All other values of the drive and its
+    release are parameters. It follows the pin exactly, whatever the steps of the importer.
 
     Rows of an input in the file are not in it: what the importer sets takes their place.
     """
     from pindrive.files.device import load_device
-    from pindrive.files.fmu import variables_of, write_fmu
+    from pindrive.files.fmu import inputs_of, variables_of, write_fmu
     from pindrive.files.output import FMU, Output, naming, writing
     from pindrive.motion.profile import Profile
 
@@ -43,7 +44,7 @@ def fmu(
         device = load_device(file, overrides or ())
         with writing([Output(output, FMU, "-o")], device.inputs) as parts, naming(output):
             write_fmu(device, parts[output], fmi)
-    for name in ("mouse_velocity", "plate_load"):
+    for name in inputs_of(device):
         given = getattr(device.release, name)
         if isinstance(given, Profile) and given.changes:
             typer.echo(

@@ -21,7 +21,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 from pindrive.files.device import DeviceFile
 from pindrive.motion.drive import Contact
 from pindrive.motion.profile import Profile
-from pindrive.quantities.drive import INPUTS
+from pindrive.motion.release import INPUTS
 from pindrive.quantities.quantity import DISPLAY, Quantity
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
@@ -50,10 +50,13 @@ _BASE: Final = {
     "m/s": {"m": 1, "s": -1},
     "m/s^2": {"m": 1, "s": -2},
     "1/s": {"s": -1},
+    "N/s": {"kg": 1, "m": 1, "s": -3},
     "N/m": {"kg": 1, "s": -2},
     "N*s/m": {"kg": 1, "s": -1},
 }
 """The units of its variables by powers of those of the SI."""
+_RATES: Final = {"m/s": "m/s^2", "1": "1/s", "N": "N/s"}
+"""The units of the rates of inputs by those of the inputs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +101,9 @@ def _parameters(device: DeviceFile) -> Iterator[Variable]:
         if not contact.rigid:
             row = QUANTITIES["finger.stiffness"]
             yield _given(f"{place}.stiffness", row, contact.stiffness)
-    for name in ("displacement", "velocity", "skin_stretch"):
+    for name in ("displacement", "velocity", "skin_stretch", "finger_load"):
         value = getattr(release, name)
-        if value is not None:
+        if name not in inputs_of(device) and value is not None:
             yield _given(f"motion.{name}", QUANTITIES[name], value)
 
 
@@ -109,16 +112,25 @@ def _given(name: str, row: Quantity, value: float) -> Variable:
     return Variable(name, "parameter", row.meaning, row.unit, value, least, largest)
 
 
+def inputs_of(device: DeviceFile) -> tuple[str, ...]:
+    """The inputs that its unit has, without their rates: those of a release.
+
+    The load of a finger with a stiffness or a curve is a parameter, as it cannot change.
+    """
+    finger = device.drive.finger
+    fixed = () if finger.rigid and not finger.curved else ("finger_load",)
+    return tuple(name for name in INPUTS if name not in fixed)
+
+
 def _inputs(device: DeviceFile) -> Iterator[Variable]:
-    for name in ("mouse_velocity", "plate_load"):
-        row: Quantity = next(row for row in INPUTS if row.name == name)
+    for name in inputs_of(device):
+        row = QUANTITIES[name]
         given: float | Profile = getattr(device.release, name)
-        value, rate = (given(0.0), 0.0) if isinstance(given, Profile) else (given, 0.0)
+        value = given(0.0) if isinstance(given, Profile) else given
         limits = row.limits
         yield Variable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
-        unit = {"m/s": "m/s^2", "1": "1/s"}[row.unit]
         meaning = f"rate at which {name} continues until it is set again"
-        yield Variable(f"{name}_rate", "input", meaning, unit, rate)
+        yield Variable(f"{name}_rate", "input", meaning, _RATES[row.unit], 0.0)
 
 
 def _outputs() -> Iterator[Variable]:
