@@ -60,7 +60,7 @@ pindrive_error content_of(const char* path, std::vector<char>& content) {
   do {
     content.resize(size + 4096);
     size += std::fread(&content[size], 1, content.size() - size, file);
-  } while (size == content.size());
+  } while (size == content.size() && !std::feof(file) && !std::ferror(file));
   std::fclose(file);
   content.resize(size);
   content.push_back('\0');
