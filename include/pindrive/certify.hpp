@@ -414,15 +414,14 @@ class Certifier {
     const Oscillator<T>& oscillator = stage.segment.flow.oscillator;
     std::array<typename PositivityBound<T>::Flatness, 6> flatness;
     for (int i = 0; i < stage.count; ++i)
-      flatness[i] = stage.watches[i].guard.flatness(oscillator, from.moment, from.tau,
-                                                    to.tau - from.tau);
+      flatness[i] =
+          stage.watches[i].guard.flatness(oscillator, from.moment, from.tau, to.tau - from.tau);
     ClosedState before = from;
     const auto follow = [&](const ClosedState& now) {
       for (int i = 0; i < stage.count; ++i) {
         const auto& [guard, law, scale] = stage.watches[i];
-        const T lowest =
-            guard.lowest(oscillator, guard.at(before.moment),
-                         guard.at(now.moment), flatness[i], unseen * scale);
+        const T lowest = guard.lowest(oscillator, guard.at(before.moment), guard.at(now.moment),
+                                      flatness[i], unseen * scale);
         if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
       }
       laws(stage, now, errors);

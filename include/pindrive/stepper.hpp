@@ -25,8 +25,8 @@ struct Held {
   T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
 
   Held() = default;
-  Held(T constant) : line{constant, T(0)} {}  // NOLINT: as of a Profile
-  Held(T begin, const Line<T>& from_there) : since(begin), line(from_there) {}
+  Held(T constant) noexcept : line{constant, T(0)} {}  // NOLINT: as of a Profile
+  Held(T begin, const Line<T>& from_there) noexcept : since(begin), line(from_there) {}
 
   Line<T> from(T t) const {
     if (t >= ends) return {};
