@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from command import taking_ctrl_c
+from command import EXAMPLES, taking_ctrl_c
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
 ASKS = "import os, signal; os.kill(os.getpid(), signal.SIGINT); import time; time.sleep(0)\n"
@@ -38,7 +38,7 @@ def test_an_import_runs_to_its_end(loses: str, tmp_path: Path) -> None:
     (tmp_path / "loses.py").write_text(LOSES[loses])
     program = """
         import time
-        from pindrive.cli.errors import interruptible
+        from pindrive.cli.interrupts import interruptible
         interruptible()
         try:
             import loses
@@ -53,7 +53,7 @@ def test_an_import_runs_to_its_end(loses: str, tmp_path: Path) -> None:
 def test_a_finalizer_cannot_lose_it(tmp_path: Path) -> None:
     program = f"""
         import time
-        from pindrive.cli.errors import interruptible
+        from pindrive.cli.interrupts import interruptible
         interruptible()
         class Last:
             def __del__(self):
@@ -73,9 +73,80 @@ def test_ignored_stays_ignored(tmp_path: Path) -> None:
     program = f"""
         import signal
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        from pindrive.cli.errors import interruptible
+        from pindrive.cli.interrupts import interruptible
         interruptible()
         {ASKS.strip()}
     """
     ended = run(program, tmp_path)
     assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_a_second_one_says_nothing_more(tmp_path: Path) -> None:
+    program = f"""
+        import time
+        import typer
+        from pindrive.cli.errors import refusing
+        from pindrive.cli.interrupts import interruptible
+        def stopped():
+            {ASKS.strip()}
+            return "stopped"
+        interruptible()
+        try:
+            with refusing(stopped):
+                {ASKS.strip()}
+                time.sleep(30)
+        except typer.Exit as end:
+            print(end.exit_code)
+    """
+    ended = run(program, tmp_path)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "130\n", "stopped\n")
+
+
+def test_one_outside_of_a_command_ends_in_a_line_too(tmp_path: Path) -> None:
+    program = f"""
+        import sys, time
+        from pindrive.__main__ import main
+        from pindrive.cli.app import app
+        @app.command(rich_help_panel="Studies")
+        def again():
+            {ASKS.strip()}
+            time.sleep(30)
+        sys.argv = ["pindrive", "again"]
+        main()
+    """
+    ended = run(program, tmp_path)
+    said = "stopped; nothing was written\n"
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", said)
+
+
+MOUSE, READER = (EXAMPLES / f"tactile-{name}-study.toml" for name in ("mouse", "reader"))
+MOMENTS = {
+    "typer": "--help",
+    "pindrive.study.runner": f"sweep {MOUSE} -o study.nc",
+    "numpy": f"sensitivity {MOUSE}",
+    "pindrive.study.robustness": f"robustness {READER}",
+    "pindrive.fitting.recording": f"fit {EXAMPLES / 'tactile-mouse.toml'} "
+    f"{EXAMPLES / 'release-recording.csv'} --free mass,stiffness",
+    "pindrive.optimisation.wish": f"design {EXAMPLES / 'tactile-mouse-wish.toml'} -o design.toml",
+}
+"""A command that takes long, by a module that it is just importing."""
+
+
+@pytest.mark.parametrize("module", MOMENTS)
+def test_a_command_ends_in_a_line_while_it_is_imported(module: str, tmp_path: Path) -> None:
+    program = f"""
+        import os, signal, sys
+        class Moment:
+            def find_spec(self, name, *_):
+                if name == {module!r}:
+                    sys.meta_path.remove(self)
+                    os.kill(os.getpid(), signal.SIGINT)
+        sys.meta_path.insert(0, Moment())
+        sys.argv = ["pindrive", *{MOMENTS[module].split()!r}]
+        from pindrive.__main__ import main
+        main()
+    """
+    ended = run(program, tmp_path)
+    assert (ended.returncode, ended.stdout) == (130, ""), ended.stderr
+    assert ended.stderr.startswith("stopped; n") and ended.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []

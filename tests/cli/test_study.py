@@ -203,6 +203,15 @@ LONG = {
 }
 
 
+def begun(process: int) -> list[str]:
+    """The processes that a process has begun; where no file tells, two seconds later some two."""
+    lists = [*Path("/proc", str(process), "task").glob("*/children")]
+    if not lists:
+        time.sleep(2.0)
+        return ["", ""]
+    return [child for path in lists for child in path.read_text().split()]
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals are others there")
 @pytest.mark.parametrize("command", LONG)
 def test_ctrl_c_ends_at_once_and_leaves_nothing(command: str) -> None:
@@ -228,8 +237,12 @@ def test_ctrl_c_ends_at_once_and_leaves_nothing(command: str) -> None:
             while {path.name for path in Path().iterdir()} == before:
                 assert process.poll() is None, process.communicate()
                 time.sleep(0.05)
-        # Nothing tells when processes, which scans are shared among, have begun.
-        time.sleep(2.0 if "of scans" in command else 0.3)
+        if "of scans" in command:  # just as the first process, which scans are shared among, begins
+            while len(begun(process.pid)) < 2:  # one keeps track of what they share
+                assert process.poll() is None, process.communicate()
+                time.sleep(0.005)
+        else:
+            time.sleep(0.3)
         assert process.poll() is None, "it takes longer than that"
         os.killpg(process.pid, signal.SIGINT)
         said, error = process.communicate(timeout=60)

@@ -89,7 +89,7 @@ def test_it_is_data_and_a_notebook_shows_it(found: Fit) -> None:
 
 def test_all_channels_with_offsets_and_an_unknown_time_of_release() -> None:
     names = ("position", "velocity", "acceleration", "force")
-    given = recorded(TRUTH, RELEASE, *names, rate=2e3, delay=0.0132, noise=0.02)
+    given = recorded(TRUTH, RELEASE, *names, rate=1e3, delay=0.0132, noise=0.02)
     shifted = {**given.channels, "position": given.channels["position"] + 4e-4}
     recording = given.with_changes(channels=shifted)
     free = ["mass", *FREE, "time_offset", "position_offset"]

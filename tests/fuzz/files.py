@@ -121,7 +121,7 @@ def _run(case: Case, folder: Path, out: Path, err: Path) -> None:
             stream.flush()
             os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT), stream.fileno())
         sys.argv = ["pindrive", *case.command]
-        from pindrive.cli.app import main
+        from pindrive.__main__ import main
 
         try:
             main()

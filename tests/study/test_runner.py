@@ -191,6 +191,19 @@ def test_killed_and_resumed_is_the_same_file(whole: bytes, moment: str) -> None:
     assert Path("study.nc").read_bytes() == whole
 
 
+def test_one_that_ends_as_it_opens_its_journal_leaves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stop(*_: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    study = plan()
+    monkeypatch.setattr(Journal, "_read", stop)
+    with pytest.raises(KeyboardInterrupt):
+        runner.sweep(study, Path("study.nc"))
+    assert files() == {"study.toml"}
+
+
 def die_in_a_sweep(moment: str) -> NoReturn:
     """After four chunks, in the middle of the file."""
     put, note = Store.put, Journal.note

@@ -11,8 +11,8 @@ from typing import Annotated, Any
 
 import typer
 
-from pindrive.cli.errors import INTERRUPTED, interruptible
 from pindrive.cli.help import Program, register
+from pindrive.cli.interrupts import INTERRUPTED, STOPPED, ignore_more
 
 app = typer.Typer(
     name="pindrive",
@@ -27,7 +27,6 @@ register(app)
 
 def main() -> None:
     """Run the command line."""
-    interruptible()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without µ shows ? instead
@@ -35,6 +34,8 @@ def main() -> None:
     try:
         app()
     except KeyboardInterrupt:
+        ignore_more()
+        print(STOPPED, file=sys.stderr)
         status = INTERRUPTED
     except SystemExit as end:
         status = end.code

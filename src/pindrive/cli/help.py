@@ -11,6 +11,8 @@ from typing import Any, Final, TypeVar
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from pindrive.cli.errors import stopping
+
 Function = TypeVar("Function", bound=Callable[..., None])
 
 COMMAND_GROUPS: Final = (
@@ -39,6 +41,7 @@ _SHARED: Final = (
     "errors",
     "fit_tables",
     "help",
+    "interrupts",
     "options",
     "progress",
     "scan_tables",
@@ -113,6 +116,16 @@ class Program(TyperGroup):
 
     def _group(self, name: str) -> str:
         return str(vars(self.commands[name])["rich_help_panel"])
+
+    def make_context(self, *given: Any, **more: Any) -> Any:
+        """Read the arguments."""
+        with stopping():
+            return super().make_context(*given, **more)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; Ctrl-C before and after its own work, too, is a line."""
+        with stopping():
+            return super().invoke(ctx)
 
     def main(
         self,

@@ -218,8 +218,13 @@ class Journal:
             if restart:
                 self._file.truncate(0)
             self.done = self._read(identity)
-        except BaseException:
+        except BaseException as error:
             self._file.close()
+            ours = not isinstance(
+                error, OutputError
+            )  # else it may be another process's, just begun
+            if ours and not path.stat().st_size:
+                path.unlink()
             raise
 
     def __enter__(self) -> Journal:

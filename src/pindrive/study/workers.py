@@ -8,15 +8,17 @@ import sys
 import threading
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import cache
-from multiprocessing import active_children, get_context, parent_process
+from multiprocessing import active_children, parent_process
+from multiprocessing.context import SpawnContext, SpawnProcess
 from threading import Thread
 from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 from pindrive.files.output import OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
 Shared = TypeVar("Shared")
 Given = TypeVar("Given")
@@ -55,7 +57,7 @@ def standing(count: int) -> Standing:
 
 def stop_at_once(status: int) -> NoReturn:
     """End this process without waiting for what is under way."""
-    if not active_children():
+    if "multiprocessing.synchronize" not in sys.modules:  # nothing is shared with processes
         os._exit(status)
     threading.excepthook = lambda _: None  # of pools that miss their processes
     for process in active_children():
@@ -63,9 +65,35 @@ def stop_at_once(status: int) -> NoReturn:
     sys.exit(status)  # so that what they shared is given back
 
 
+@contextmanager
+def _held_back() -> Iterator[None]:
+    """Ctrl-C comes after this, and never to a process that is started meanwhile."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _Worker(SpawnProcess):
+    """A process that takes no Ctrl-C from its first instruction on: its asker ends it."""
+
+    def start(self) -> None:
+        with _held_back():
+            super().start()
+
+
+class _Context(SpawnContext):
+    """Processes begun anew, not forked: a process with threads cannot be forked safely."""
+
+    Process = _Worker
+
+
 def _processes(count: int) -> ProcessPoolExecutor:
-    """Begun anew, not forked: a process with threads cannot be forked safely."""
-    return ProcessPoolExecutor(count, get_context("spawn"), initializer=_attend)
+    return ProcessPoolExecutor(count, _Context(), initializer=_attend)
 
 
 def _attend() -> None:
