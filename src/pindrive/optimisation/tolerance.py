@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.optimisation.problem import Problem
+from pindrive.optimisation.scanned import Scanned
 from pindrive.optimisation.wish import Variable, Wish
 from pindrive.study.distributions import Sample, implied_links
 from pindrive.study.robustness import Share
@@ -53,6 +54,7 @@ def excess_as_built(
         variables=tuple(Variable(key, {key: axis}) for key, axis in plan.tolerances.items()),
         links=implied_links(device, varied, problem.scans) | dict(plan.tolerance_links),
         price=float(problem.prices(point[None])[0]),
+        scanned=Scanned(),
     )
     found: Array = drawn.excess(drawn.numbers(parts)).max(axis=2)
     return found
