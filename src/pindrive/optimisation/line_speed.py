@@ -68,7 +68,7 @@ def _speed(plan: Plan, asked: Asked) -> tuple[float, int]:
         pitches = plan.page.page.grating or ()
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
-            climb = _Climb(device, pitch, criteria)
+            climb = Climb(device, pitch, criteria)
             if asked.confirmed:
                 own = climb.first_interval()
             else:  # the least of several counts: no pitch is followed beyond the one before
@@ -84,7 +84,7 @@ def _speed(plan: Plan, asked: Asked) -> tuple[float, int]:
 
 
 @dataclass
-class _Climb:
+class Climb:
     """The way to the speed from which on two lines merge."""
 
     device: Device
@@ -93,6 +93,7 @@ class _Climb:
     trials: dict[float, bool] = field(default_factory=dict)
 
     def distinct(self, speed: float) -> bool:
+        """Whether the lines are, by a trial or from one that has been made."""
         if speed not in self.trials:
             trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
             distinct = trial.distinct(default("speed.part"), self.criteria.direction)

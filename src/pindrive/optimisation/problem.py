@@ -324,7 +324,7 @@ class Problem:
     def worth(
         self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
     ) -> tuple[Array, Array]:
-        """Goals (n, g) and violations (n,), by the worst case of each; arguments as for `excess`."""
+        """Goals (n, g) and violations (n,), by the worst case of each, as for `excess`."""
         goals = self.minimised(numbers, most).max(axis=2).T
         over = self.excess(numbers, most).max(axis=2).T / self.scales
         violation = np.clip(over, 0.0, FAR).sum(axis=1)

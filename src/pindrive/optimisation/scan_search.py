@@ -1,8 +1,8 @@
 """The search where each candidate is a scan: few are tried, each where it promises most.
 
 Kriging of all numbers that have been scanned stands for the scans; the differential evolution of
-`search` finds on it the best device that may be expected, and the best that is possible within so
-many standard deviations. These are scanned, and the model is made anew: efficient global
+`search` finds on it the best device where all numbers are as expected, and where they are worse or
+better by standard deviations. These are scanned, and the model is made anew: efficient global
 optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and John 1992).
 """
 
