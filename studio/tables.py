@@ -29,7 +29,7 @@ from pindrive.files.template import (
     template,
     usual_rows,
 )
-from pindrive.motion.contact import SLOPES
+from pindrive.motion.drive import SLOPES
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.motion.release import CONTINUOUS, INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, event_name

@@ -23,6 +23,7 @@ __all__ = [
     "ft2font",
     "h5netcdf",
     "h5py",
+    "linalg",
     "matplotlib",
     "optimize",
     "pint",
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib import ft2font
     from PIL import Image, ImageDraw, ImageFont, ImageOps, features
-    from scipy import optimize, signal, special, stats
+    from scipy import linalg, optimize, signal, special, stats
     from scipy.stats import qmc
 else:
 
@@ -74,6 +75,7 @@ else:
     features = _Module("PIL.features")
     rich_console = _Module("rich.console")
     rich_progress = _Module("rich.progress")
+    linalg = _Module("scipy.linalg")
     optimize = _Module("scipy.optimize")
     signal = _Module("scipy.signal")
     special = _Module("scipy.special")

@@ -165,7 +165,7 @@ def test_the_script_for_a_shell(
     [
         ("pindrive si", ["simulate"]),
         ("pindrive s", ["simulate", "studio", "scan", "speed", "sensitivity", "sweep"]),
-        ("pindrive init --", ["--force", "--device", "--study", "--help"]),
+        ("pindrive init --", ["--force", "--device", "--study", "--wish", "--help"]),
     ],
 )
 def test_a_shell_is_told_what_may_follow(typed: str, offered: list[str]) -> None:

@@ -22,6 +22,9 @@ LONG = {
     "speed": f"speed {EXAMPLES / 'tactile-reader.toml'} --plot a.png --slowest 1mm/s",
     "robustness": f"robustness {EXAMPLES / 'tactile-reader-study.toml'} --plot a.png",
     "sensitivity": f"sensitivity {EXAMPLES / 'tactile-reader-study.toml'} --plot a.pdf",
+    "fit": f"fit {EXAMPLES / 'tactile-mouse.toml'} {EXAMPLES / 'release-recording.csv'} "
+    "--free stiffness,damping,plate.kinetic,finger.kinetic,displacement,time_offset -o a.toml "
+    "--plot a.png",
 }
 
 
@@ -38,4 +41,37 @@ def test_ctrl_c_ends_a_command(name: str) -> None:
         _, said = running.communicate()
     assert running.returncode == 130, said
     assert said.startswith("stopped") and said.count("\n") == 1
+    assert list(Path().iterdir()) == []
+
+
+WISHES = {
+    "motions": "tactile-mouse-wish.toml",
+    "scans": "tactile-reader-wish.toml --set control.sample_rate=250Hz",
+}
+INTERRUPTED = """
+import os, signal
+from pindrive.cli.app import main
+from pindrive.optimisation.designing import _Optimisation
+
+def step(_):
+    os.kill(os.getpid(), signal.SIGINT)
+
+_Optimisation.step = step
+main()
+"""
+
+
+@pytest.mark.parametrize("name", WISHES)
+def test_ctrl_c_ends_a_design(name: str) -> None:
+    """Sent between the screening and the search; a folder is written at the end alone."""
+    words = f"design {EXAMPLES}/{WISHES[name]} -o out".split()
+    ended = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED, *words],
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+        preexec_fn=taking_ctrl_c,
+    )
+    assert ended.returncode == 130, ended.stderr
+    assert ended.stderr == "stopped; nothing was written\n"
     assert list(Path().iterdir()) == []

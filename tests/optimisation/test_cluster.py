@@ -8,7 +8,7 @@ import pytest
 
 import pindrive as pd
 from pindrive.optimisation import Design, read_wish
-from pindrive.optimisation.line_speed import speeds
+from pindrive.optimisation.line_speed import Asked, speeds
 from pindrive.study.cluster import crew
 from recordings import recorded
 from wishes import EXAMPLES, MOUSE, PAPER, SMALL
@@ -50,9 +50,11 @@ def test_a_fit_with_profiles_from_a_cluster_is_that_found_here(address: str) -> 
 
 def test_whole_devices_go_to_workers_and_come_back_in_order(address: str) -> None:
     plan = read_wish(EXAMPLES / "tactile-reader-wish.toml", ["control.sample_rate=250 Hz"]).plan
-    asked = [({"magnet.hold_force": force}, 0.5) for force in (1.0, 1.2)]
+    asked = [Asked({"drive.stiffness": k}, 0.2, 1.0) for k in (150.0, 600.0)]
     with crew(address) as workers:
-        assert [*workers.spread(speeds, plan, [asked[:1], asked[1:]])] == [[(0.0, 1)]] * 2
+        found = [*workers.spread(speeds, plan, [asked[:1], asked[1:]])]
+    assert found == [speeds(plan, asked[:1]), speeds(plan, asked[1:])]
+    assert found[0] != found[1]
 
 
 def test_threads_and_a_cluster_are_refused_together() -> None:

@@ -13,13 +13,13 @@ Array = NDArray[np.float64]
 
 def started(function: object, keys: int, size: int = 40, seed: int = 1) -> Population:
     points = np.random.default_rng(seed).random((size, keys))
-    return Population(points, *function(points, None))  # type: ignore[operator]
+    return Population(points, *function(points))  # type: ignore[operator]
 
 
 def test_one_goal_within_a_limit_ends_where_both_meet() -> None:
     """The least sum of squares about a corner, beyond a plane: its foot on the plane."""
 
-    def worth(points: Array, _: Array | None) -> tuple[Array, Array]:
+    def worth(points: Array) -> tuple[Array, Array]:
         goal = ((points - 0.1) ** 2).sum(axis=1)
         return goal[:, None], np.maximum(1.5 - points.sum(axis=1), 0.0)
 
@@ -31,7 +31,7 @@ def test_one_goal_within_a_limit_ends_where_both_meet() -> None:
 
 
 def test_what_no_point_meets_ends_at_the_nearest() -> None:
-    def worth(points: Array, _: Array | None) -> tuple[Array, Array]:
+    def worth(points: Array) -> tuple[Array, Array]:
         return points[:, :1], 2.0 - points.sum(axis=1) + 0.5
 
     found = search(
@@ -44,7 +44,7 @@ def test_what_no_point_meets_ends_at_the_nearest() -> None:
 def test_a_front_is_where_it_must_be_and_spread(goals: int) -> None:
     """DTLZ2 of Deb and others 2002: the front is the part of the unit sphere above 0."""
 
-    def worth(points: Array, _: Array | None) -> tuple[Array, Array]:
+    def worth(points: Array) -> tuple[Array, Array]:
         far = 1.0 + ((points[:, goals - 1 :] - 0.5) ** 2).sum(axis=1)
         angles = 0.5 * np.pi * points[:, : goals - 1]
         columns = [far * np.cos(angles).prod(axis=1)]

@@ -1,15 +1,18 @@
-"""The command `pindrive init`: a device file, or study file, to start from."""
+"""The command `pindrive init`: a device file, study file, or wish file, to start from."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import WRITTEN, command
 from pindrive.cli.options import ForceOption, option
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 @command("Device and study files", "pindrive init device.toml --device")
@@ -22,15 +25,27 @@ def init(
     study: Annotated[
         bool, option(WRITTEN, "A study file: a device, and what to vary of it.", "--study")
     ] = False,
+    wish: Annotated[
+        bool, option(WRITTEN, "A wish file: a device, and what is wanted of it.", "--wish")
+    ] = False,
 ) -> None:
-    """Write a commented device file, or study file, to start from."""
-    from pindrive.files.output import DEVICE_FILE, STUDY_FILE, Output, naming, writing
+    """Write a commented device file, study file, or wish file, to start from."""
+    from pindrive.files.output import DEVICE_FILE, STUDY_FILE, WISH_FILE, Output, naming, writing
     from pindrive.files.template import template
+    from pindrive.optimisation.template import wish_template
     from pindrive.study.template import study_template
 
-    kind = STUDY_FILE if study else DEVICE_FILE
-    with refusing(), writing([Output(file, kind)], consent=force) as parts, naming(file):
-        text = study_template(whole=device) if study else template(whole=device)
-        parts[file].write_text(text, encoding="utf-8")
-    release = f"scan {file} --text A" if device else f"simulate {file}"
-    typer.echo(f"Wrote {file}; try: pindrive {f'sweep {file}' if study else release}")
+    made: Callable[..., str]
+    made, kind, next_ = template, DEVICE_FILE, f"simulate {file}"
+    if study:
+        made, kind, next_ = study_template, STUDY_FILE, f"sweep {file}"
+    elif wish:
+        made, kind, next_ = wish_template, WISH_FILE, f"design {file} -o {file.stem}-design"
+    elif device:
+        next_ = f"scan {file} --text A"
+    with refusing():
+        if study and wish:
+            raise ValueError("give --study or --wish, not both")
+        with writing([Output(file, kind)], consent=force) as parts, naming(file):
+            parts[file].write_text(made(whole=device), encoding="utf-8")
+    typer.echo(f"Wrote {file}; try: pindrive {next_}")

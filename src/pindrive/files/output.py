@@ -279,4 +279,5 @@ STUDY_NETCDF: Final = Kind(
 )
 DEVICE_FILE: Final = Kind("device file", _is_device_file, "--force")
 STUDY_FILE: Final = Kind("study file", _is_study_file, "--force")
+WISH_FILE: Final = Kind("wish file", lambda path: "goals" in _tables(path), "--force")
 REPORT: Final = Kind("report of the paper", lambda path: b"Dynamics of tactile" in _head(path))

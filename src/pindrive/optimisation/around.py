@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from typing import Final
 
@@ -31,6 +32,7 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
     """
     if not resolution:
         return ()
+    problem = replace(problem, coarse=True)
     found = []
     count = 2 if problem.scans else MAPPED
     for i, j in combinations(range(min(count, len(point))), 2):

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pindrive.evaluation.resolution import largest_speeds
 from pindrive.lazy import qmc
 from pindrive.optimisation.around import alternatives, at_ends, maps
 from pindrive.optimisation.effort import Count, Effort, usual_effort
-from pindrive.optimisation.goals import PRICE, SPEED, Goal, Wish
+from pindrive.optimisation.goals import PRICE, Goal, Wish
 from pindrive.optimisation.line_speed import speeds
 from pindrive.optimisation.problem import (
     Problem,
@@ -24,6 +23,7 @@ from pindrive.optimisation.problem import (
     worst_cases,
 )
 from pindrive.optimisation.results import Demanded, Design, Front, Reached
+from pindrive.optimisation.scan_search import search_scans
 from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
 from pindrive.optimisation.wish import read_wish, wish_of
@@ -156,17 +156,18 @@ class _Optimisation:
         if self.wish.least_yield:
             found, chosen, excess = self._with_yield(found, chosen, excess, self.wish.least_yield)
         limits = [nan] * len(self.wish.demands)
-        if found.violation[chosen] <= 0.0:
+        for _ in range(ROUNDS):
+            if found.violation[chosen] > 0.0:
+                break
             limits, better = self._relaxations(found, chosen)
-            if better is not None:  # what is asked of less found more
-                more = (found + self.problem.population(better[None])).best(len(found.points))
-                found, chosen = self._with_worst_conditions(more)
-                if found.violation[chosen] <= 0.0:
-                    limits, _ = self._relaxations(found, chosen)
+            if better is None:
+                break
+            more = (found + self.problem.population(better[None])).best(len(found.points))
+            more = self._again(more) if self.problem.scans else more
+            found, chosen = self._with_worst_conditions(more)  # what is asked of less found more
         point, device, excess = self._as_built(found, chosen)
         self.problem = replace(self.problem, demands=self.wish.demands)  # as they were written
         goals, demanded = self._reached(point, limits)
-        goals = self._speed_checked(point, goals)
         feasible = all(d.excess <= 0.0 for d in demanded) and all(isfinite(r.value) for r in goals)
         built = share_of(excess) if excess is not None else None
         if built and self.wish.least_yield:
@@ -240,14 +241,37 @@ class _Optimisation:
         """The best of many candidates, improved."""
         first = self._candidates(self.problem, self.effort.motions)
         self.step()
-        return search(
-            self.problem,
-            first,
-            generations=self.effort.generations,
-            patience=self.effort.patience,
+        return self._searched(self.problem, first, self.effort.generations, self.step)
+
+    def _searched(
+        self,
+        problem: Problem,
+        first: Population,
+        generations: int,
+        progress: Callable[[], None] = lambda: None,
+    ) -> Population:
+        """The population improved, the best first."""
+        patience = self.effort.patience
+        if not problem.scans:
+            return search(
+                problem,
+                first,
+                generations=generations,
+                patience=patience,
+                rng=self.rng,
+                progress=progress,
+            )
+        found = search_scans(
+            problem,
+            size=len(first.points),
+            rounds=generations,
+            patience=patience,
             rng=self.rng,
-            progress=self.step,
+            progress=progress,
         )
+        while not problem.confirm(found.points[[choose(found)]]):
+            found = problem.known().best(len(first.points))
+        return found
 
     def _candidates(self, problem: Problem, motions: int) -> Population:
         """The best of candidates that are spread over all that may vary."""
@@ -255,10 +279,10 @@ class _Optimisation:
         count = max(size, motions // len(problem.cases))
         count = 1 << (count - 1).bit_length()  # a Sobol' sequence is even over powers of two
         sequence = qmc.Sobol(len(problem.variables), scramble=True, rng=self.seed)
-        kept = None
+        kept, rough = None, replace(problem, coarse=True)
         each = 1 << 16
         for begin in range(0, count, each):
-            found = problem.population(sequence.random(min(each, count - begin)))
+            found = rough.population(sequence.random(min(each, count - begin)))
             kept = (found if kept is None else kept + found).best(4 * size)
         assert kept is not None
         return kept.best(size)
@@ -287,13 +311,8 @@ class _Optimisation:
 
     def _again(self, found: Population) -> Population:
         """The search continued, after conditions or limits have changed."""
-        return search(
-            self.problem,
-            self.problem.population(found.points),
-            generations=max(1, self.effort.generations // 2),
-            patience=self.effort.patience,
-            rng=self.rng,
-        )
+        again = self.problem.population(found.points)
+        return self._searched(self.problem, again, max(1, self.effort.generations // 2))
 
     def _worse_cases(self, point: Array, attempt: int) -> Array:
         """Conditions at which the design is worse than at those of the problem, in what matters."""
@@ -318,34 +337,27 @@ class _Optimisation:
         And a better design than the chosen one that meets all demands, if one was met on the way.
         """
         problem, demands = self.problem, self.problem.demands
-        if problem.scans:  # each would take as many scans as the search
-            return [nan] * len(demands), None
-        limits, better = [], None
+        limits: list[float] = []
         for i, demand in enumerate(demands):
             relaxed = replace(
                 problem,
                 demands=(*demands[:i], *demands[i + 1 :], *self._no_worse(found.goals[chosen])),
                 goals=(Goal(demand.name, not demand.at_most),),
             )
-            known = relaxed.population(found.points)
-            result = search(
-                relaxed,
-                (known + self._candidates(relaxed, self.effort.motions // 8)).best(
-                    len(known.points)
-                ),
-                generations=max(1, self.effort.generations // 2),
-                patience=self.effort.patience,
-                rng=self.rng,
-            )
+            first = relaxed.population(found.points)
+            if not problem.scans:  # all that has been scanned is known to that search
+                size = len(first.points)
+                first = (first + self._candidates(relaxed, self.effort.motions // 8)).best(size)
+            result = self._searched(relaxed, first, max(1, self.effort.generations // 2))
             self.step()
             if result.violation[0] > 0.0:
                 limits.append(nan)
                 continue
             value = float(result.goals[0, 0]) * (1.0 if demand.at_most else -1.0)
             if demand.met(np.array([value])).all():
-                better, value = result.points[0], demand.limit
+                return [nan] * len(demands), result.points[0]
             limits.append(value - demand.limit + self.wish.demands[i].limit)
-        return limits, better
+        return limits, None
 
     def _no_worse(self, goals: Array) -> tuple[Demand, ...]:
         """The first goal better by `GAIN`, the others as they are."""
@@ -364,6 +376,7 @@ class _Optimisation:
         problem = self.problem
         worst = worst_cases(problem, point, self.effort.conditions, self.seed)
         cases = np.concatenate([problem.cases, worst]) if problem.conditions else problem.cases
+        problem.confirm(point[None], cases)
         numbers = problem.numbers(point[None], cases)
         bad = np.concatenate([problem.excess(numbers), problem.minimised(numbers)])[:, 0]
         places = bad.argmax(axis=1)
@@ -384,21 +397,6 @@ class _Optimisation:
             for goal, place in zip(problem.goals, places[split:], strict=True)
         )
         return goals, demanded
-
-    def _speed_checked(self, point: Array, goals: tuple[Reached, ...]) -> tuple[Reached, ...]:
-        """Goals whose hand speed is found to the precision of `largest_speeds`."""
-        page = self.wish.plan.page
-        checked = []
-        for reached in goals:
-            value = reached.value
-            if reached.goal.name == SPEED and page and isfinite(value):
-                file = device_at(self.wish.plan, {**self._values(point), **reached.case})
-                pitches = page.page.grating or ()
-                limits = largest_speeds(file.device, pitches, criteria=file.criteria)
-                whole = min(limit.speed for limit in limits)
-                value = whole
-            checked.append(replace(reached, value=value))
-        return tuple(checked)
 
     def _values(self, point: Array) -> dict[str, float]:
         """The value of every key of a design, SI, and of those that follow them."""

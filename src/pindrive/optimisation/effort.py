@@ -13,11 +13,11 @@ class Effort:
     Attributes:
         motions: or scans, of the screening.
         population: members of the search.
-        generations: of it, at most.
+        generations: of it, at most; of scans rounds, of four devices each.
         conditions: spread over their ranges to find the worst, a power of two.
         resolution: of a map, along each axis; 0: no map.
         draws: within the tolerances.
-        patience: generations without progress after which a search ends.
+        patience: generations, or rounds, without progress after which a search ends.
     """
 
     motions: int
@@ -33,7 +33,7 @@ BATCHED: Final = Effort(1 << 20, 128, 400, 1024, 41, 20_000)
 """Of what `simulate_batch` follows."""
 SINGLE: Final = Effort(1 << 11, 24, 60, 64, 9, 500, 12)
 """Of motions that are followed one by one."""
-SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 6)
+SCANNED: Final = Effort(16, 12, 24, 8, 5, 100, 3)
 """Of scans."""
 
 

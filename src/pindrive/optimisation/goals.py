@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +79,22 @@ class Variable:
     def part(self, row: int) -> float:
         """The part that stands for a row."""
         return (row + 0.5) / self.choices
+
+
+class Asked(NamedTuple):
+    """A device whose speed is to be found.
+
+    Attributes:
+        at: the values of keys, SI.
+        near: where its speed may be, m/s; NaN: anywhere.
+        beat: the speed, m/s, below which its own matters little; NaN: there is none.
+        confirmed: whether all speeds of the grid below its own are tried too.
+    """
+
+    at: Mapping[str, float]
+    near: float = nan
+    beat: float = nan
+    confirmed: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,117 +1,132 @@
 """The largest hand speed at which lines stay distinct, for many devices, with few trials each.
 
-The criterion and the grid of speeds are those of `largest_speeds`; a trial is a hand that goes over
-two lines once. Where only a device that beats a speed matters, one trial at that speed tells most
-of them.
+The criterion is that of `largest_speeds`; a trial is a hand that goes over two lines once. Lines
+are taken to be distinct at all speeds below one at which they are: a bracket is then found in a
+few trials. That they are is looked at where a device is to be confirmed, over the whole grid of
+speeds.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import isnan, nan
+from math import isnan, nan, sqrt
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.evaluation.resolution import TRIED, check_work, two_lines
+from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
+from pindrive.optimisation.goals import Asked
 from pindrive.quantities.table import default
 from pindrive.study.design import device_at
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from pindrive.device.device import Criteria, Device
     from pindrive.study.design import Plan
 
-PRECISION: Final = 1e-2
-"""Of a speed, a part of it, during a search."""
-GAIN: Final = 1.01
-"""By which a device must beat a speed: by less it does not matter."""
+FINE: Final = 1e-2
+"""Part of a speed to which it is found, unless it is confirmed."""
+COARSE: Final = 5e-2
+"""The same, of a device that is slower than it must be."""
+STEP: Final = 1.05
+"""Ratio of the first two speeds of a bracket; that of the next is its square."""
 SLOWEST: Final[float] = default("speed.slowest")
 FASTEST: Final[float] = default("speed.fastest")
-Asked = tuple["Mapping[str, float]", float]
-"""The values of keys, SI, and the speed to beat; NaN: there is none."""
 
 
 def speeds(plan: Plan, portion: Sequence[Asked]) -> list[tuple[float, int]]:
     """The largest speed of each device, m/s, and the trials that it took.
 
-    NaN where there is no such device, or it merges the lines at any speed; of a device that does
-    not beat its speed, any speed that does not.
+    NaN where there is no such device, or no speed was found at which the lines are distinct.
     """
-    return [_speed(plan, at, beat) for at, beat in portion]
+    return [_speed(plan, asked) for asked in portion]
 
 
-def _speed(plan: Plan, at: Mapping[str, float], beat: float) -> tuple[float, int]:
+def _speed(plan: Plan, asked: Asked) -> tuple[float, int]:
     assert plan.page
     found, count = np.inf, 0
     try:
-        file = device_at(plan, at)
+        file = device_at(plan, asked.at)
         assert file.whole
         device, criteria = file.device, file.criteria
         pitches = plan.page.page.grating or ()
         check_work(device, pitches, [0.5 * p for p in pitches], (SLOWEST, FASTEST))
         for pitch in pitches:
-            climb = _Climb(device, pitch, criteria)
-            found = min(found, climb.limit(beat))
-            count += climb.trials
-            if not isnan(beat) and not found > beat:
-                break
+            climb = Climb(device, pitch, criteria)
+            if asked.confirmed:
+                own = climb.first_interval()
+            else:  # the least of several counts: no pitch is followed beyond the one before
+                near = asked.near if found == np.inf else found
+                own = climb.bracket(near, asked.beat, min(found, FASTEST))
+            count += len(climb.trials)
+            if isnan(own):
+                return nan, count
+            found = min(found, own)
     except (ValueError, ArithmeticError, MemoryError):
-        return np.nan, count
+        return nan, count
     return found, count
 
 
 @dataclass
-class _Climb:
-    """The way over the grid of speeds, from one at which lines are distinct to where they merge."""
+class Climb:
+    """The way to the speed from which on two lines merge."""
 
     device: Device
     pitch: float
     criteria: Criteria
-    trials: int = 0
-    grid: list[float] = field(
-        default_factory=lambda: [float(v) for v in np.geomspace(SLOWEST, FASTEST, TRIED)]
-    )
+    trials: dict[float, bool] = field(default_factory=dict)
 
     def distinct(self, speed: float) -> bool:
-        self.trials += 1
-        trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
-        return trial.distinct(default("speed.part"), self.criteria.direction)
+        """Whether the lines are, by a trial or from one that has been made."""
+        if speed not in self.trials:
+            trial = two_lines(self.device, self.pitch, 0.5 * self.pitch, speed, self.criteria)
+            distinct = trial.distinct(default("speed.part"), self.criteria.direction)
+            self.trials[speed] = distinct
+        return self.trials[speed]
 
-    def limit(self, beat: float) -> float:
-        """The largest speed, as `SpeedLimit.speed` is; 0 where it does not beat `beat`.
-
-        NaN where the lines are distinct at no speed of the grid.
-        """
-        slow = GAIN * beat
-        if not isnan(beat):
-            if slow >= FASTEST or not self.distinct(slow):
-                return 0.0
-            below = [v for v in self.grid if v < slow]
-            if not self.unbroken(below):
-                return 0.0
-        else:
-            begin = next((i for i, v in enumerate(self.grid) if self.distinct(v)), None)
-            if begin is None:
-                return nan
-            slow = self.grid[begin]
-        for fast in (v for v in self.grid if v > slow):
+    def first_interval(self) -> float:
+        """The upper end of the first interval of the grid, as `SpeedLimit.speed` is."""
+        grid = [float(speed) for speed in np.geomspace(SLOWEST, FASTEST, TRIED)]
+        begin = next((i for i, speed in enumerate(grid) if self.distinct(speed)), None)
+        if begin is None:
+            return nan
+        slow = grid[begin]
+        for fast in grid[begin + 1 :]:
             if not self.distinct(fast):
-                return self.border(slow, fast)
+                return self.border(slow, fast, PRECISION)
             slow = fast
         return FASTEST
 
-    def unbroken(self, below: list[float]) -> bool:
-        """Whether the lines are distinct at all these speeds from the first at which they are."""
-        place = len(below)
-        while place and self.distinct(below[place - 1]):
-            place -= 1
-        return not any(self.distinct(speed) for speed in below[:place])
+    def bracket(self, near: float, beat: float, most: float) -> float:
+        """A speed at which the lines are distinct, just below one at which they are not.
 
-    def border(self, slow: float, fast: float) -> float:
+        Args:
+            near: where it may be; NaN: anywhere.
+            beat: below it the border is found coarsely.
+            most: beyond which none is tried.
+        """
+        if isnan(near):
+            slow, fast = SLOWEST, most
+        else:
+            speed, step = min(max(near, SLOWEST), most), STEP
+            up = self.distinct(speed)
+            slow = fast = speed
+            while self.distinct(speed) == up:
+                slow, fast = (speed, fast) if up else (slow, speed)
+                if speed == (most if up else SLOWEST):
+                    return most if up else nan
+                speed = min(speed * step, most) if up else max(speed / step, SLOWEST)
+                step *= step
+            slow, fast = (slow, speed) if up else (speed, fast)
+        while fast > (1.0 + (COARSE if fast <= beat else FINE)) * slow:
+            middle = sqrt(slow * fast)
+            slow, fast = (middle, fast) if self.distinct(middle) else (slow, middle)
+        return slow if self.distinct(slow) else nan
+
+    def border(self, slow: float, fast: float, precision: float) -> float:
         """The speed between these at which they cease to be distinct."""
-        while fast - slow > PRECISION * slow:
+        while fast - slow > precision * slow:
             middle = 0.5 * (slow + fast)
             slow, fast = (middle, fast) if self.distinct(middle) else (slow, middle)
         return slow

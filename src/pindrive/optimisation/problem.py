@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
 from pindrive.optimisation.effort import Count
-from pindrive.optimisation.goals import PRICE, SPEED, Goal, Variable
+from pindrive.optimisation.goals import PRICE, SPEED, Asked, Goal, Variable
+from pindrive.optimisation.scanned import Scanned
 from pindrive.optimisation.search import Population
 from pindrive.quantities.budgets import worker_count
 from pindrive.study.distributions import Linked, with_links
@@ -35,8 +36,10 @@ PORTION: Final = 4
 """Scans, or devices whose speeds are found, that a process takes at a time."""
 SENT: Final = 1 << 14
 """Motions that a worker elsewhere takes at a time."""
-BEATEN: Final = 0.6
-"""Part of a population that a device must be faster than to be followed further."""
+GUESSED: Final = 2
+"""A speed is guessed once so many devices for each variable have been scanned."""
+SHORTER: Final = 0.02
+"""A speed that is confirmed may be less by that part of it than what it was taken for."""
 FAR: Final = 1e3
 """The most that a demand counts in a violation, and what a missing number adds to it."""
 MOST_CONDITIONS: Final = 32
@@ -59,6 +62,7 @@ class Problem:
             `pindrive.optimisation.line_speed.speeds` finds them.
         threads: how many work.
         count: of what was simulated.
+        scanned: what was.
         tell: called after each part of the work.
     """
 
@@ -76,6 +80,9 @@ class Problem:
     price: float = 0.0
     """Of parts that are no variables."""
     count: Count = field(default_factory=Count)
+    scanned: Scanned = field(default_factory=Scanned)
+    coarse: bool = False
+    """Whether hand speeds are found roughly, as for a map."""
     tell: Callable[[], None] = lambda: None
 
     @cached_property
@@ -126,46 +133,136 @@ class Problem:
 
     # ---- numbers ---------------------------------------------------------------------------------
 
-    def numbers(
-        self, points: Array, cases: Array | None = None, beat: Array | None = None
-    ) -> dict[str, Array]:
+    def numbers(self, points: Array, cases: Array | None = None) -> dict[str, Array]:
         """The numbers of points at cases, SI, each of shape (n, c); NaN where there is none.
 
         Args:
             points: shape (n, variables).
             cases: shape (c, conditions); the own ones unless given.
-            beat: of each point a speed (m/s): of a device with a lower `distinct_speed` that number
-                may be any lower one. NaN: there is none.
         """
         at = self.cases if cases is None else cases
         each = max(1, POINTS // len(at))
         parts = []
         for begin in range(0, len(points), each):
-            here = slice(begin, begin + each)
-            parts.append(self._numbers(points[here], at, None if beat is None else beat[here]))
+            parts.append(self._numbers(points[begin : begin + each], at))
             self.tell()
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def _numbers(self, points: Array, cases: Array, beat: Array | None) -> dict[str, Array]:
+    def _numbers(self, points: Array, cases: Array) -> dict[str, Array]:
         shape = len(points), len(cases)
-        columns = self.columns(points, cases)
-        found: dict[str, Array] = {}
-        asked = [name for name in self.names if name not in DESIGN_OUTPUTS]
-        if asked:
+        if self.scans:
+            self._scan(points, cases)
+            known = self.scanned.look_up(self.inputs(points, cases))
+            found = {name: column.reshape(shape) for name, column in known.items()}
+        else:
             size = shape[0] * shape[1]
-            table = self._evaluated(columns, size, (*asked, "status"))
-            exists = exist(table["status"])
-            for name in asked:
-                found[name] = np.where(exists, table[name], np.nan).reshape(shape)
-            if self.scans:
-                self.count.scans += size
-            else:
-                self.count.motions += size
+            simulated = self._simulated(self.columns(points, cases), size)
+            found = {name: column.reshape(shape) for name, column in simulated.items()}
+            self.count.motions += size if found else 0
         if PRICE in self.names:
             found[PRICE] = np.repeat(self.prices(points)[:, None], shape[1], axis=1)
-        if SPEED in self.names:
-            found[SPEED] = self._speeds(columns, shape, beat)
         return found
+
+    def _simulated(self, columns: dict[str, Array], size: int) -> dict[str, Array]:
+        """The numbers of motions or of scans, each (size,)."""
+        asked = [name for name in self.names if name not in DESIGN_OUTPUTS]
+        if not asked:
+            return {}
+        table = self._evaluated(columns, size, (*asked, "status"))
+        exists = exist(table["status"])
+        return {name: np.where(exists, table[name], np.nan) for name in asked}
+
+    # ---- scans -----------------------------------------------------------------------------------
+
+    def snapped(self, points: Array) -> Array:
+        """Points with each choice in the middle of the parts that stand for it."""
+        found = points.copy()
+        for variable, parts in zip(self.variables, found.T, strict=True):
+            if variable.choices:
+                parts[:] = (variable.index(parts) + 0.5) / variable.choices
+        return found
+
+    def inputs(self, points: Array, cases: Array) -> Array:
+        """Every point at every case as `scanned` has it, shape (n * c, variables + conditions)."""
+        n, c = len(points), len(cases)
+        return np.hstack([np.repeat(self.snapped(points), c, axis=0), np.tile(cases, (n, 1))])
+
+    def _scan(self, points: Array, cases: Array) -> None:
+        """Scan what has not been."""
+        inputs = self.inputs(points, cases)
+        new = self.scanned.missing(inputs)
+        if not len(new):
+            return
+        columns = {key: x[new] for key, x in self.columns(points, cases).items()}
+        found = self._simulated(columns, len(new))
+        self.count.scans += len(new) if found else 0
+        if SPEED in self.names:
+            found[SPEED] = self._speeds(columns, self._guessed(inputs[new]), self._beat(), False)
+        self.scanned.keep(inputs[new], found)
+
+    def confirm(self, points: Array, cases: Array | None = None) -> bool:
+        """Find the speeds of points over the whole grid; whether they are what they were taken for.
+
+        Args:
+            points: shape (n, variables).
+            cases: as for `numbers`.
+        """
+        at = self.cases if cases is None else cases
+        if SPEED not in self.names:
+            return True
+        before = self.numbers(points, at)[SPEED].ravel()
+        inputs = self.inputs(points, at)
+        new = self.scanned.unconfirmed(inputs)
+        columns = {key: x[new] for key, x in self.columns(points, at).items()}
+        found = self._speeds(columns, np.full(len(new), np.nan), np.nan, True)
+        self.scanned.keep(inputs[new], {SPEED: found}, confirmed=True)
+        return bool((found >= (1.0 - SHORTER) * before[new]).all())
+
+    def known(self) -> Population:
+        """All that has been scanned at all cases."""
+        keys = len(self.variables)
+        every = self.scanned.inputs.reshape(self.scanned.count, -1)[:, :keys]
+        if not len(every):
+            return Population(np.empty((0, keys)), np.empty((0, len(self.goals))), np.empty(0))
+        points = every[np.sort(np.unique(every, axis=0, return_index=True)[1])]
+        each = [not len(self.scanned.missing(self.inputs(p[None], self.cases))) for p in points]
+        return self.population(points[np.array(each, np.bool_)])
+
+    def expected(self, points: Array, trust: float) -> tuple[Array, Array]:
+        """Goals and violations of points, better than is expected by standard deviations."""
+        shape, inputs = (len(points), len(self.cases)), self.inputs(points, self.cases)
+        least, most = {}, {}
+        for name in self.names:
+            if name == PRICE:
+                low = high = np.repeat(self.prices(points)[:, None], shape[1], axis=1)
+            else:
+                low, high = self.scanned.expected(
+                    name, inputs, trust, large_is_bad=self._large_is_bad(name)
+                )
+            least[name], most[name] = low.reshape(shape), high.reshape(shape)
+        return self.worth(least, most)
+
+    def _large_is_bad(self, name: str) -> bool:
+        if any(goal.name == name for goal in self.goals):
+            return Goal(name, False) in self.goals
+        return any(demand.name == name and demand.at_most for demand in self.demands)
+
+    def _guessed(self, inputs: Array) -> Array:
+        if self.scanned.count < GUESSED * inputs.shape[1]:
+            return np.full(len(inputs), np.nan)
+        return self.scanned.expected(SPEED, inputs, 0.0, large_is_bad=False)[0]
+
+    def _beat(self) -> float:
+        """The speed below which that of a device matters little, m/s; NaN: there is none."""
+        if self.coarse:
+            return np.inf
+        limits = [d.limit for d in self.demands if d.name == SPEED and not d.at_most]
+        if self.goals == (Goal(SPEED, True),):
+            known = self.known()
+            limits += [-float(goal) for goal in known.goals[known.violation <= 0.0, 0]]
+        elif any(goal.name == SPEED for goal in self.goals):
+            return np.nan
+        return max(limits, default=np.nan)
 
     def _evaluated(
         self, columns: dict[str, Array], size: int, outputs: tuple[str, ...]
@@ -183,15 +280,16 @@ class Problem:
         return {name: np.concatenate([table[name] for table in done]) for name in outputs}
 
     def _speeds(
-        self, columns: dict[str, Array], shape: tuple[int, int], beat: Array | None
+        self, columns: dict[str, Array], near: Array, beat: float, confirmed: bool
     ) -> Array:
-        wanted = np.repeat(np.full(shape[0], np.nan) if beat is None else beat, shape[1])
+        """The largest speeds of devices, m/s, shape (n,)."""
         asked = [
-            ({key: float(values[i]) for key, values in columns.items()}, float(wanted[i]))
-            for i in range(len(wanted))
+            Asked({key: float(x[i]) for key, x in columns.items()}, float(guess), beat, confirmed)
+            for i, guess in enumerate(near)
         ]
-        portions = [asked[i : i + PORTION] for i in range(0, len(asked), PORTION)]
         processes = worker_count(self.threads)
+        each = min(PORTION, -(-len(asked) // processes)) or 1
+        portions = [asked[i : i + each] for i in range(0, len(asked), each)]
         if self.crew is not None:
             rows = [*self.crew.spread(self.line_speeds, self.plan, portions)]
         elif processes == 1 or len(portions) == 1:
@@ -200,37 +298,46 @@ class Problem:
             rows = standing(processes).spread(self.line_speeds, self.plan, portions)
         every = [row for portion in rows for row in portion]
         self.count.scans += sum(trials for _, trials in every)
-        return np.array([speed for speed, _ in every]).reshape(shape)
+        return np.array([speed for speed, _ in every])
 
     # ---- what they are worth ---------------------------------------------------------------------
 
-    def excess(self, numbers: Mapping[str, Array]) -> Array:
-        """How far each demand is exceeded at each case, SI, shape (demands, n, c)."""
+    def excess(
+        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
+    ) -> Array:
+        """How far each demand is exceeded at each case, SI, shape (demands, n, c), at best.
+
+        Args:
+            numbers: each (n, c).
+            most: what they may be at most, where `numbers` are what they may be at least.
+        """
         shape = next(iter(numbers.values())).shape
-        each = [demand.excess(numbers[demand.name]) for demand in self.demands]
+        high = numbers if most is None else most
+        each = [d.excess((numbers if d.at_most else high)[d.name]) for d in self.demands]
         return np.array(each).reshape(len(self.demands), *shape)
 
-    def minimised(self, numbers: Mapping[str, Array]) -> Array:
-        """The goals at each case, least is best, shape (goals, n, c)."""
-        return np.array([goal.minimised(numbers[goal.name]) for goal in self.goals])
+    def minimised(
+        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
+    ) -> Array:
+        """The goals at each case, least is best, shape (goals, n, c); arguments as for `excess`."""
+        high = numbers if most is None else most
+        return np.array(
+            [g.minimised((high if g.maximise else numbers)[g.name]) for g in self.goals]
+        )
 
-    def worth(self, numbers: Mapping[str, Array]) -> tuple[Array, Array]:
-        """Goals (n, g) and violations (n,), by the worst case of each."""
-        goals = self.minimised(numbers).max(axis=2).T
-        over = self.excess(numbers).max(axis=2).T / self.scales
+    def worth(
+        self, numbers: Mapping[str, Array], most: Mapping[str, Array] | None = None
+    ) -> tuple[Array, Array]:
+        """Goals (n, g) and violations (n,), by the worst case of each, as for `excess`."""
+        goals = self.minimised(numbers, most).max(axis=2).T
+        over = self.excess(numbers, most).max(axis=2).T / self.scales
         violation = np.clip(over, 0.0, FAR).sum(axis=1)
         violation += FAR * np.isinf(goals).sum(axis=1)
         return goals, violation
 
-    def __call__(self, points: Array, rivals: Array | None = None) -> tuple[Array, Array]:
+    def __call__(self, points: Array) -> tuple[Array, Array]:
         """Goals and violations of points, as `search` takes them."""
-        alone = len(self.goals) == 1 and self.goals[0] == Goal(SPEED, True)
-        demanded = any(demand.name == SPEED for demand in self.demands)
-        beat = None
-        if alone and not demanded and rivals is not None:
-            known = -rivals[:, 0]  # what is slower than most is not worth its trials
-            beat = np.fmax(known, np.nanquantile(known, BEATEN)) if (known > 0.0).any() else known
-        return self.worth(self.numbers(points, beat=beat))
+        return self.worth(self.numbers(points))
 
     def population(self, points: Array) -> Population:
         """Points with what they are worth."""

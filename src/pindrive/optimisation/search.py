@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Function = Callable[[Array, "Array | None"], tuple[Array, Array]]
+Function = Callable[[Array], tuple[Array, Array]]
 """Goals (n, g), least is best, and violations (n,), 0 where all limits are met, of points (n, k) in
-the unit cube. The second argument are the goals to beat, one by one: a goal that does not beat its
-own may be any that does not."""
+the unit cube."""
 BEST: Final = 0.15
 """Part of the population that children are drawn to."""
 PROGRESS: Final = 1e-5
@@ -90,8 +89,7 @@ def search(
     for _ in range(generations):
         elite = max(2, round(BEST * size))
         children = _children(now.points, elite, rng)
-        rivals = np.where((now.violation <= 0.0)[:, None], now.goals, np.nan)
-        goals, violation = function(children, rivals)
+        goals, violation = function(children)
         found = Population(children, goals, violation)
         no_worse = (goals <= now.goals).all(axis=1)
         both = (violation <= 0.0) & (now.violation <= 0.0)
@@ -105,7 +103,7 @@ def search(
         )
         now = (kept + found[beside]).best(size)
         progress()
-        still = 0 if _gained(before, now) else still + 1
+        still = 0 if gained(before, now) else still + 1
         if still >= patience:
             break
     return now
@@ -125,16 +123,16 @@ def _children(points: Array, elite: int, rng: np.random.Generator) -> Array:
     return np.where(child > 1.0, 0.5 * (1.0 + points), child)
 
 
-def _gained(before: Population, now: Population) -> bool:
-    """Whether the best, or with several goals the least of any, got better by what matters."""
+def gained(before: Population, now: Population, progress: float = PROGRESS) -> bool:
+    """Whether the best, or with several goals the least of any, got better by a part of it."""
     if before.violation[0] > 0.0 or now.violation[0] > 0.0:
-        return bool(now.violation[0] < before.violation[0] * (1.0 - PROGRESS))
+        return bool(now.violation[0] < before.violation[0] * (1.0 - progress))
     old, new = (p.goals[p.violation <= 0.0] for p in (before, now))
     if now.goals.shape[1] > 1:
         old, new = np.array([_volume(old, old)]), np.array([_volume(new, old)])
         return bool(new[0] > old[0] * (1.0 + 1e-3))
     least = old.min(axis=0)
-    return bool((new.min(axis=0) < least - PROGRESS * np.abs(least)).any())
+    return bool((new.min(axis=0) < least - progress * np.abs(least)).any())
 
 
 def _volume(goals: Array, reference: Array) -> float:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pindrive.optimisation.goals import Variable, Wish
 from pindrive.optimisation.problem import Problem
+from pindrive.optimisation.scanned import Scanned
 from pindrive.study.compliance import Share
 from pindrive.study.distributions import Sample, implied_links
 from pindrive.study.spec import plan_of
@@ -54,6 +55,7 @@ def excess_as_built(
         variables=tuple(Variable(key, {key: axis}) for key, axis in plan.tolerances.items()),
         links=implied_links(device, varied, problem.scans) | dict(plan.tolerance_links),
         price=float(problem.prices(point[None])[0]),
+        scanned=Scanned(),
     )
     found: Array = drawn.excess(drawn.numbers(parts)).max(axis=2)
     return found

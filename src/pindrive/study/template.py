@@ -75,13 +75,21 @@ def study_template(*, whole: bool = False) -> str:
             it; of single releases otherwise.
     """
     what = "scans over a page" if whole else "single releases"
-    lines = [
+    head = [
         f"# A study for pindrive: {what}, each with other values of the device.",
         "# `outputs` names the numbers to keep; unless it does, all that the values can change.",
         "",
         'name = "my study"',
         '# outputs = ["worst_lag_on", "shown_part"]' if whole else '# outputs = ["settling_time"]',
         "",
+        *device_lines(whole=whole),
+    ]
+    return "\n".join([*head, "", _SCANS if whole else _RELEASES, _SAMPLE])
+
+
+def device_lines(*, whole: bool) -> list[str]:
+    """The device as tables of a study or a wish, one pin where it is a whole one."""
+    lines = [
         '# The device. A line base = "device.toml" in place of these tables takes it from a file;',
         f"# `pindrive init device.toml{' --device' if whole else ''}` writes one with all keys.",
     ]
@@ -98,4 +106,4 @@ def study_template(*, whole: bool = False) -> str:
             table = key.partition(".")[0]
             lines += ["", f"[{table}]"]
         lines.append(line(quantity))
-    return "\n".join([*lines, "", _SCANS if whole else _RELEASES, _SAMPLE])
+    return lines

@@ -1,0 +1,107 @@
+"""The search where each candidate is a scan: few are tried, each where it promises most.
+
+Kriging of all numbers that have been scanned stands for the scans; the differential evolution of
+`search` finds on it the best device where all numbers are as expected, and where they are worse or
+better by standard deviations. These are scanned, and the model is made anew: efficient global
+optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and John 1992).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pindrive.lazy import qmc
+from pindrive.optimisation.search import Population, gained, non_dominated, search
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pindrive.optimisation.problem import Problem
+
+Array = NDArray[np.float64]
+TRUSTS: Final = (-1.0, 0.0, 1.0, 2.0)
+"""Standard deviations by which a candidate of each round may be better than is expected."""
+MEMBERS: Final = 32
+"""Of the search on the model, with its generations and its patience."""
+GENERATIONS: Final = 30
+PATIENCE: Final = 8
+SPREAD: Final = 128
+"""Points anywhere with which that search begins, beside those that are known."""
+CLOSE: Final = 2e-3
+"""Two points less apart than that are one."""
+BESIDE: Final = 0.05
+"""How far beside the best a point is taken where the model gives none that is new."""
+PROGRESS: Final = 1e-3
+"""Part of a goal by which it must get better."""
+
+
+def search_scans(
+    problem: Problem,
+    *,
+    size: int,
+    rounds: int,
+    patience: int,
+    rng: np.random.Generator,
+    progress: Callable[[], None] = lambda: None,
+) -> Population:
+    """Improve what has been scanned of a problem.
+
+    Args:
+        problem: with some devices scanned at all of its conditions.
+        size: members that come back.
+        rounds: of scans, at most.
+        patience: rounds without progress after which it ends.
+        rng: of all draws.
+        progress: called after each round.
+
+    Returns:
+        The best of all that is known, the best first.
+    """
+    now, still = problem.known().best(size), 0
+    for _ in range(rounds):
+        problem.numbers(_candidates(problem, rng))
+        before, now = now, problem.known().best(size)
+        progress()
+        still = 0 if gained(before, now, PROGRESS) else still + 1
+        if still >= patience:
+            break
+    return now
+
+
+def _candidates(problem: Problem, rng: np.random.Generator) -> Array:
+    """What is scanned next, a point for each of `TRUSTS`."""
+    known = problem.known().points
+    keys = known.shape[1]
+    anywhere = qmc.Sobol(keys, rng=rng).random(SPREAD)
+    taken = known
+    found: list[Array] = []
+    for trust in TRUSTS:
+
+        def function(points: Array, trust: float = trust) -> tuple[Array, Array]:
+            return problem.expected(points, trust)
+
+        points = problem.snapped(np.concatenate([known, anywhere]))
+        first = Population(points, *function(points)).best(min(MEMBERS, len(points)))
+        result = search(function, first, generations=GENERATIONS, patience=PATIENCE, rng=rng)
+        point = _newest(problem, result, taken, rng)
+        found.append(point)
+        taken = np.vstack([taken, point])
+    return np.array(found)
+
+
+def _newest(problem: Problem, result: Population, taken: Array, rng: np.random.Generator) -> Array:
+    """Of the best points the one that is farthest from all that are taken."""
+    meets = result.violation <= 0.0
+    best = result[meets] if meets.any() else result[np.zeros(1, np.int64)]
+    points = problem.snapped(best.points[non_dominated(best.goals)])
+    for _ in range(20):
+        far = np.abs(points[:, None] - taken[None]).max(axis=2).min(axis=1)
+        if far.max() > CLOSE:
+            return np.asarray(points[far.argmax()])
+        beside = points[:1] + BESIDE * rng.normal(size=points[:1].shape)
+        points = problem.snapped(np.clip(beside, 0.0, 1.0))
+    anywhere: Array = problem.snapped(rng.random((1, taken.shape[1])))[0]
+    return anywhere
