@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from pindrive.study.design import Plan
 
 Array = NDArray[np.float64]
-Asked = tuple["Mapping[str, float]", float]
-"""The values of keys, SI, and the speed to beat; NaN: there is none."""
 POINTS: Final = 1 << 18
 """Motions that are simulated together."""
 PORTION: Final = 4
