@@ -8,7 +8,8 @@ import pytest
 
 import pindrive as pd
 from pindrive.optimisation import Design, read_wish
-from pindrive.optimisation.line_speed import Asked, speeds
+from pindrive.optimisation.goals import Asked
+from pindrive.optimisation.line_speed import speeds
 from pindrive.study.cluster import crew
 from recordings import recorded
 from wishes import EXAMPLES, MOUSE, PAPER, SMALL

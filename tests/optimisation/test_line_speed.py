@@ -11,7 +11,8 @@ import pytest
 import pindrive as pd
 from pindrive.evaluation.resolution import TRIED, SpeedLimit, Trial, largest_speeds
 from pindrive.optimisation import Effort, line_speed, read_wish
-from pindrive.optimisation.line_speed import Asked, speeds
+from pindrive.optimisation.goals import Asked
+from pindrive.optimisation.line_speed import speeds
 from pindrive.study.design import Plan
 from wishes import EXAMPLES
 
