@@ -592,19 +592,26 @@ class Certifier {
                           !(at_stop && end * stage.plate_velocity.rate > 0);
     const bool on_finger = abs(s.v) <= still && drive_.finger.rigid();
     if (!(plate && on_plate) && !(finger && on_finger)) return;
-    const Beginning<T> now{s.x,
-                           s.v,
-                           s.plate_force,
-                           s.finger_force,
-                           stage.plate_velocity,
-                           stage.load.value,
-                           stage.finger_load.value,
-                           stage.force.value + stop_force(stage, s),
-                           on_plate,
-                           on_finger,
-                           plate,
-                           finger};
-    const T spare = spare_stick_limit(drive_, segment.mode, now) - unsure(stage, s);
+    const T push = stage.force.value + stop_force(stage, s);
+    const auto spare_of = [&](bool rests_on_plate, bool rests_on_finger) {
+      const Beginning<T> now{s.x,
+                             s.v,
+                             s.plate_force,
+                             s.finger_force,
+                             stage.plate_velocity,
+                             stage.load.value,
+                             stage.finger_load.value,
+                             push,
+                             rests_on_plate,
+                             rests_on_finger,
+                             plate,
+                             finger};
+      return spare_stick_limit(drive_, segment.mode, now) - unsure(stage, s);
+    };
+    // What slid before and slides on is at rest or not where its speed is rounding.
+    T spare = spare_of(on_plate, on_finger);
+    if (on_plate && !plate) spare = std::min(spare, spare_of(false, on_finger));
+    if (on_finger && !finger) spare = std::min(spare, spare_of(on_plate, false));
     worst(result_.transitions, std::max(spare, T(0)), force_scale_);
   }
 

@@ -125,9 +125,17 @@ class Guards {
   /// that are known to their roundoff.
   T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_row, T roundoff) {
     const T row = is_row ? limit : std::numeric_limits<T>::infinity();
-    return put_off(earliest(oscillator, since, limit), row, [&](const Guard<T>& guard, T tau) {
+    const T first = earliest(oscillator, since, limit);
+    T counts = put_off(first, row, [&](const Guard<T>& guard, T tau) {
       return stays(guard, oscillator, tau, roundoff);
     });
+    if (counts > first)  // until then the others have not been looked at
+      for (int i = 0; i < count_; ++i)
+        if (list_[i].zero > counts) {
+          list_[i].zero = first_root(oscillator, list_[i].path, 1, counts);
+          counts = std::min(counts, list_[i].zero);
+        }
+    return counts;
   }
 
   /// Whether one in closed form stays at its bound from its zero until τ, to rounding.

@@ -136,7 +136,8 @@ class Profile {
     if (i == 0) return {constant_, T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
-    return {values_[i - 1] + rate * (t - times_[i - 1]), rate};
+    const T after = t - times_[i - 1];  // what lies after a row by the rounding of a time is at it
+    return {after > detail::rounding<T> * t ? values_[i - 1] + rate * after : values_[i - 1], rate};
   }
   /// The first row after time t; infinite when there is none.
   T next_row(T t) const {
