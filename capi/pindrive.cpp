@@ -305,6 +305,7 @@ pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Number
 template <class T>
 double value_at(const pd::Motion<T>& motion, const pd::Segment<T>& segment, T tau,
                 pindrive_quantity quantity) {
+  if (quantity == PINDRIVE_STOP_FORCE) return pd::result(motion.stop_force(segment, tau));
   const auto friction = [&] { return motion.friction(segment, tau); };
   return motion.along(segment, [&](const auto& along) {
     return value_along(along, tau, motion.drive().finger.stiffness, friction, quantity);
@@ -575,9 +576,9 @@ pindrive_error pindrive_evaluate(const pindrive_motion* motion, pindrive_quantit
                                  double* values) {
   if (!motion) return null_pointer("motion");
   if (count > 0 && (!times || !values)) return null_pointer("times and values");
-  if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_SKIN_STRETCH_RATE)
-    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d",
-                PINDRIVE_SKIN_STRETCH_RATE, quantity);
+  if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_STOP_FORCE)
+    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d", PINDRIVE_STOP_FORCE,
+                quantity);
   const double known = motion->known_until();
   for (std::size_t i = 0; i < count; ++i) {
     const bool exists = times[i] >= 0 && times[i] <= known && std::isfinite(times[i]);
@@ -619,7 +620,9 @@ pindrive_error pindrive_segment_of(const pindrive_motion* motion, size_t index,
                 s.mode.plate_branch,
                 s.mode.finger_branch,
                 static_cast<pindrive_transition>(s.event.plate),
-                static_cast<pindrive_transition>(s.event.finger)};
+                static_cast<pindrive_transition>(s.event.finger),
+                static_cast<int>(s.mode.stop),
+                static_cast<pindrive_transition>(s.event.stop)};
     return PINDRIVE_OK;
   });
 }
@@ -635,10 +638,12 @@ pindrive_error pindrive_events(const pindrive_motion* motion, double from, doubl
   pd::events(view, from, to, [&](double time, const pd::Segment<double>& s) {
     return filling.add([&](std::size_t i) {
       const double tau = s.end - s.begin;
-      events[i] = {time, value_at(view, s, tau, PINDRIVE_POSITION),
+      events[i] = {time,
+                   value_at(view, s, tau, PINDRIVE_POSITION),
                    value_at(view, s, tau, PINDRIVE_VELOCITY),
                    static_cast<pindrive_transition>(s.event.plate),
-                   static_cast<pindrive_transition>(s.event.finger)};
+                   static_cast<pindrive_transition>(s.event.finger),
+                   static_cast<pindrive_transition>(s.event.stop)};
     });
   });
   return filling.result();

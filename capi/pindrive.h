@@ -210,7 +210,8 @@ enum {
   PINDRIVE_PLATE_FORCE = 3,      /* friction of the plate on the pin, N */
   PINDRIVE_FINGER_FORCE = 4,     /* friction of the finger on the pin, N */
   PINDRIVE_SKIN_STRETCH = 5,     /* of a compliant finger, m */
-  PINDRIVE_SKIN_STRETCH_RATE = 6 /* m/s */
+  PINDRIVE_SKIN_STRETCH_RATE = 6, /* m/s */
+  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N; not of a stepper */
 };
 
 /* Which limit is asked for at an event. */
@@ -250,6 +251,8 @@ typedef struct pindrive_segment {
   pindrive_contact_state plate, finger;
   int plate_branch, finger_branch;               /* of the friction curve, while it slips */
   pindrive_transition plate_event, finger_event; /* at its end */
+  int stop; /* -1, 1: the lower or upper end stop touches the pin; -2, 2: the pin is beyond it, untouched */
+  pindrive_transition stop_event; /* at its end: the stop meets the pin, lets it go, or throws it back */
 } pindrive_segment;
 
 /* Segment `index` of the outcome's `segments`. */
@@ -259,7 +262,7 @@ PINDRIVE_API pindrive_error pindrive_segment_of(const pindrive_motion *motion, s
 typedef struct pindrive_event {
   double time;               /* s */
   double position, velocity; /* m, m/s */
-  pindrive_transition plate, finger;
+  pindrive_transition plate, finger, stop;
 } pindrive_event;
 
 /* The functions that follow fill at most `capacity` entries, say in `count` how many they filled, and

@@ -79,8 +79,8 @@ type Exports = { readonly memory: WebAssembly.Memory } & Readonly<
 const MORE = 1; // PINDRIVE_MORE: there was more than fitted
 const INTERFACE = 2; // PINDRIVE_INTERFACE that this file is written for
 const OUTCOME_BYTES = 56;
-const SEGMENT_BYTES = 72;
-const EVENT_BYTES = 32;
+const SEGMENT_BYTES = 80;
+const EVENT_BYTES = 40;
 
 export class Core {
   readonly numberNames: readonly string[];

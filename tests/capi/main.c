@@ -113,7 +113,7 @@ static void a_motion(void) {
   refuses(pindrive_evaluate(motion, PINDRIVE_POSITION, times, 2, PINDRIVE_RIGHT, x),
           PINDRIVE_BAD_VALUE, "times[1] must be");
   refuses(pindrive_evaluate(motion, 9, times, 1, PINDRIVE_RIGHT, x),
-          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 6, not 9");
+          PINDRIVE_BAD_VALUE, "a quantity must be from 0 to 7, not 9");
   refuses(pindrive_numbers(motion, -1, 0.05, values), PINDRIVE_BAD_VALUE, "duration must be");
   refuses(pindrive_numbers(motion, 1, 0, values), PINDRIVE_BAD_VALUE, "settling_band must be");
   refuses(pindrive_crossings(motion, PINDRIVE_PLATE_FORCE, 0, 1, turns, sides, 64, &count),

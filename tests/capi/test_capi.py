@@ -246,7 +246,7 @@ class Interface:
 
 QUANTITIES = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
-    *("stretch", "stretch_rate"),
+    *("stretch", "stretch_rate", "stop_force"),
 )
 """In the order of pindrive_quantity."""
 
@@ -273,7 +273,7 @@ class Segment(ctypes.Structure):
         *((name, c_double) for name in ("begin", "end", "position", "velocity", "acceleration")),
         ("acceleration_bound", c_double),
         *((name, ctypes.c_int) for name in ("plate", "finger", "plate_branch", "finger_branch")),
-        *((name, ctypes.c_int) for name in ("plate_event", "finger_event")),
+        *((name, ctypes.c_int) for name in ("plate_event", "finger_event", "stop", "stop_event")),
     )
 
 
@@ -282,7 +282,7 @@ class Event(ctypes.Structure):
 
     _fields_ = (
         *((name, c_double) for name in ("time", "position", "velocity")),
-        *((name, ctypes.c_int) for name in ("plate", "finger")),
+        *((name, ctypes.c_int) for name in ("plate", "finger", "stop")),
     )
 
 
@@ -323,6 +323,7 @@ IN_C = {
         **{"ledger": "energy", "acceleration_bounds": "segment_of", "status": "outcome_of"},
         **dict.fromkeys(("known_until", "end", "cycle_begin", "until"), "outcome_of"),
         "segment_count": "outcome_of",
+        "stop_force": "evaluate",
     },
     "": {"simulate_batch": "batch", "statuses": "status_text"},
 }

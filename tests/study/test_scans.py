@@ -219,6 +219,11 @@ BY_COEFFICIENT = DEVICE.replace('kinetic = "22 mN"', "coefficient = 0.2").replac
 )
 
 
+STOPPED = DEVICE.replace(
+    'mass = "10 g"', 'mass = "10 g"\ntravel = "5 mm"\nstop_stiffness = "100 kN/m"'
+)
+
+
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
 def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
     """At a usual value and at another there is a scan."""
@@ -235,6 +240,8 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
             device=(
                 BY_COEFFICIENT
                 if "coefficient" in key or key == "finger.touch_force"
+                else STOPPED
+                if key.startswith("drive.stop_")
                 else DEVICE + (COILED if coiled else PULSED if "pwm" in key else "")
             ),
         )

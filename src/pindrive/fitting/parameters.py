@@ -307,11 +307,14 @@ class Assembly:
             plate=made[0],
             finger=made[1],
             preload=self._drive.preload,
+            travel=self._drive.travel,
+            stop_stiffness=self._drive.stop_stiffness,
+            stop_damping=self._drive.stop_damping,
         )
 
     def release(self, theta: Any, r: int) -> Release:
         """The release of a recording with these parameters."""
-        *_, plate_velocity, load, x, v, stretch, force, across, _ = self.numbers(theta, r)
+        plate_velocity, load, x, v, stretch, force, across, touch = self.numbers(theta, r)[5:13]
         carried = self._carried[r] and "velocity" not in self._own[r]
         return Release(
             _made_input(plate_velocity),
@@ -321,6 +324,7 @@ class Assembly:
             None if isnan(stretch) else float(stretch),
             _made_input(force),
             _made_input(across),
+            _made_input(touch),
         )
 
     def along(self, theta: Sequence[float], i: int, r: int) -> CoreNumbers:
