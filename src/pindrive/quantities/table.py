@@ -40,6 +40,12 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     q.name: q for q in (*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED)
 }
 
+_INSIDE: Final = {
+    name: (max(q.bounds.lower, q.limits.lower), min(q.bounds.upper, q.limits.upper))
+    for name, q in QUANTITIES.items()
+}
+"""Between these every value is allowed, so that few need be compared with more."""
+
 T = TypeVar("T")
 
 if TYPE_CHECKING:
@@ -78,6 +84,10 @@ def check(
     Raises:
         ValueError: no number, text without the unit, not finite, or out of bounds.
     """
+    if type(value) is float:
+        lower, upper = _INSIDE[name]
+        if lower < value < upper:
+            return value
     quantity = QUANTITIES[name]
     label = name if label is None else label
     if type(value) is float:
