@@ -63,7 +63,7 @@ class CreepFlow : public SeriesStep<T> {
       if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
       last = changed;
       // The derivatives of a dual number converge one round later.
-      if (!converged && !(within_step && round + 1 == most_rounds)) continue;
+      if (!converged && (!within_step || round + 1 != most_rounds)) continue;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       holds_ = within_step || bound(e, plain(e.mass) * change(part));

@@ -125,8 +125,8 @@ def test_a_file_written_from_its_values_says_the_same(write: Write, tmp_path: Pa
 
 
 UNITS = {"preload": "N", "mass": "kg", "damping": "N*s/m", "stiffness": "N/m", "curve": "N",
-         "kinetic": "N", "static": "N", "displacement": "m", "duration": "s", "plate_load": "", "finger_load": "",
-         "force": "N", "settling_band": ""}  # fmt: skip
+         "kinetic": "N", "static": "N", "displacement": "m", "duration": "s", "plate_load": "",
+         "finger_load": "", "force": "N", "settling_band": ""}  # fmt: skip
 
 
 def _toml(key: str, value: object) -> str:
