@@ -125,6 +125,7 @@ def same_however_it_is_run(fuzz: Path, log: Path) -> None:
 
 
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
+@pytest.mark.sanitizers
 def test_no_sanitizer_complains(tmp_path: Path) -> None:
     """The same programs, stopped at any memory error or undefined behaviour, and a shorter fuzz."""
     settings = ("-DPINDRIVE_TESTS=ON", "-DPINDRIVE_SANITIZE=ON")
