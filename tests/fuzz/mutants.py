@@ -76,7 +76,7 @@ MUTANTS = (
     Mutant(
         "of two contacts the first is not asked whether it sticks",
         "selection.hpp",
-        "if (i == 1 && sticks(first, second, 0)) return true;",
+        "if (first.may_stick() && sticks(first, second, 0)) return true;",
         "",
     ),
     Mutant(
@@ -94,7 +94,7 @@ MUTANTS = (
     Mutant(
         "a tangential departure goes on although another force jumps",
         "friction.hpp",
-        "if (contact.kinetic != contact.static_limit) return false;",
+        "if (contact.kinetic != contact.static_limit && load.value != 0) return false;",
         "",
     ),
     Mutant(
@@ -112,8 +112,8 @@ MUTANTS = (
     Mutant(
         "skin grips with a thousandth more stretch",
         "simulation.hpp",
-        "state_.skin = finger_.does.sense * drive_.finger.kinetic;",
-        "state_.skin = finger_.does.sense * drive_.finger.kinetic * T(1.001);",
+        "drive_.finger.kinetic * finger_.load.value;",
+        "drive_.finger.kinetic * finger_.load.value * T(1.001);",
     ),
     Mutant(
         "skin slips only while the plate holds the pin",
