@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -123,11 +124,32 @@ def pushed(folder: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, None], ids=str)
+def stopped(folder: Path, *lines: str) -> Path:
+    """A pin that strikes its end stops."""
+    path = folder / "stopped.toml"
+    text = EXAMPLE.read_text("utf-8").replace("[drive]", "\n".join(("[drive]", *lines)))
+    path.write_text(text.replace("damping_ratio = 0.16", "damping_ratio = 0.01"), "utf-8")
+    return path
+
+
+def rigid_stops(folder: Path) -> Path:
+    path = stopped(folder, 'travel = "2 mm"')
+    pushed = 'velocity = "-300 mm/s"\nforce = [["0 s", "-500 mN"], ["60 ms", "0 N"]]\n'
+    path.write_text(path.read_text("utf-8") + pushed, "utf-8")
+    return path
+
+
+def elastic_stops(folder: Path) -> Path:
+    return stopped(
+        folder, 'travel = "1 mm"', 'stop_stiffness = "1000 N/m"', 'stop_damping = "0.5 N*s/m"'
+    )
+
+
+@pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, pushed, rigid_stops, elastic_stops])
 def test_what_is_shown_is_what_python_computes(
-    page: Any, device: Path | None, tmp_path: Path
+    page: Any, device: Path | Callable[[Path], Path], tmp_path: Path
 ) -> None:
-    device = device or pushed(tmp_path)
+    device = device if isinstance(device, Path) else device(tmp_path)
     opened(page, device)
     motion = motion_of(pd.load_device(device))
     curves = "pindrive.page.view.lines[0].result.curves"
@@ -150,8 +172,15 @@ def test_what_is_shown_is_what_python_computes(
     assert [(e["contact"], e["kind"]) for e in events] == [
         (event.contact, event.kind) for event in motion.events
     ]
+    for shown_event, event in zip(events, motion.events, strict=True):
+        for quantity in ("time", "position", "velocity"):
+            given = getattr(event, quantity)
+            assert shown_event[quantity] == pytest.approx(given, rel=1e-12, abs=1e-15), quantity
     rows = page.locator("section.events tbody tr").count()
     assert rows == min(len(motion.events), 100)
+    kinds = {event.kind for event in motion.events}
+    stops = page.locator("p.legend .mark.stop").first.is_visible()
+    assert stops == (device.stem == "stopped") == ({"stop", "leave"} <= kinds)
 
 
 def test_a_velocity_that_is_zero_but_for_rounding_is_shown_as_zero(page: Any) -> None:
@@ -189,6 +218,38 @@ def test_derivatives_are_those_of_python(page: Any) -> None:
         expected = (more - base) / step * 0.01 * 1e3
         shown = float(bars[name].split(" ")[0].replace("−", "-").replace("+", ""))
         assert shown == pytest.approx(expected, rel=5e-3), name
+
+
+def test_end_stops_are_given_and_left_out(page: Any, tmp_path: Path) -> None:
+    for name in ("stop_stiffness", "stop_damping"):
+        assert page.locator(f"#drive-{name}").is_hidden()
+    assert page.get_attribute("#drive-travel", "placeholder") == "none"
+    for name in ("travel", "stop_stiffness", "stop_damping"):
+        page.check(f"#drive-{name}-given")
+        settled(page)
+    assert page.get_attribute("#drive-travel-slider", "aria-valuetext") == "2.000 mm"
+    page.fill("#drive-travel", "1.2")
+    page.keyboard.press("Enter")
+    settled(page)
+    path = saved(page, "toml", tmp_path)
+    drive = pd.load_device(path).drive
+    assert (drive.travel, drive.stop_stiffness, drive.stop_damping) == (0.0012, 1e4, 4.0)
+    opened(page, path)
+    link = page.evaluate("pindrive.page.link()")
+    assert value(page, "drive.travel") == 0.0012
+    assert "stop" in saved(page, "events", tmp_path).read_text("utf-8")
+    page.uncheck("#drive-stop_stiffness-given")  # a release beyond rigid stops
+    settled(page)
+    said = page.locator("#summary").inner_text()
+    assert said == "displacement must be at most travel, 0.0012 m, either way, got 0.002 m"
+    page.uncheck("#drive-travel-given")
+    settled(page)
+    assert "stop_stiffness" not in page.evaluate(f"Object.keys({VALUES}).join()")
+    assert page.locator("#summary").inner_text().startswith("Ending")
+    page.goto("about:blank")
+    page.goto(link)
+    page.wait_for_selector("html[data-ready]")
+    assert value(page, "drive.stop_damping") == 4.0
 
 
 def test_every_file_goes_out_and_in_again(
