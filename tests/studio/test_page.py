@@ -252,6 +252,33 @@ def test_end_stops_are_given_and_left_out(page: Any, tmp_path: Path) -> None:
     assert value(page, "drive.stop_damping") == 4.0
 
 
+def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_path: Path) -> None:
+    path = elastic_stops(tmp_path)
+    opened(page, path)
+
+    def number(given: dict[str, float]) -> float:
+        return motion_of(pd.load_device(path, given)).transient.settling_time
+
+    for key, at in (("travel", 1e-3), ("stop_stiffness", 1e3), ("stop_damping", 0.5)):
+        ends = [number({f"drive.{key}": at * (1 + by)}) for by in (-1e-5, 1e-5)]
+        row = page.locator(
+            ".bars tbody tr", has=page.get_by_text(key.replace("_", " "), exact=True)
+        )
+        shown = float(row.locator("td.figure").inner_text().split(" ")[0].replace("−", "-"))
+        assert shown == pytest.approx((ends[1] - ends[0]) / 2e-5 * 0.01 * 1e3, rel=5e-3), key
+    page.select_option("#map-x", "drive.travel")
+    page.select_option("#map-y", "drive.stop_stiffness")
+    page.wait_for_function("pindrive.page.map.last.values && pindrive.page.map.task.varied.travel")
+    page.wait_for_timeout(300)
+    found = page.evaluate(
+        "(() => { const r = pindrive.page.map; const {travel, stop_stiffness} = r.task.varied;"
+        " return {values: [...r.last.values], x: [...travel.x], y: [...stop_stiffness.y]}; })()"
+    )
+    for i, j in ((0, 0), (63, 5), (31, 40), (20, 63)):
+        given = {"drive.travel": found["x"][i], "drive.stop_stiffness": found["y"][j]}
+        assert found["values"][64 * j + i] == pytest.approx(number(given), rel=1e-9)
+
+
 def test_every_file_goes_out_and_in_again(
     page: Any, browser: Any, page_file: Path, tmp_path: Path
 ) -> None:
