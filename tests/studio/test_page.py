@@ -18,48 +18,20 @@ from pindrive.files.device import motion_of
 from pindrive.files.template import template
 from pindrive.fitting.recording import read_recording
 from studio_cases import NAMES, Ask, questions
+from studio_page import (
+    VALUES,
+    elastic_stops,
+    numbers_shown,
+    opened,
+    pushed,
+    rigid_stops,
+    saved,
+    settled,
+    value,
+)
 
 AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
 READER = EXAMPLES / "tactile-reader.toml"
-FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
-VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
-
-
-def settled(page: Any) -> None:
-    """After what was asked is drawn."""
-    page.evaluate(FRAMES)
-
-
-def value(page: Any, key: str) -> Any:
-    return page.evaluate(f"{VALUES}[{key!r}] ?? null")
-
-
-def opened(page: Any, *files: Path) -> None:
-    """Opens files as a person does, by the button."""
-    for file in files:
-        with page.expect_file_chooser() as chooser:
-            page.get_by_role("button", name="Open …", exact=True).click()
-        chooser.value.set_files(file)
-        settled(page)
-    page.wait_for_timeout(100)
-    settled(page)
-
-
-def saved(page: Any, kind: str, folder: Path) -> Path:
-    """Saves by the menu; the file."""
-    with page.expect_download() as download:
-        page.select_option("#save", kind)
-    path = folder / str(download.value.suggested_filename)
-    download.value.save_as(path)
-    return path
-
-
-def numbers_shown(page: Any) -> dict[str, float | None]:
-    found: dict[str, float | None] = page.evaluate(
-        "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
-        ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
-    )
-    return found
 
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
@@ -101,48 +73,6 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
         in page.locator("#plate-kinetic-note").inner_text()
     )
     assert value(page, "plate.kinetic") == 0.03
-
-
-def pushed(folder: Path) -> Path:
-    """A pin whose finger pushes, while the hand moves off the axis, by coefficients of friction."""
-    path = folder / "pushed.toml"
-    path.write_text(
-        EXAMPLE.read_text("utf-8")
-        .replace('kinetic = "22 mN"', 'coefficient = 0.225\npreload = "10 mN"')
-        .replace('static = "26.5 mN"', "static_coefficient = 0.27")
-        .replace('kinetic = "5 mN"', 'coefficient = 0.5\ntouch_force = "10 mN"')
-        .replace('static = "7.5 mN"', "static_coefficient = 0.75")
-        .replace(
-            "[motion]",
-            '[motion]\nforce = [["0 s", "10 mN"], ["20 ms", "0 N"]]\n'
-            'across_velocity = [["0 s", "30 mm/s"], ["40 ms", "0 m/s"]]',
-        ),
-        "utf-8",
-    )
-    assert pd.load_device(path).drive.plate.coefficient == 0.225
-    assert pd.load_device(path).drive.finger.coefficient == 0.5
-    return path
-
-
-def stopped(folder: Path, *lines: str) -> Path:
-    """A pin that strikes its end stops."""
-    path = folder / "stopped.toml"
-    text = EXAMPLE.read_text("utf-8").replace("[drive]", "\n".join(("[drive]", *lines)))
-    path.write_text(text.replace("damping_ratio = 0.16", "damping_ratio = 0.01"), "utf-8")
-    return path
-
-
-def rigid_stops(folder: Path) -> Path:
-    path = stopped(folder, 'travel = "2 mm"')
-    pushed = 'velocity = "-300 mm/s"\nforce = [["0 s", "-500 mN"], ["60 ms", "0 N"]]\n'
-    path.write_text(path.read_text("utf-8") + pushed, "utf-8")
-    return path
-
-
-def elastic_stops(folder: Path) -> Path:
-    return stopped(
-        folder, 'travel = "1 mm"', 'stop_stiffness = "1000 N/m"', 'stop_damping = "0.5 N*s/m"'
-    )
 
 
 @pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, pushed, rigid_stops, elastic_stops])
@@ -218,65 +148,6 @@ def test_derivatives_are_those_of_python(page: Any) -> None:
         expected = (more - base) / step * 0.01 * 1e3
         shown = float(bars[name].split(" ")[0].replace("−", "-").replace("+", ""))
         assert shown == pytest.approx(expected, rel=5e-3), name
-
-
-def test_end_stops_are_given_and_left_out(page: Any, tmp_path: Path) -> None:
-    for name in ("stop_stiffness", "stop_damping"):
-        assert page.locator(f"#drive-{name}").is_hidden()
-    assert page.get_attribute("#drive-travel", "placeholder") == "none"
-    for name in ("travel", "stop_stiffness", "stop_damping"):
-        page.check(f"#drive-{name}-given")
-        settled(page)
-    assert page.get_attribute("#drive-travel-slider", "aria-valuetext") == "2.000 mm"
-    page.fill("#drive-travel", "1.2")
-    page.keyboard.press("Enter")
-    settled(page)
-    path = saved(page, "toml", tmp_path)
-    drive = pd.load_device(path).drive
-    assert (drive.travel, drive.stop_stiffness, drive.stop_damping) == (0.0012, 1e4, 4.0)
-    opened(page, path)
-    link = page.evaluate("pindrive.page.link()")
-    assert value(page, "drive.travel") == 0.0012
-    assert "stop" in saved(page, "events", tmp_path).read_text("utf-8")
-    page.uncheck("#drive-stop_stiffness-given")  # a release beyond rigid stops
-    settled(page)
-    said = page.locator("#summary").inner_text()
-    assert said == "displacement must be at most travel, 0.0012 m, either way, got 0.002 m"
-    page.uncheck("#drive-travel-given")
-    settled(page)
-    assert "stop_stiffness" not in page.evaluate(f"Object.keys({VALUES}).join()")
-    assert page.locator("#summary").inner_text().startswith("Ending")
-    page.goto("about:blank")
-    page.goto(link)
-    page.wait_for_selector("html[data-ready]")
-    assert value(page, "drive.stop_damping") == 4.0
-
-
-def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_path: Path) -> None:
-    path = elastic_stops(tmp_path)
-    opened(page, path)
-
-    def number(given: dict[str, float]) -> float:
-        return motion_of(pd.load_device(path, given)).transient.settling_time
-
-    for key, at in (("travel", 1e-3), ("stop_stiffness", 1e3), ("stop_damping", 0.5)):
-        ends = [number({f"drive.{key}": at * (1 + by)}) for by in (-1e-5, 1e-5)]
-        row = page.locator(
-            ".bars tbody tr", has=page.get_by_text(key.replace("_", " "), exact=True)
-        )
-        shown = float(row.locator("td.figure").inner_text().split(" ")[0].replace("−", "-"))
-        assert shown == pytest.approx((ends[1] - ends[0]) / 2e-5 * 0.01 * 1e3, rel=5e-3), key
-    page.select_option("#map-x", "drive.travel")
-    page.select_option("#map-y", "drive.stop_stiffness")
-    page.wait_for_function("pindrive.page.map.last.values && pindrive.page.map.task.varied.travel")
-    page.wait_for_timeout(300)
-    found = page.evaluate(
-        "(() => { const r = pindrive.page.map; const {travel, stop_stiffness} = r.task.varied;"
-        " return {values: [...r.last.values], x: [...travel.x], y: [...stop_stiffness.y]}; })()"
-    )
-    for i, j in ((0, 0), (63, 5), (31, 40), (20, 63)):
-        given = {"drive.travel": found["x"][i], "drive.stop_stiffness": found["y"][j]}
-        assert found["values"][64 * j + i] == pytest.approx(number(given), rel=1e-9)
 
 
 def test_every_file_goes_out_and_in_again(
