@@ -49,12 +49,19 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
         contacts[name] = Contact(kinetic=kinetic, static=static, **more)
     mass, stiffness = between(2e-3, 2e-2), between(20, 400)
     ratio = (0.0, between(0, 0.3), between(0, 2), 1.0)[random.integers(4)]
+    stops: dict[str, float] = {}
+    if random.integers(4) == 0:
+        stops["travel"] = between(3e-4, 4e-3)
+        if random.integers(2):
+            stops["stop_stiffness"] = between(1e3, 1e5)
+            stops["stop_damping"] = between(0, 10)
     drive = Drive.with_damping_ratio(
         mass=mass,
         stiffness=stiffness,
         damping_ratio=ratio,
         plate=contacts["plate"],
         finger=contacts["finger"],
+        **stops,
     )
     times = (0.0, between(0.01, 0.1), between(0.11, 0.3))
     velocity = between(-0.3, 0.3)
@@ -68,8 +75,9 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
     if kind == 3:
         inputs["mouse_velocity"] = Profile(times, [between(-0.3, 0.3) for _ in times])
         inputs["plate_load"] = Profile(times, [between(0, 2) for _ in times])
+    farthest = 3e-3 if "stop_stiffness" in stops else min(3e-3, stops.get("travel", 3e-3))
     release = Release(
-        displacement=between(-3e-3, 3e-3),
+        displacement=between(-farthest, farthest),
         velocity=None if random.integers(2) else velocity,
         **inputs,
     )
@@ -85,6 +93,8 @@ def as_input(drive: Drive, release: Release) -> dict[str, Any]:
     numbers = {"mass": drive.mass, "stiffness": drive.stiffness, "damping": drive.damping}
     for name, contact in (("plate", drive.plate), ("finger", drive.finger)):
         numbers |= {f"{name}.kinetic": contact.kinetic, f"{name}.static": contact.static_friction}
+    own = {name: getattr(drive, name) for name in ("travel", "stop_stiffness", "stop_damping")}
+    numbers |= {name: value for name, value in own.items() if value is not None}
     stiffness = drive.finger.stiffness
     skin: dict[str, Any] = {} if drive.finger.rigid else {"finger.stiffness": stiffness}
     curves = {"plate": drive.plate.curve, "finger": drive.finger.curve}
@@ -112,5 +122,5 @@ def compare(found: dict[str, Any], motion: Motion) -> None:
     np.testing.assert_array_equal(doubles(found["numbers"]), expected)
     t = doubles(found["times"])
     along = [motion.position(t), motion.velocity(t), motion.acceleration(t)]
-    along.append(motion.force("plate", t))
+    along += [motion.force("plate", t), motion.force("stop", t)]
     np.testing.assert_array_equal(doubles(found["values"]), np.concatenate(along))

@@ -68,15 +68,25 @@ export class Animation {
       [w, plateTop],
     ]);
     // The housing of the mouse, open below, with a hole for the pin.
+    const travel = view.lines[0]!.values["drive.travel"];
+    const thick = 0.012 * w; // half of the pin
+    const slot = typeof travel === "number" ? scale * travel + thick : Infinity;
+    const hole = Math.min(slot, 0.24 * w); // stops farther away are not in the picture
     context.strokeStyle = look.text;
     context.lineWidth = 2.5;
+    for (const side of slot === hole ? [-1, 1] : []) {
+      line(context, [
+        [middle + side * hole, top - 0.03 * height],
+        [middle + side * hole, top + 0.06 * height],
+      ]);
+    }
     line(context, [
       [0.06 * w, bottom],
       [0.06 * w, top],
-      [middle - 0.24 * w, top],
+      [middle - hole, top],
     ]);
     line(context, [
-      [middle + 0.24 * w, top],
+      [middle + hole, top],
       [0.96 * w, top],
       [0.96 * w, bottom],
     ]);
@@ -104,7 +114,7 @@ export class Animation {
     };
     context.fillStyle = look.curves[view.lines[0]!.index % look.curves.length]!.color;
     context.fillRect(pin - magnet, 0.48 * height, 2 * magnet, plateTop - 0.48 * height - 1);
-    context.fillRect(pin - 0.012 * w, top - 0.05 * height, 0.024 * w, 0.25 * height);
+    context.fillRect(pin - thick, top - 0.05 * height, 2 * thick, 0.25 * height);
     if (phase) {
       context.fillStyle = look.phases[phase.kind]!;
       context.fillRect(pin - magnet - 5, 0.48 * height - 5, 2 * magnet + 10, plateTop - 0.48 * height + 5);

@@ -15,7 +15,7 @@ export function answerOf(core: Core, input: Input, duration: number | null): Rec
   const segments = motion.segments().flatMap(({ begin, end }) => [begin, end]);
   const long = duration ?? motion.duration(0.05);
   const times = Float64Array.from({ length: 11 }, (_, i) => long * (i / 10));
-  const names = ["position", "velocity", "acceleration", "plate_force"] as const;
+  const names = ["position", "velocity", "acceleration", "plate_force", "stop_force"] as const;
   const values = names.flatMap((name) => [...motion.evaluate(name, times)]);
   motion.free();
   return {

@@ -14,29 +14,10 @@ import { brief, counted, floatRepr, general } from "./python";
 import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
+/** What a drive with end stops has, each of which needs those before it. */
+export const STOPS = ["travel", "stop_stiffness", "stop_damping"] as const;
 /** What a release has beside what it has over time. */
 export const RELEASED = ["displacement", "velocity", "skin_stretch", "duration"] as const;
-
-/** The keys that a motion depends on here; of those that may have rows, each. */
-const MOVES: ReadonlySet<string> = new Set([
-  ...["mass", "stiffness", "damping", "damping_ratio"].map((name) => `drive.${name}`),
-  ...CONTACTS.flatMap((contact) => [...frictionKeys(contact, false), ...frictionKeys(contact, true)]),
-  ...Object.values(TABLES.pressedBy).flatMap((parts) => Object.keys(parts)),
-  "finger.stiffness",
-  ...[...RELEASED, ...TABLES.overTime, "settling_band"].map((name) => `motion.${name}`),
-]);
-const MAY_CHANGE: ReadonlySet<string> = new Set(TABLES.overTime.map((name) => `motion.${name}`));
-
-/** Why a key of a device file with a value is not simulated here; empty where it is. */
-export function notSimulated(key: string, value: Value | null): string {
-  const takes = "the studio does not simulate it; `pindrive simulate` does";
-  if (!MOVES.has(key)) return `${key}: ${takes}`;
-  const curve = CONTACTS.some((contact) =>
-    [false, true].some((kind) => frictionKeys(contact, kind)[2] === key),
-  );
-  if (Array.isArray(value) && !curve && !MAY_CHANGE.has(key)) return `${key}: rows: ${takes}`;
-  return "";
-}
 
 /** A value that is refused; its words have no place yet. */
 export class Refusal extends Error {
@@ -150,6 +131,31 @@ export function checkSkin(values: Found): void {
   throw new Refusal("finger.curve", words, counted(curve.length, "row"));
 }
 
+/** Refuses what describes end stops without what it needs. */
+export function checkStops(values: Found): void {
+  const [travel, stiffness, damping] = STOPS.map((name) => values[`drive.${name}`] ?? null);
+  for (const [name, value, unit] of [
+    ["stop_stiffness", stiffness, "N/m"],
+    ["stop_damping", damping, "N*s/m"],
+  ] as const) {
+    if (typeof value !== "number" || travel !== null) continue;
+    const words = "left out without travel, as there are no end stops";
+    throw new Refusal(name, words, `${floatRepr(value)} ${unit}`);
+  }
+  if (typeof damping !== "number" || damping === 0 || stiffness !== null) return;
+  const words = "left out for rigid end stops; give stop_stiffness too";
+  throw new Refusal("stop_damping", words, `${floatRepr(damping)} N*s/m`);
+}
+
+/** Refuses a displacement beyond rigid end stops. */
+export function checkWithinTravel(values: Found): void {
+  const [travel, displacement] = [values["drive.travel"], values["motion.displacement"]];
+  if (typeof travel !== "number" || values["drive.stop_stiffness"] != null) return;
+  if (typeof displacement !== "number" || Math.abs(displacement) <= travel) return;
+  const words = `at most travel, ${floatRepr(travel)} m, either way`;
+  throw new Refusal("displacement", words, `${floatRepr(displacement)} m`);
+}
+
 /** Refuses a load that changes on a finger with a stiffness or a curve. */
 export function checkFingerLoad(values: Found): void {
   const load = values["motion.finger_load"];
@@ -247,10 +253,6 @@ export function problemOf(values: Values): string {
         if (words) throw new Refusal(key, words, `${floatRepr(value)} ${quantity.unit ?? ""}`.trim());
       }
     }
-    const other = Object.entries(values)
-      .map(([key, value]) => notSimulated(key, value))
-      .find(Boolean);
-    if (other) return other;
     for (const table of CONTACTS) {
       const coefficients = byCoefficient(found, table);
       checkOneKind(table, Object.keys(values));
@@ -261,6 +263,8 @@ export function problemOf(values: Values): string {
       checkStatic(still, kinetic, ofStatic);
     }
     checkSkin(found);
+    checkStops(found);
+    checkWithinTravel(found);
     checkFingerLoad(found);
     checkStretch(found);
     checkDrive(found);

@@ -19,6 +19,7 @@ export const QUANTITIES = [
   "finger_force",
   "stretch",
   "stretch_rate",
+  "stop_force",
 ] as const;
 export type QuantityName = (typeof QUANTITIES)[number];
 export type Side = "left" | "right";
@@ -27,6 +28,9 @@ const ENDS = ["moving", "resting", "decaying", "free", "grazing", "stick_slip", 
 export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "cross"] as const;
 export type Transition = (typeof TRANSITIONS)[number];
+/** The same numbers at an end stop, which meets the pin, lets it go, or throws it back. */
+const AT_STOP = ["none", "stop", "leave", "stop"] as const;
+export type StopTransition = (typeof AT_STOP)[number];
 const CONTACT_STATES: Readonly<Record<number, ContactState>> = {
   [-1]: "slips backward",
   0: "sticks",
@@ -57,16 +61,18 @@ export interface Outcome {
 export interface Segment {
   readonly begin: number;
   readonly end: number;
-  readonly plate: ContactState;
-  readonly finger: ContactState;
-}
-
-export interface MotionEvent {
-  readonly time: number;
+  /** At its begin, m and m/s. */
   readonly position: number;
   readonly velocity: number;
-  readonly plate: Transition;
-  readonly finger: Transition;
+  readonly plate: ContactState;
+  readonly finger: ContactState;
+  /** Whether an end stop is reached, and whether the pin begins without velocity and acceleration. */
+  readonly atStop: boolean;
+  readonly still: boolean;
+  /** What happens at its end. */
+  readonly plateEvent: Transition;
+  readonly fingerEvent: Transition;
+  readonly stopEvent: StopTransition;
 }
 
 /** What the core refuses, in its words. */
@@ -80,7 +86,6 @@ const MORE = 1; // PINDRIVE_MORE: there was more than fitted
 const INTERFACE = 2; // PINDRIVE_INTERFACE that this file is written for
 const OUTCOME_BYTES = 56;
 const SEGMENT_BYTES = 80;
-const EVENT_BYTES = 40;
 
 export class Core {
   readonly numberNames: readonly string[];
@@ -351,30 +356,18 @@ export class Motion {
         found.push({
           begin,
           end: view.getFloat64(at + 8, true),
+          position: view.getFloat64(at + 16, true),
+          velocity: view.getFloat64(at + 24, true),
           plate: CONTACT_STATES[view.getInt32(at + 48, true)]!,
           finger: CONTACT_STATES[view.getInt32(at + 52, true)]!,
+          atStop: view.getInt32(at + 72, true) !== 0,
+          still: view.getFloat64(at + 24, true) === 0 && view.getFloat64(at + 32, true) === 0,
+          plateEvent: TRANSITIONS[view.getInt32(at + 64, true)]!,
+          fingerEvent: TRANSITIONS[view.getInt32(at + 68, true)]!,
+          stopEvent: AT_STOP[view.getInt32(at + 76, true)]!,
         });
       }
       return found;
-    });
-  }
-
-  /** The first `capacity` events in [from, to], cycles expanded. */
-  events(from: number, to: number, capacity = 1000): MotionEvent[] {
-    return this.core.borrowed(EVENT_BYTES * capacity + 4, (at) => {
-      const count = at + EVENT_BYTES * capacity;
-      this.core.call("events", this.handle, from, to, at, capacity, count);
-      const view = this.core.view();
-      return Array.from({ length: view.getUint32(count, true) }, (_, i) => {
-        const event = at + EVENT_BYTES * i;
-        return {
-          time: view.getFloat64(event, true),
-          position: view.getFloat64(event + 8, true),
-          velocity: view.getFloat64(event + 16, true),
-          plate: TRANSITIONS[view.getInt32(event + 24, true)]!,
-          finger: TRANSITIONS[view.getInt32(event + 28, true)]!,
-        };
-      });
     });
   }
 

@@ -1,5 +1,5 @@
 // A design: the values that a device file gives, what follows from them, and what the core is given.
-import { dampingOf, MOUSE, RELEASED } from "./checks";
+import { dampingOf, MOUSE, RELEASED, STOPS } from "./checks";
 import type { Input, Rows } from "./core";
 import type { Device } from "./device";
 import {
@@ -29,6 +29,12 @@ export function valueFor(values: Values, key: string): Value | null {
   return values[key] ?? DRIVE.get(key)!.absent ?? null;
 }
 
+/** What a drive may do without: the core's name and the key. */
+const OPTIONAL: readonly (readonly [string, string])[] = [
+  ["finger.stiffness", "finger.stiffness"],
+  ...STOPS.map((name) => [name, `drive.${name}`] as const),
+];
+
 /** As pindrive.h has it. */
 export function coreInput(values: Values): Input {
   const curves: Record<string, Rows> = {};
@@ -43,8 +49,10 @@ export function coreInput(values: Values): Input {
     drive[`${contact}.kinetic`] = kinetic;
     drive[`${contact}.static`] = still;
   }
-  const stiffness = values["finger.stiffness"];
-  if (typeof stiffness === "number") drive["finger.stiffness"] = stiffness;
+  for (const [name, key] of OPTIONAL) {
+    const value = values[key];
+    if (typeof value === "number") drive[name] = value;
+  }
   const release: Record<string, number> = {};
   for (const name of RELEASED) {
     const value = valueFor(values, `motion.${name}`);
@@ -60,10 +68,21 @@ export function coreInput(values: Values): Input {
   return { drive, curves, release, profiles };
 }
 
+/** The keys of end stops that mean nothing without that one. */
+function needing(key: string): readonly string[] {
+  const keys = STOPS.map((name) => `drive.${name}`);
+  return keys.includes(key) ? keys.slice(keys.indexOf(key) + 1) : [];
+}
+
+/** Whether what a key of end stops needs is given; of others, true. */
+export function applies(values: Values, key: string): boolean {
+  return STOPS.every((name) => !needing(`drive.${name}`).includes(key) || `drive.${name}` in values);
+}
+
 /** The values with one set or, for null, left out; what keeps a ratio to it follows. */
 export function withValue(values: Values, key: string, value: Value | null): Values {
   const next: Record<string, Value> = { ...values };
-  if (value === null) delete next[key];
+  if (value === null) for (const gone of [key, ...needing(key)]) delete next[gone];
   else next[key] = value;
   if (key === "drive.damping" && value !== null) delete next["drive.damping_ratio"];
   if (key === "drive.damping_ratio" && value !== null) delete next["drive.damping"];
@@ -150,8 +169,7 @@ export function direction(values: Values, key: string, part: number): Input {
     if (coefficients) relative[`${contact}.static`] = still;
   }
   follow(true);
-  const stiffness = of("finger.stiffness");
-  if (stiffness) drive["finger.stiffness"] = stiffness * input.drive["finger.stiffness"]!;
+  for (const [name, key] of OPTIONAL) if (of(key)) drive[name] = of(key) * input.drive[name]!;
   const release: Record<string, number> = {};
   for (const name of RELEASED) {
     const rate = of(`motion.${name}`);

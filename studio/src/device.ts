@@ -8,10 +8,11 @@ import {
   checkRows,
   checkSkin,
   checkStatic,
+  checkStops,
   checkStretch,
   checkTouch,
+  checkWithinTravel,
   MOUSE,
-  notSimulated,
   Refusal,
 } from "./checks";
 import type { Row, Rows } from "./core";
@@ -132,10 +133,6 @@ class Reader {
     const before = problems.length;
     this.readValues(whole ? TABLES.tables : TABLES.alone, meant);
     if (hand) this.values["motion.mouse_velocity"] = this.values["scan.hand_speed"] ?? null;
-    for (const key of DRIVE.keys()) {
-      const words = this.isGiven(key) && key in this.values ? notSimulated(key, this.values[key]!) : "";
-      if (words) problems.push(`${file}: ${words}`);
-    }
     this.checkContacts();
     const complete = problems.length === before && this.allRead(whole);
     if (complete) this.checkTogether();
@@ -248,6 +245,8 @@ class Reader {
 
   private checkTogether(): void {
     this.attempt(() => checkSkin(this.values), "finger.curve");
+    this.attempt(() => checkStops(this.values), "drive.stop_stiffness", "drive.stop_damping");
+    this.attempt(() => checkWithinTravel(this.values), "motion.displacement");
     this.attempt(() => checkFingerLoad(this.values), "motion.finger_load");
     this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
   }

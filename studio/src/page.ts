@@ -20,7 +20,7 @@ import { RecordingError, readRecording } from "./recording";
 import { Bars, EventsTable, effects, NumbersTable, sentence } from "./results";
 import { simulateAll } from "./sample";
 import { currentDesign, History, type State, toHash, withDesign } from "./state";
-import { NUMBERS } from "./table";
+import { NUMBERS, TABLES } from "./table";
 import { currentLook, type Scheme, setScheme } from "./theme";
 import { currentCurves, currentValues, type Line, type Overlay, type View } from "./view";
 import { deviceFile, eventsCsv, samplesCsv } from "./write";
@@ -45,6 +45,7 @@ export class Page {
   private readonly map: MapRunner;
   private readonly fitting: FitPanel;
   private readonly words = h("p", { id: "summary", role: "status" });
+  private readonly signs = stopSigns();
   private readonly problem = h("pre", { id: "problem", role: "alert", hidden: true });
   private readonly undo = button("Undo", "Undo (Ctrl+Z)", () => this.step("undo"));
   private readonly redo = button("Redo", "Redo (Ctrl+Shift+Z)", () => this.step("redo"));
@@ -91,7 +92,7 @@ export class Page {
       h(
         "div",
         { class: "column" },
-        card("curves", "Motion", this.words, this.player.element, this.charts.element, legend()),
+        card("curves", "Motion", this.words, this.player.element, this.charts.element, legend(this.signs)),
         card("bars-card", "Derivatives", this.bars.element),
         card("events", "Events", this.events.element),
       ),
@@ -258,6 +259,7 @@ export class Page {
     this.numbers.update(this.view);
     this.events.update(this.view);
     this.panel.update(currentValues(this.view));
+    this.signs.hidden = !("drive.travel" in currentValues(this.view));
     this.designs.update(state, this.look);
     this.controls.update(state);
     this.fitting.update(currentValues(this.view), this.overlay);
@@ -412,10 +414,18 @@ export class Page {
   }
 }
 
+function entry(classes: string, words: string): HTMLElement {
+  return h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
+}
+
+/** What the signs of end stops mean. */
+function stopSigns(): HTMLElement {
+  const of = (kind: string): HTMLElement => entry(`mark ${kind} stop`, TABLES.events[kind]!.stop!);
+  return h("span", { class: "legend" }, of("stop"), of("leave"));
+}
+
 /** What the signs in the plots mean. */
-function legend(): HTMLElement {
-  const entry = (classes: string, words: string): HTMLElement =>
-    h("span", {}, h("span", { class: classes, "aria-hidden": "true" }), words);
+function legend(more: HTMLElement): HTMLElement {
   return h(
     "p",
     { class: "legend note" },
@@ -426,5 +436,6 @@ function legend(): HTMLElement {
     entry("mark slip plate", "breaks loose"),
     entry("mark cross plate", "reverses"),
     h("span", {}, "filled at the plate, open at the finger"),
+    more,
   );
 }

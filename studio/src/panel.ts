@@ -1,6 +1,6 @@
 // The parameters of the current design: a slider and a field each, with unit, bounds and meaning.
-import { notSimulated, problemOf } from "./checks";
-import { isRows, valueFor, withValue } from "./design";
+import { problemOf } from "./checks";
+import { applies, isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
 import { h, option, symbol } from "./dom";
 import type { Value, Values } from "./friction";
@@ -32,7 +32,7 @@ export class Panel {
   constructor(private readonly change: Change) {
     for (const [table, title] of GROUPS) {
       const rows = [...DRIVE.values()]
-        .filter(({ key }) => key.startsWith(`${table}.`) && !notSimulated(key, null))
+        .filter(({ key }) => key.startsWith(`${table}.`))
         .map((quantity) =>
           quantity.rows && !quantity.mayBeConstant ? this.rowsOnly(quantity) : this.number(quantity),
         );
@@ -180,6 +180,7 @@ export class Panel {
       const limit = frictionOf(this.values, "finger").still;
       return limit / 2 / ((this.values["finger.stiffness"] as number | undefined) ?? Infinity);
     }
+    if (name === "travel") return Math.max(quantity.example!, Math.abs(startOf(this.values)));
     return quantity.default ?? quantity.example ?? quantity.absent ?? 0;
   }
 
@@ -200,13 +201,18 @@ export class Panel {
   }
 }
 
+/** Where the release begins, m. */
+function startOf(values: Values): number {
+  return (valueFor(values, "motion.displacement") as number | null) ?? 0;
+}
+
 /** What a contact whose friction is given by coefficients must have. */
 const PRESSED: readonly string[] = ["plate.coefficient", "finger.coefficient", "finger.touch_force"];
 
-/** Whether a key means something in the way in which the friction of its contact is given. */
+/** Whether a key means something: as the friction of its contact is given, beside such end stops. */
 function meant(key: string, values: Values): boolean {
   const contact = key.split(".")[0]!;
-  if (!(contact in TABLES.pressedBy)) return true;
+  if (!(contact in TABLES.pressedBy)) return key in values || applies(values, key);
   const coefficients = byCoefficient(values, contact);
   if (key in TABLES.pressedBy[contact]!) return coefficients || values[key] !== undefined;
   return !frictionKeys(contact, !coefficients).includes(key);
@@ -230,6 +236,9 @@ function absentWords(key: string, values: Values): string {
     stiffness: "rigid",
     velocity: "plate's",
     skin_stretch: "none",
+    travel: "none",
+    stop_stiffness: "rigid",
+    stop_damping: "none",
     duration: "ending",
     kinetic: "of curve",
     coefficient: "of curve",

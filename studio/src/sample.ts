@@ -1,12 +1,20 @@
 // What the plots show of motions: columns at common times, with both limits at each event.
 
 import { problemOf } from "./checks";
-import { type Core, CoreError, type Motion, type QuantityName, type Transition } from "./core";
+import {
+  type Core,
+  CoreError,
+  type Motion,
+  type QuantityName,
+  type Segment,
+  type StopTransition,
+  type Transition,
+} from "./core";
 import { coreInput, plateVelocity, settlingBand, valueFor } from "./design";
 import type { Values } from "./friction";
 
-export type EventKind = Exclude<Transition, "none">;
-export type ContactName = "plate" | "finger" | "both";
+export type EventKind = Exclude<Transition | StopTransition, "none">;
+export type ContactName = "plate" | "finger" | "both" | "stop";
 export interface ContactEvent {
   readonly time: number;
   readonly contact: ContactName;
@@ -86,13 +94,44 @@ function begin(core: Core, values: Values): Made {
   const known = motion.outcome.knownUntil;
   const long = typeof given === "number" ? given : motion.duration(settlingBand(values));
   const duration = Math.min(long, known);
-  const events = motion.events(0, duration, EVENTS).flatMap(({ plate, finger, ...at }): ContactEvent[] => {
-    if (plate === finger) return plate === "none" ? [] : [{ ...at, contact: "both", kind: plate }];
-    return [["plate", plate] as const, ["finger", finger] as const].flatMap(([contact, kind]) =>
-      kind === "none" ? [] : [{ ...at, contact, kind }],
-    );
-  });
-  return { motion, values, duration, events };
+  return { motion, values, duration, events: eventsOf(motion, duration) };
+}
+
+/** What changes at the ends of modes, with the state right after it, as Python lists it; cycles expanded. */
+function eventsOf(motion: Motion, until: number): ContactEvent[] {
+  const found: ContactEvent[] = [];
+  for (const { segment, next, shift } of expanded(motion, motion.segments(until), until)) {
+    const time = segment.end + shift;
+    if (time > until || found.length >= EVENTS) break;
+    const { plateEvent: plate, fingerEvent: finger, stopEvent: stop } = segment;
+    const friction = plate === finger ? { both: plate } : { plate, finger };
+    const [position, velocity] = next
+      ? [next.position, next.velocity]
+      : (["position", "velocity"] as const).map((name) => motion.evaluate(name, Float64Array.of(time))[0]!);
+    for (const [contact, kind] of Object.entries({ ...friction, stop })) {
+      if (kind === "none") continue;
+      found.push({ time, contact: contact as ContactName, kind, position: position!, velocity: velocity! });
+    }
+  }
+  return found;
+}
+
+/** Modes in order with the one that follows each, those of a cycle again and again, later by `shift`. */
+function* expanded<T extends Segment>(
+  motion: Motion,
+  segments: readonly T[],
+  until: number,
+): Generator<{ segment: T; next: T | undefined; shift: number }> {
+  const { cycleBegin, simulated } = motion.outcome;
+  const round = simulated - cycleBegin;
+  const first = round > 0 ? segments.find(({ begin }) => begin >= cycleBegin) : undefined;
+  for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
+    for (const [i, segment] of segments.entries()) {
+      if (rounds > 0 && segment.begin < cycleBegin) continue;
+      yield { segment, next: segments[i + 1] ?? first, shift };
+    }
+    if (!(round > 0) || simulated + shift >= until) return;
+  }
 }
 
 interface Grid {
@@ -153,9 +192,8 @@ function sampled({ motion, values, duration, events }: Made, grid: Grid, end: nu
   };
 }
 
-/** When the plate carries the pin, when it is at rest, on the finger or a plate that stands, when skin grips it. */
+/** When the plate carries the pin, when it is at rest, on the finger, a plate that stands or a stop, when skin grips it. */
 function phasesOf(motion: Motion, values: Values, end: number): Phase[] {
-  const { cycleBegin, simulated } = motion.outcome;
   const found: Phase[] = [];
   const add = (kind: PhaseKind, begin: number, until: number): void => {
     const last = found.findLast((phase) => phase.kind === kind);
@@ -166,18 +204,16 @@ function phasesOf(motion: Motion, values: Values, end: number): Phase[] {
     const times = [segment.begin, segment.begin + Math.min(segment.end - segment.begin, 1) / 2];
     return { ...segment, stands: times.every((time) => plateVelocity(values, time) === 0) };
   });
-  const round = simulated - cycleBegin;
-  for (let shift = 0, rounds = 0; rounds < 200; ++rounds, shift += round) {
-    for (const segment of segments) {
-      if (rounds > 0 && segment.begin < cycleBegin) continue;
-      const [begin, until] = [segment.begin + shift, Math.min(segment.end + shift, end)];
-      if (begin >= end || until <= begin) continue;
-      const rests = segment.finger === "sticks" || (segment.plate === "sticks" && segment.stands);
-      if (rests) add("resting", begin, until);
-      else if (segment.plate === "sticks") add("carried", begin, until);
-      if (segment.finger === "grips") add("gripping", begin, until);
-    }
-    if (!(round > 0) || simulated + shift >= end) break;
+  for (const { segment, shift } of expanded(motion, segments, end)) {
+    const [begin, until] = [segment.begin + shift, Math.min(segment.end + shift, end)];
+    if (begin >= end || until <= begin) continue;
+    const rests =
+      (segment.atStop && segment.still) ||
+      segment.finger === "sticks" ||
+      (segment.plate === "sticks" && segment.stands);
+    if (rests) add("resting", begin, until);
+    else if (segment.plate === "sticks") add("carried", begin, until);
+    if (segment.finger === "grips") add("gripping", begin, until);
   }
   return found;
 }

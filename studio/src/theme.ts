@@ -56,7 +56,7 @@ export function currentLook(): Look {
       resting: faded(palette.resting!, dark ? 0.24 : 0.22),
       gripping: faded(palette.gripping!, dark ? 0.3 : 0.26),
     },
-    events: Object.fromEntries(["stick", "slip", "cross"].map((kind) => [kind, shade(palette[kind]!)])),
+    events: Object.fromEntries(Object.keys(TABLES.events).map((kind) => [kind, shade(palette[kind]!)])),
   };
 }
 

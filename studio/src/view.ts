@@ -40,7 +40,7 @@ export function currentValues(view: View): Values {
   return currentDesign(view.state).values;
 }
 
-/** The shape of an event: a square sticks, a triangle breaks loose, a diamond reverses. */
+/** The shape of an event: a square sticks, a triangle breaks loose, a diamond reverses; at an end stop a bar. */
 export function eventPath(
   kind: EventKind,
   x: number,
@@ -60,6 +60,16 @@ export function eventPath(
       [x, y - 1.25 * size],
       [x + 1.15 * size, y + 0.85 * size],
       [x - 1.15 * size, y + 0.85 * size],
+    ];
+  }
+  if (kind === "stop" || kind === "leave") {
+    const [half, long] = [0.2 * size, 2 * size];
+    const [a, b] = kind === "stop" ? [half, long] : [long, half];
+    return [
+      [x - a, y - b],
+      [x + a, y - b],
+      [x + a, y + b],
+      [x - a, y + b],
     ];
   }
   return [

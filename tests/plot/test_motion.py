@@ -410,6 +410,15 @@ def test_a_motion_cut_short_leaves_out_what_lies_far_beyond() -> None:
     assert panel(figure, "x").get_window_extent().width > 0.25 * figure.bbox.width
 
 
+def test_end_stops_are_marked_and_named() -> None:
+    stops = replace(drive(), travel=1e-3, stop_stiffness=1e3)
+    motion = simulate(stops, Release(0.06, displacement=2e-3))
+    figure = plot_motion(motion)
+    legend = panel(figure, "key").get_legend()
+    words = {text.get_text() for text in legend.get_texts()} if legend else set()
+    assert {"meets an end stop", "leaves an end stop"} <= words
+
+
 @pytest.mark.parametrize(("format", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_save(drawn: dict[str, tuple[Motion, Figure]], format: str, start: bytes) -> None:
     file = io.BytesIO()

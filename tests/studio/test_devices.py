@@ -117,6 +117,12 @@ WRONG = [
         for more in ('stiffness = "1 N/m"', 'curve = [["0 m/s", "5 mN"], ["1 m/s", "1 mN"]]')
     ),
     ('"100 mm/s"', '"100 mm/s"\nacross_velocity = [["0 s", "1 m/s"], ["0 s", "2 m/s"]]'),
+    ('"10 g"', '"10 g"\nstop_stiffness = "1 N/m"'),
+    ('"10 g"', '"10 g"\nstop_damping = "0 N*s/m"'),
+    ('"10 g"', '"10 g"\ntravel = "3 mm"\nstop_damping = "1 N*s/m"'),
+    ('"10 g"', '"10 g"\ntravel = "0 mm"'),
+    ('"10 g"', '"10 g"\ntravel = [["0 s", "1 mm"]]'),
+    ("", GOOD.replace('"10 g"', '"10 g"\ntravel = "1 mm"') + 'displacement = "-2 mm"\n'),
     ('"5 mN"', '"5 mN"\n[scan]\nhand_speed = "1 kg"'),
     ('"5 mN"', '"5 mN"\n[array]\npitc = "1 mm"'),
 ]
@@ -220,6 +226,23 @@ CURVED = GOOD.replace(
     'coefficient_curve = [["0 m/s", 0.2], ["0.1 m/s", 0.1]]\nstatic_coefficient = 0.3',
 )
 """Devices that give friction by coefficients."""
+STOPPED = (
+    template()
+    .replace("[drive]", '[drive]\ntravel = "1.8 mm"\nstop_stiffness = "20000 N/m"', 1)
+    .replace("[plate]", 'stop_damping = "3 N*s/m"\n\n[plate]', 1)
+)
+"""A device with elastic end stops."""
+OTHERS = (
+    GOOD.replace('kinetic = "5 mN"', 'curve = [["0 m/s", "5 mN"], ["0.1 m/s", "4 mN"]]').replace(
+        '"10 g"', '"10 g"\ntravel = "3 mm"\nstop_damping = "0 N*s/m"'
+    )
+    + 'plate_load = [["0 s", 2], ["5 ms", 1]]\nvelocity = "1 m/s"\nduration = "0.2 s"\n',
+    GOOD.replace(
+        'kinetic = "5 mN"',
+        'coefficient_curve = [["0 m/s", 0.5], ["0.1 m/s", 0.4]]\ntouch_force = "10 mN"',
+    ),
+)
+"""Devices with rigid end stops and with the keys that the others leave out."""
 
 
 def asked_of(text: str, **more: Any) -> dict[str, Any]:
@@ -248,10 +271,21 @@ def test_device_files_are_read_as_python_reads_them_and_written_so(
     node: Ask, tmp_path: Path
 ) -> None:
     examples = [path.read_text("utf-8") for path in EXAMPLES]
-    texts = [template(), template(whole=True), GOOD, BY_COEFFICIENTS, CURVED, *examples]
+    texts = [
+        template(),
+        template(whole=True),
+        GOOD,
+        BY_COEFFICIENTS,
+        CURVED,
+        STOPPED,
+        *OTHERS,
+        *examples,
+    ]
     assert sum("\ncoefficient" in text for text in texts) >= 3
     path = tmp_path / "device.toml"
-    for text, found in zip(texts, read(node, texts), strict=True):
+    answers = read(node, texts)
+    assert set(DRIVE) == {key for found in answers for key in found["values"]}
+    for text, found in zip(texts, answers, strict=True):
         path.write_text(text, "utf-8")
         device = load_device(path)
         expected = device.values()
@@ -283,7 +317,9 @@ def numbers_given(device: DeviceFile) -> dict[str, float]:
 
 
 @pytest.mark.parametrize(
-    "text", [template(), BY_COEFFICIENTS, CURVED], ids=["forces", "pressed", "curve"]
+    "text",
+    [template(), BY_COEFFICIENTS, CURVED, STOPPED],
+    ids=["forces", "pressed", "curve", "stops"],
 )
 def test_what_follows_a_value_that_is_set_is_as_in_python(
     node: Ask, tmp_path: Path, text: str
@@ -322,6 +358,7 @@ def test_what_follows_a_value_that_is_set_is_as_in_python(
         ("drive.mass", "plate.coefficient"),
         ("finger.touch_force", "plate.preload"),
         ("finger.coefficient", "finger.touch_force"),
+        ("drive.travel", "drive.stop_stiffness"),
     ],
     ids=" ".join,
 )
@@ -330,8 +367,9 @@ def test_the_corners_of_a_map_are_the_devices_of_python(
 ) -> None:
     """Also where weight and preload press together."""
     path = tmp_path / "device.toml"
-    path.write_text(BY_COEFFICIENTS, "utf-8")
-    (found,) = node([asked_of(BY_COEFFICIENTS, map=keys)])
+    text = STOPPED if keys[0] == "drive.travel" else BY_COEFFICIENTS
+    path.write_text(text, "utf-8")
+    (found,) = node([asked_of(text, map=keys)])
     for corner in found["corners"]:
         at = dict(zip(keys, (corner["x"], corner["y"]), strict=True))
         core = as_core(load_device(path, at))
@@ -385,6 +423,12 @@ def what_follows_a_coefficient(node: Ask, tmp_path: Path) -> None:
             "checks.ts",
             "const steps = !curve && !continuous",
             "const steps = !curve",
+            test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
+        ),
+        (
+            "checks.ts",
+            "Math.abs(displacement) <= travel",
+            "displacement <= travel",
             test_a_mistake_in_a_device_file_is_said_in_the_words_of_the_command,
         ),
         (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,48 +18,20 @@ from pindrive.files.device import motion_of
 from pindrive.files.template import template
 from pindrive.fitting.recording import read_recording
 from studio_cases import NAMES, Ask, questions
+from studio_page import (
+    VALUES,
+    elastic_stops,
+    numbers_shown,
+    opened,
+    pushed,
+    rigid_stops,
+    saved,
+    settled,
+    value,
+)
 
 AXE = Path(__file__).parents[2] / "studio" / "node_modules" / "axe-core" / "axe.min.js"
 READER = EXAMPLES / "tactile-reader.toml"
-FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
-VALUES = "pindrive.page.state.designs[pindrive.page.state.current].values"
-
-
-def settled(page: Any) -> None:
-    """After what was asked is drawn."""
-    page.evaluate(FRAMES)
-
-
-def value(page: Any, key: str) -> Any:
-    return page.evaluate(f"{VALUES}[{key!r}] ?? null")
-
-
-def opened(page: Any, *files: Path) -> None:
-    """Opens files as a person does, by the button."""
-    for file in files:
-        with page.expect_file_chooser() as chooser:
-            page.get_by_role("button", name="Open …", exact=True).click()
-        chooser.value.set_files(file)
-        settled(page)
-    page.wait_for_timeout(100)
-    settled(page)
-
-
-def saved(page: Any, kind: str, folder: Path) -> Path:
-    """Saves by the menu; the file."""
-    with page.expect_download() as download:
-        page.select_option("#save", kind)
-    path = folder / str(download.value.suggested_filename)
-    download.value.save_as(path)
-    return path
-
-
-def numbers_shown(page: Any) -> dict[str, float | None]:
-    found: dict[str, float | None] = page.evaluate(
-        "Object.fromEntries(Object.entries(pindrive.page.view.lines[0].result.curves.numbers)"
-        ".map(([k, v]) => [k, Number.isFinite(v) ? v : null]))"
-    )
-    return found
 
 
 def test_a_thousand_random_drives_give_the_bits_of_node(page: Any, node: Ask) -> None:
@@ -102,32 +75,11 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     assert value(page, "plate.kinetic") == 0.03
 
 
-def pushed(folder: Path) -> Path:
-    """A pin whose finger pushes, while the hand moves off the axis, by coefficients of friction."""
-    path = folder / "pushed.toml"
-    path.write_text(
-        EXAMPLE.read_text("utf-8")
-        .replace('kinetic = "22 mN"', 'coefficient = 0.225\npreload = "10 mN"')
-        .replace('static = "26.5 mN"', "static_coefficient = 0.27")
-        .replace('kinetic = "5 mN"', 'coefficient = 0.5\ntouch_force = "10 mN"')
-        .replace('static = "7.5 mN"', "static_coefficient = 0.75")
-        .replace(
-            "[motion]",
-            '[motion]\nforce = [["0 s", "10 mN"], ["20 ms", "0 N"]]\n'
-            'across_velocity = [["0 s", "30 mm/s"], ["40 ms", "0 m/s"]]',
-        ),
-        "utf-8",
-    )
-    assert pd.load_device(path).drive.plate.coefficient == 0.225
-    assert pd.load_device(path).drive.finger.coefficient == 0.5
-    return path
-
-
-@pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, None], ids=str)
+@pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, pushed, rigid_stops, elastic_stops])
 def test_what_is_shown_is_what_python_computes(
-    page: Any, device: Path | None, tmp_path: Path
+    page: Any, device: Path | Callable[[Path], Path], tmp_path: Path
 ) -> None:
-    device = device or pushed(tmp_path)
+    device = device if isinstance(device, Path) else device(tmp_path)
     opened(page, device)
     motion = motion_of(pd.load_device(device))
     curves = "pindrive.page.view.lines[0].result.curves"
@@ -150,8 +102,15 @@ def test_what_is_shown_is_what_python_computes(
     assert [(e["contact"], e["kind"]) for e in events] == [
         (event.contact, event.kind) for event in motion.events
     ]
+    for shown_event, event in zip(events, motion.events, strict=True):
+        for quantity in ("time", "position", "velocity"):
+            given = getattr(event, quantity)
+            assert shown_event[quantity] == pytest.approx(given, rel=1e-12, abs=1e-15), quantity
     rows = page.locator("section.events tbody tr").count()
     assert rows == min(len(motion.events), 100)
+    kinds = {event.kind for event in motion.events}
+    stops = page.locator("p.legend .mark.stop").first.is_visible()
+    assert stops == (device.stem == "stopped") == ({"stop", "leave"} <= kinds)
 
 
 def test_a_velocity_that_is_zero_but_for_rounding_is_shown_as_zero(page: Any) -> None:

@@ -110,6 +110,8 @@ def plain(text: str, width: int = 10_000) -> str:
 
 def event_name(kind: str, contact: str) -> str:
     """What such an event is called: "sticks at the plate"."""
+    if contact == "stop":
+        return f"{'meets' if kind == 'stop' else 'leaves'} an end stop"
     change = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
     return f"{change} at {'both' if contact == 'both' else f'the {contact}'}"
 
