@@ -637,10 +637,12 @@ pindrive_error pindrive_events(const pindrive_motion* motion, double from, doubl
   const pd::Motion<double> view = motion->values->view();
   pd::events(view, from, to, [&](double time, const pd::Segment<double>& s) {
     return filling.add([&](std::size_t i) {
-      const double tau = s.end - s.begin;
+      // A rigid stop takes the velocity: what is told is that after it.
+      const bool at_stop = s.event.stop != pd::Transition::none;
+      const auto [segment, tau] = view.locate(s.end, at_stop ? pd::Side::right : pd::Side::left);
       events[i] = {time,
-                   value_at(view, s, tau, PINDRIVE_POSITION),
-                   value_at(view, s, tau, PINDRIVE_VELOCITY),
+                   value_at(view, *segment, tau, PINDRIVE_POSITION),
+                   value_at(view, *segment, tau, PINDRIVE_VELOCITY),
                    static_cast<pindrive_transition>(s.event.plate),
                    static_cast<pindrive_transition>(s.event.finger),
                    static_cast<pindrive_transition>(s.event.stop)};

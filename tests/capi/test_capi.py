@@ -391,7 +391,7 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
     events, count = (Event * capacity)(), c_size_t()
     times, values = np.empty(capacity), np.empty(capacity)
     sides = np.empty(capacity, np.int8)
-    endings = set()
+    endings, stops = set(), 0
     for number in range(1000):
         case = drawn(random)
         core = case.core()
@@ -424,6 +424,9 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
             *(events, c_size_t(capacity), byref(count)),
         )
         same([e.time for e in events[: count.value]], core.events(0.0, until, capacity)[0], number)
+        at_stops = [e.velocity for e in events[: count.value] if e.stop]
+        assert not any(at_stops) or case.numbers["stop_stiffness"] < inf
+        stops += len(at_stops)
         quantity = int(random.integers(3))
         arrays = doubles(times), doubles(values), c_size_t(capacity), byref(count)
         c("extrema", motion, quantity, c_double(until), *arrays)
@@ -437,7 +440,7 @@ def test_a_thousand_random_drives_have_the_bits_of_python(c: Interface) -> None:
         across = core.crossings(quantity, level, until, capacity)
         same((times[: count.value], sides[: count.value]), across, number)
         c.free(drive=drive, release=release, motion=motion)
-    assert len(endings) >= 4
+    assert len(endings) >= 4 and stops > 50
 
 
 class Instant(ctypes.Structure):

@@ -37,6 +37,7 @@ def told(motion: Motion) -> list[tuple[str, str]]:
 
 def laws(motion: Motion) -> None:
     assert motion.certificate().worst < 1e-11
+    assert motion.events_between(0.0, motion.duration) == motion.events
     ledger = motion.energy
     assert abs(ledger.residual) < 1e-12 * max(map(abs, astuple(ledger)))
     assert min(ledger.stop_dissipated, ledger.plate_dissipated, ledger.finger_dissipated) >= 0.0
