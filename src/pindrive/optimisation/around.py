@@ -27,7 +27,7 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
 
     Args:
         problem: what designs are worth.
-        point: the design, in the middle of nothing in particular.
+        point: the design, which is one of the places.
         resolution: places along an axis that is a range; 0: no map.
     """
     if not resolution:
@@ -37,7 +37,7 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
     count = 2 if problem.scans else MAPPED
     for i, j in combinations(range(min(count, len(point))), 2):
         one, other = problem.variables[i], problem.variables[j]
-        x, y = (_parts(variable, resolution) for variable in (one, other))
+        x, y = (_parts(v, resolution, float(point[k])) for v, k in ((one, i), (other, j)))
         across, up = np.meshgrid(x, y)
         points = np.tile(point, (across.size, 1))
         points[:, i], points[:, j] = across.ravel(), up.ravel()
@@ -58,13 +58,16 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
     return tuple(found)
 
 
-def _parts(variable: Variable, resolution: int) -> Array:
+def _parts(variable: Variable, resolution: int, chosen: float) -> Array:
+    """Places over a variable; the nearest to the design is its own, so that its cell is true of it."""
     if not variable.choices:
-        return np.linspace(0.0, 1.0, resolution)
-    rows = np.unique(
-        np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round()
-    )
-    return (rows + 0.5) / variable.choices
+        parts = np.linspace(0.0, 1.0, resolution)
+        parts[np.abs(parts - chosen).argmin()] = chosen
+        return parts
+    row = variable.index(np.array([chosen]))[0]
+    rows = np.linspace(0, variable.choices - 1, min(variable.choices, resolution)).round()
+    rows[np.abs(rows - row).argmin()] = row
+    return (np.unique(rows) + 0.5) / variable.choices
 
 
 def _first(variable: Variable, parts: Array) -> Array:
