@@ -59,7 +59,7 @@ def maps(problem: Problem, point: Array, resolution: int) -> tuple[Map, ...]:
 
 
 def _parts(variable: Variable, resolution: int, chosen: float) -> Array:
-    """Places over a variable; the nearest to the design is its own, so that its cell is true of it."""
+    """Places over a variable; the nearest to the design is its own: its cell is true of it."""
     if not variable.choices:
         parts = np.linspace(0.0, 1.0, resolution)
         parts[np.abs(parts - chosen).argmin()] = chosen

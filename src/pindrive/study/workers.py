@@ -59,7 +59,9 @@ def stop_at_once(status: int) -> NoReturn:
     """End this process without waiting for what is under way."""
     if "multiprocessing.synchronize" not in sys.modules:  # nothing is shared with processes
         os._exit(status)
-    threading.excepthook = lambda _: None  # of pools that miss their processes
+    # Of pools that miss their processes, while they work and as this process ends.
+    threading.excepthook = lambda _: None
+    sys.unraisablehook = lambda _: None
     for process in active_children():
         process.kill()
     sys.exit(status)  # so that what they shared is given back
