@@ -32,7 +32,7 @@ from pindrive.files.template import (
 from pindrive.motion.drive import SLOPES
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.motion.release import CONTINUOUS, INPUTS
-from pindrive.plot.style import CONTACTS, CURVES, EVENT_SHAPE, PALETTE, event_name
+from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Bounds, Quantity
@@ -175,11 +175,7 @@ def tables() -> dict[str, Any]:
         "shapes": EVENT_SHAPE,
         "curves": [{"color": look["color"], "dash": dashes(look["ls"])} for look in CURVES],
         "events": {
-            kind: {
-                contact: event_name(kind, contact)
-                for contact in CONTACTS
-                if (contact == "stop") == (kind in ("stop", "leave"))
-            }
+            kind: {contact: event_name(kind, contact) for k, contact in SIGNS if k == kind}
             for kind in EVENT_SHAPE
         },
         "template": template(),

@@ -82,6 +82,16 @@ SOLID = COPPER * pi / 4.0 * 0.008**2 * 0.024
             ],
         ),
         (device(Electromagnet(), pitch=0.001), []),  # sizes that are not known
+        (replace(device(slot=0.0055), drive=replace(DRIVE, travel=0.002)), []),
+        (
+            replace(device(slot=0.0055), drive=replace(DRIVE, travel=0.0021)),
+            [
+                "end stops outside the slot: drive.travel is 2.100 mm either way, and in a slot "
+                "(array.slot_length) of 5.500 mm a pin 1.500 mm wide (array.pin_diameter) has "
+                "2.000 mm"
+            ],
+        ),
+        (replace(device(), drive=replace(DRIVE, travel=0.5)), []),
     ],
 )
 def test_doubts(made: Device, words: list[str]) -> None:

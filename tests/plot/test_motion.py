@@ -416,7 +416,7 @@ def test_end_stops_are_marked_and_named() -> None:
     figure = plot_motion(motion)
     legend = panel(figure, "key").get_legend()
     words = {text.get_text() for text in legend.get_texts()} if legend else set()
-    assert {"meets an end stop", "leaves an end stop"} <= words
+    assert {"strikes an end stop", "leaves an end stop"} <= words
 
 
 @pytest.mark.parametrize(("format", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])

@@ -60,7 +60,9 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
         assert shown == pytest.approx((ends[1] - ends[0]) / 2e-5 * 0.01 * 1e3, rel=5e-3), key
     page.select_option("#map-x", "drive.travel")
     page.select_option("#map-y", "drive.stop_stiffness")
-    page.wait_for_function("pindrive.page.map.last.values && pindrive.page.map.task.varied.travel")
+    drawn = "Boolean(pindrive.page.map.last.values && pindrive.page.map.task.varied.travel)"
+    while not page.evaluate(drawn):  # the policy of the page lets it wait for no condition by itself
+        page.wait_for_timeout(50)
     page.wait_for_timeout(300)
     found = page.evaluate(
         "(() => { const r = pindrive.page.map; const {travel, stop_stiffness} = r.task.varied;"

@@ -287,6 +287,10 @@ def meeting_words(device: Device, speed: float) -> list[str]:
         words.append(
             f"In its slot a pin has {length.text(array.travel)} either way, and {ends}: {gone}."
         )
+    stops = device.drive.travel
+    if stops is not None:
+        met = "does not come to them" if reach < stops else "can come to them"
+        words.append(f"The end stops are {length.text(stops)} either way, and a pin {met}: {gone}.")
     solid = heaviest(device.magnet.outer_diameter, device.magnet.height)
     if solid is not None:
         density = device.drive.mass / solid * COPPER

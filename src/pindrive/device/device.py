@@ -66,13 +66,15 @@ class Device:
 
         Carried to where the plate's friction ends against the spring, static or at the speeds at
         which it pulls outwards, it has the plate's velocity left. A hand that speeds up by a adds
-        m a / k.
+        m a / k. No pin goes beyond rigid end stops.
 
         Args:
             speed: of the hand at most, m/s.
         """
         held = self.drive.plate.largest(speed) * self.load(self.magnet.hold_force)
-        return held / self.drive.stiffness + speed / self.drive.natural_frequency
+        reach = held / self.drive.stiffness + speed / self.drive.natural_frequency
+        ends = self.drive.rigid_travel
+        return reach if ends is None else min(reach, ends)
 
     @property
     def drag(self) -> float:

@@ -212,9 +212,11 @@ def strokes(
     shape *= count / shape[1:-1].sum()  # the trapezoids under it have an area of 1
     times, vx, vy = [np.zeros(1)], [np.zeros(1)], [np.zeros(1)]
     places = [tuple(check("hand.place", at, label="stops") for at in stop) for stop in stops]
-    for (x0, y0), (x1, y1), speed in zip(places[:-1], places[1:], peaks, strict=True):
+    ways = zip(places[:-1], places[1:], peaks, strict=True)
+    for i, ((x0, y0), (x1, y1), speed) in enumerate(ways):
         dx, dy = (check("hand.place", way, label="stroke") for way in (x1 - x0, y1 - y0))
-        length = check("stroke.length", hypot(dx, dy))
+        label = f"the way from stops[{i}] to stops[{i + 1}]"
+        length = check("stroke.length", hypot(dx, dy), label=label)
         lasts = PEAK * length / check("hand_speed", speed, label="speeds")
         begin = times[-1][-1]
         times.append(begin + lasts * s[1:])

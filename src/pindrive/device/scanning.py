@@ -192,10 +192,15 @@ class PinScan:
     def state(self) -> PinState:
         """Where it stands at the end."""
         last, lasts = self.motion.segments[-1], self.end - self.begin
-        grips = last.finger == 0 and not self.motion.drive.finger.rigid
+        drive = self.motion.drive
+        position = self.motion.position(lasts, "left")
+        velocity = self.motion.velocity(lasts, "left")
+        # a rigid stop that is struck at the end has taken the velocity: the skin grips as it was
+        strikes = abs(position) == drive.rigid_travel and position * velocity > 0.0
+        grips = (last.finger == 0 or strikes) and not drive.finger.rigid
         return PinState(
-            position=self.motion.position(lasts, "left"),
-            velocity=None if last.plate == 0 else self.motion.velocity(lasts, "left"),
+            position=position,
+            velocity=0.0 if strikes else None if last.plate == 0 else velocity,
             skin_stretch=self.motion.stretch(lasts, "left") if grips else None,
             coil=self.coil,
             decision=self.decision,

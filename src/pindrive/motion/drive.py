@@ -249,6 +249,11 @@ class Drive:
         return replace(self, plate=plate, finger=finger, touch_force=None)
 
     @property
+    def rigid_travel(self) -> float | None:
+        """How far the pin goes at most, either way, m; None without end stops that are rigid."""
+        return self.travel if self.stop_stiffness is None else None
+
+    @property
     def natural_frequency(self) -> float:
         """Undamped natural frequency sqrt(k/m), rad/s."""
         return sqrt(self.stiffness / self.mass)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from itertools import groupby, product
-from math import inf, isfinite, isnan
+from itertools import groupby
+from math import copysign, inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.style
@@ -19,12 +19,11 @@ from matplotlib.patches import Patch
 
 from pindrive.motion.profile import Profile
 from pindrive.plot.style import (
-    CONTACTS,
-    EVENT_SHAPE,
     GREY,
     HALO,
     MM,
     PALETTE,
+    SIGNS,
     SMALL,
     STYLE,
     Figure,
@@ -46,6 +45,7 @@ if TYPE_CHECKING:
 
 _TINT: Final = {"carried": 0.55, "resting": 0.22}  # opacity: two greys in black and white
 _GRIP_TINT: Final = 0.3
+_STOP_LINE: Final[dict[str, Any]] = {"color": "black", "lw": 1.6, "zorder": 0.8, "gid": "end stop"}
 
 _MOST_MARKERS = 100
 """With more events their markers would hide the curve."""
@@ -108,6 +108,8 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     _draw_plate(motion, v, trace)
     _mark_settling(motion, trace, x)
     _mark_extremes(motion, trace, x)
+    for place in _stops_met(motion, trace):
+        x.axhline(place, **_STOP_LINE)
     x.set_ylim(_room(trace.x, 0.0, margin=0.22))
     v.set_ylim(_room(trace.v, 0.0, *_plate_range(motion, trace)))
     a.set_ylim(_room(trace.a, 0.0))
@@ -149,6 +151,8 @@ def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:
     if not isinstance(motion.release.mouse_velocity, Profile):
         _draw_plate(motion, axes, trace)
     _mark_ends(motion, trace, axes)
+    for place in _stops_met(motion, trace):
+        axes.axvline(place, **_STOP_LINE)
     axes.set_xlabel("displacement $x$ (mm)")
     axes.set_ylabel("velocity $v$ (mm/s)")
     axes.set_xlim(_room(trace.x, margin=0.1))
@@ -162,7 +166,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     notes: list[str] = []
     occur = {(event.kind, event.contact) for event, _ in trace.events}
     if len(trace.events) <= _MOST_MARKERS:
-        handles += event_key(sign for sign in product(EVENT_SHAPE, CONTACTS) if sign in occur)
+        handles += event_key(sign for sign in SIGNS if sign in occur)
     else:
         notes.append(f"{len(trace.events)} events: too many to mark")
     if len(trace.starts) > 1:
@@ -176,6 +180,8 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
     if not motion.drive.finger.rigid and trace.gripping():
         colour = PALETTE["gripping"]
         handles.append(Patch(color=colour, alpha=_GRIP_TINT, lw=0.0, label=NAME["gripping"]))
+    if _stops_met(motion, trace):
+        handles.append(Line2D([], [], **_STOP_LINE, label="end stop"))
     if _band(motion) > 0.0:
         part = f"{100 * motion.settling_band:g} %"
         label = rf"$x_\mathrm{{end}}$ ± {part} of $|x_0 - x_\mathrm{{end}}|$"
@@ -204,6 +210,16 @@ def _mark_events(trace: Trace, axes: Axes, across: list[float], ordinate: str) -
         return
     events = zip(trace.events, across, strict=True)
     mark_events(axes, ((e.kind, e.contact, x, getattr(e, ordinate) * MM) for (e, _), x in events))
+
+
+def _stops_met(motion: Motion, trace: Trace) -> list[float]:
+    """Where the end stops are that the pin touches, mm: others would stretch the axes."""
+    sides = {copysign(1.0, e.position) for e, _ in trace.events if e.contact == "stop"}
+    if motion.drive.travel is None:
+        return []
+    travel = motion.drive.travel * MM
+    sides |= {side for side in (-1.0, 1.0) if (side * trace.x >= travel).any()}
+    return [side * travel for side in sorted(sides)]
 
 
 def _draw_plate(motion: Motion, axes: Axes, trace: Trace) -> None:
@@ -331,6 +347,12 @@ NAME: Final = {
     "gripping": "skin grips the pin",
 }
 
+_STOPS: Final = {
+    "travel": r"$x_\mathrm{s}$",
+    "stop_stiffness": r"$k_\mathrm{s}$",
+    "stop_damping": r"$b_\mathrm{s}$",
+}
+"""Of end stops, by their symbols."""
 _LINE: Final = 118
 """Characters that fit side by side above the panels."""
 _MOST_TURNS: Final = 4
@@ -354,7 +376,9 @@ def _course(name: str, values: Sequence[float]) -> str:
 def stuck_name(motion: Motion, mode: str) -> str:
     """What a phase stuck in this way is called."""
     if mode == "resting" and (
-        isinstance(motion.release.mouse_velocity, Profile) or not motion.drive.finger.rigid
+        isinstance(motion.release.mouse_velocity, Profile)
+        or not motion.drive.finger.rigid
+        or motion.drive.travel is not None
     ):
         return "at rest"
     if motion.release.mouse_velocity != 0.0 or motion.drive.plate.frictionless:
@@ -397,6 +421,12 @@ def parameters(motion: Motion) -> str:
         words.append(rf"$F_\mathrm{{{index}}}$ = {_course('plate.kinetic', along)}{more}")
     if not drive.finger.rigid:
         words.append(rf"$k_\mathrm{{f}}$ = {short('finger.stiffness', drive.finger.stiffness)}")
+    words += [
+        f"{symbol} = {short(name, value)}"
+        for name, symbol in _STOPS.items()
+        for value in (getattr(drive, name),)
+        if value is not None
+    ]
     if isinstance(motion.release.plate_load, Profile) or motion.release.plate_load != 1.0:
         words.append(f"$λ$ = {_course('plate_load', _values(motion.release.plate_load))}")
     if motion.release.finger_load != 1.0:

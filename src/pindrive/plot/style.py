@@ -36,14 +36,20 @@ PALETTE: Final = {
 }
 """Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
 
-EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D", "stop": "|", "leave": "_"}
+EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D", "stop": "X", "leave": "o"}
 CONTACTS: Final = {
     "plate": ("full", 3.2),
     "finger": ("none", 6.0),
     "both": ("left", 6.0),
-    "stop": ("full", 9.0),
+    "stop": ("none", 9.0),
 }
 """How a marker is filled, and its size, by the contact that changes."""
+SIGNS: Final[tuple[Sign, ...]] = (
+    *product(("stick", "slip", "cross"), ("plate", "finger", "both")),
+    ("stop", "stop"),
+    ("leave", "stop"),
+)
+"""All that can occur, in the order of a legend."""
 
 CURVES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#0072B2", "ls": "-"},
@@ -109,9 +115,9 @@ def plain(text: str, width: int = 10_000) -> str:
 
 
 def event_name(kind: str, contact: str) -> str:
-    """What such an event is called: "sticks at the plate"."""
+    """What such an event is called: "sticks at the plate", "strikes an end stop"."""
     if contact == "stop":
-        return f"{'meets' if kind == 'stop' else 'leaves'} an end stop"
+        return {"stop": "strikes an end stop", "leave": "leaves an end stop"}[kind]
     change = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
     return f"{change} at {'both' if contact == 'both' else f'the {contact}'}"
 
@@ -131,7 +137,7 @@ def mark_events(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> 
     places: dict[Sign, list[tuple[float, float]]] = {}
     for kind, contact, *place in points:
         places.setdefault((kind, contact), []).append((place[0], place[1]))
-    signs = [sign for sign in product(EVENT_SHAPE, CONTACTS) if sign in places]
+    signs = [sign for sign in SIGNS if sign in places]
     for sign in signs:
         axes.plot(*zip(*places[sign], strict=True), **event_marker(*sign), zorder=3)
     return signs

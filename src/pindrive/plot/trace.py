@@ -92,6 +92,7 @@ class Trace:
         lasts = np.cumsum(sizes) - 1
         t = np.concatenate(grids)
         x, v, a = motion.position(t), motion.velocity(t), motion.acceleration(t)
+        v[lasts] = motion.velocity(t[lasts], "left")  # it jumps where a pin strikes a rigid stop
         a[lasts] = motion.acceleration(t[lasts], "left")
         s = motion.stretch(t)
         s[lasts] = motion.stretch(t[lasts], "left")
