@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from command import GOOD, refused, run
-from figure_reading import collisions, data, events, legend_of, lines, panel
+from figure_reading import collisions, data, events, legend_of, lines, panel, points
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
 from pindrive.plot.motion import plot_motion
@@ -105,7 +105,7 @@ def test_the_picture_shows_the_stops(stiffness: float | None) -> None:
     assert ("strikes an end stop" in key) and ("leaves an end stop" in key) == ("leave" in kinds)
     sides = sorted({np.sign(e.position) for e in motion.events if e.contact == "stop"})
     for axes, along in (("x", 1), ("portrait", 0)):
-        drawn = [line.get_data()[along][0] for line in lines(panel(figure, axes), "end stop")]
+        drawn = [points(line)[along][0] for line in lines(panel(figure, axes), "end stop")]
         assert drawn == pytest.approx([0.58 * side for side in sides])
     assert "end stop" in key and "resting on the finger" not in key
     times = [1e3 * e.time for e in motion.events if e.kind == "stop"]

@@ -54,13 +54,14 @@ def doubts(device: Device) -> Iterator[str]:
                 f"{QUANTITIES['slot_length'].text(array.slot_length)}, and pins {pair.behind} and "
                 f"{pair.ahead} are {QUANTITIES['pitch'].text(step)} apart along the drive axis"
             )
-    if array.travel is not None and (device.drive.travel or 0.0) > array.travel * (1.0 + SLACK):
-        travel, slot, wide = (QUANTITIES[n] for n in ("travel", "slot_length", "pin_diameter"))
+    travel, room, slot = device.drive.travel, array.travel, array.slot_length
+    if travel and room is not None and slot and travel > room * (1.0 + SLACK):
+        wide = QUANTITIES["pin_diameter"].text(array.pin_diameter)
         yield (
-            f"end stops outside the slot: drive.travel is {travel.text(device.drive.travel)} "
-            f"either way, and in a slot (array.slot_length) of {slot.text(array.slot_length)} a "
-            f"pin {wide.text(array.pin_diameter)} wide (array.pin_diameter) has "
-            f"{travel.text(array.travel)}"
+            f"end stops outside the slot: drive.travel is {QUANTITIES['travel'].text(travel)} "
+            f"either way, and in a slot (array.slot_length) of "
+            f"{QUANTITIES['slot_length'].text(slot)} a pin {wide} wide (array.pin_diameter) has "
+            f"{QUANTITIES['travel'].text(room)}"
         )
     solid = heaviest(magnet.outer_diameter, magnet.height)
     if solid is not None and device.drive.mass > solid * (1.0 + SLACK):
