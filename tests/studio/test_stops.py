@@ -61,7 +61,7 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
     page.select_option("#map-x", "drive.travel")
     page.select_option("#map-y", "drive.stop_stiffness")
     drawn = "Boolean(pindrive.page.map.last.values && pindrive.page.map.task.varied.travel)"
-    while not page.evaluate(drawn):  # the policy of the page lets it wait for no condition by itself
+    while not page.evaluate(drawn):  # its policy forbids it to wait by itself
         page.wait_for_timeout(50)
     page.wait_for_timeout(300)
     found = page.evaluate(
