@@ -121,7 +121,7 @@ def test_one_outside_of_a_command_ends_in_a_line_too(tmp_path: Path) -> None:
 
 MOUSE, READER = (EXAMPLES / f"tactile-{name}-study.toml" for name in ("mouse", "reader"))
 MOMENTS = {
-    "typer": "--help",
+    "typer": f"sweep {MOUSE} -o study.nc",
     "pindrive.study.runner": f"sweep {MOUSE} -o study.nc",
     "numpy": f"sensitivity {MOUSE}",
     "pindrive.study.robustness": f"robustness {READER}",
