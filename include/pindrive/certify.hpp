@@ -279,8 +279,8 @@ class Certifier {
   /// known to its rounding and to that of the time.
   template <class Stage>
   T unsure(const Stage& stage, const Numbers& s) const {
+    using detail::hypot;
     using std::abs;
-    using std::hypot;
     if (stage.segment.mode.plate != ContactState::slip_oblique) return T(0);
     const T u = s.v - stage.plate_velocity.at(s.tau), w = stage.across.at(s.tau);
     const T speed = hypot(u, w), time = stage.segment.begin + s.tau;

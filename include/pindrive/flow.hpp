@@ -23,6 +23,9 @@ struct Propagator {
   T decline;  ///< Φ(τ) − 1: change of a unit displacement; dimensionless
   T gain;     ///< Ψ(τ): displacement grown from a unit velocity, s
   T tau;      ///< s
+
+  /// Of what does not oscillate.
+  static Propagator still(T tau) { return {T(0), T(0), tau}; }
 };
 
 /// Zeros of a free oscillation at τ > 0: first, first + spacing, …; infinity where there is none.
@@ -211,7 +214,7 @@ struct Path {
     return value * moved.decline + slope * moved.gain + (drift + curvature * tau / 2) * tau;
   }
   T change(const Oscillator<T>& oscillator, T tau) const {
-    return change(oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau});
+    return change(oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau));
   }
   T at(const Propagator<T>& moved) const { return start + change(moved); }
   T at(const Oscillator<T>& oscillator, T tau) const { return start + change(oscillator, tau); }
@@ -284,7 +287,7 @@ struct Flow {
 
   /// How the oscillation has moved on after τ; a stuck pin does not oscillate.
   Propagator<T> after(T tau) const {
-    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau};
+    return velocity.oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau);
   }
 
   /// Half the width of the oscillation about its centre if it were undamped from now on, m.

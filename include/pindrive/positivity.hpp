@@ -89,7 +89,7 @@ class PositivityBound {
     if (--halvings < 0 || !(tau > a.tau && tau < b.tau) || !(bound > -never))
       return bound > -never ? bound : -never;
     const Sample middle =
-        at(path_.oscillates() ? oscillator.after(tau) : Propagator<T>{T(0), T(0), tau});
+        at(path_.oscillates() ? oscillator.after(tau) : Propagator<T>::still(tau));
     return std::min(lowest(oscillator, a, middle, flatness, unseen, halvings),
                     lowest(oscillator, middle, b, flatness, unseen, halvings));
   }

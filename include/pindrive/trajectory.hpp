@@ -48,7 +48,7 @@ class ClosedForm {
   /// An instant at which several quantities are evaluated.
   using Moment = Propagator<T>;
   Moment moment(T tau) const {
-    return waves() && tau > 0 ? oscillator().after(tau) : Moment{T(0), T(0), tau};
+    return waves() && tau > 0 ? oscillator().after(tau) : Moment::still(tau);
   }
   T at(const Path<T>& path, const Moment& now) const { return path.at(now); }
   /// Whether anything oscillates.

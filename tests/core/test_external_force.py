@@ -79,31 +79,36 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_a_force_against_thirty_digits(name: str) -> None:
-    of = CASES[name]
+def against_thirty_digits(of: Case, times: int) -> tuple[Motion, int]:
+    """The motion of a case, checked at so many times and at its events, and how many events."""
     motion = piecewise.release(of)
-    times = np.linspace(0.0, of["duration"], 41)[1:-1]
+    at = np.linspace(0.0, of["duration"], times + 2)[1:-1]
     path = mp_piecewise.solve(of["inputs"], of["duration"])
     events = [
         (float(e.time), e.contact, e.kind, float(e.position), float(e.velocity))
         for e in path.events
     ]
-    rows = np.array([[float(y) for y in path.state(t)] for t in times]).T
+    rows = np.array([[float(y) for y in path.state(t)] for t in at]).T
     states = dict(zip(("x", "v", "a", "finger_force"), rows, strict=False))
     told = {
-        "x": motion.position(times),
-        "v": motion.velocity(times),
-        "a": motion.acceleration(times),
-        "finger_force": motion.force("finger", times),
+        "x": motion.position(at),
+        "v": motion.velocity(at),
+        "a": motion.acceleration(at),
+        "finger_force": motion.force("finger", at),
     }
     piecewise.NUMBERS[id(of)] = 0
-    true: Case = {**of, "events": events, "times": times.tolist(), **states}
+    true: Case = {**of, "events": events, "times": at.tolist(), **states}
     found = piecewise.deviations(
         true, piecewise.told_events(motion), told, TIME_TOLERANCE, STATE_TOLERANCE
     )
     assert not found, "\n".join(found)
-    assert len(events) >= 5
+    return motion, len(events)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_force_against_thirty_digits(name: str) -> None:
+    motion, events = against_thirty_digits(CASES[name], 39)
+    assert events >= 5
     laws(motion)
 
 

@@ -84,13 +84,12 @@ def check(
     Raises:
         ValueError: no number, text without the unit, not finite, or out of bounds.
     """
+    quantity = QUANTITIES[name]
+    label = name if label is None else label
     if type(value) is float:
         lower, upper = _INSIDE[name]
         if lower < value < upper:
             return value
-    quantity = QUANTITIES[name]
-    label = name if label is None else label
-    if type(value) is float:
         number = value
     elif isinstance(value, (list, tuple)) or getattr(value, "shape", None):
         many = "one number; simulate_batch takes arrays"
