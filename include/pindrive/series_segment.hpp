@@ -22,8 +22,7 @@ class SeriesSegment {
   /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
   /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
   /// `at_limit` is the side on which a stick force is at its limit, `no_push` says that a stop's push is
-  /// exactly zero, `span` the time until the next row or the
-  /// end, s. Its guards come with their zeros.
+  /// exactly zero, `span` the time until the next row or the end, s. Its guards come with their zeros.
   template <class Side>
   bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
              const Side& finger, const Line<T>& force, const State<T>& state, T acceleration,
