@@ -130,7 +130,7 @@ def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Fi
     pin, axes = judged.scan.pins[chosen.pin], panel(figure, "seen")
     under = [
         (1e3 * (line.begin - chosen.begin), 1e3 * (line.end - chosen.begin))
-        for line in printed(judged.scan)[chosen.pin]
+        for line in printed(judged.scan.device, judged.scan.path, judged.scan.scene)[chosen.pin]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
     for name in ("seen", "pull", "x", "force"):

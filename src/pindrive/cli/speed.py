@@ -47,7 +47,6 @@ def speed(
 
     with refusing():
         device_file = load_device(file, overrides or (), whole=True)
-        assert device_file.whole
         pitches = [
             step
             for text in pitch or [USUAL]
@@ -62,8 +61,8 @@ def speed(
         from pindrive.evaluation.resolution import largest_speeds
 
         with picturing(plot, [file]) as draw:
-            device = device_file.whole.device(device_file.drive)
-            criteria = device_file.whole.criteria()
+            device = device_file.device
+            criteria = device_file.criteria
             with bar("Pitches") as progress:
                 limits = largest_speeds(
                     device,

@@ -27,7 +27,8 @@ from typing import Final
 
 import numpy as np
 
-from pindrive.device.device import Criteria, Device
+from pindrive.device.criteria import Criteria
+from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray

@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import PinScan
-    from pindrive.evaluation.results import Judgement, Line
+    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.results import Line
 
 LINES: Final = 4
 """Shown in the history, at most."""
@@ -143,9 +144,10 @@ def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
 
 def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
     """Where a printed line is under the pin's spot."""
+    scan = judgement.scan
     spans = [
         (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))
-        for line in printed(judgement.scan)[chosen.pin]
+        for line in printed(scan.device, scan.path, scan.scene)[chosen.pin]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
     shade(axes, spans, "printed", **PRINTED, zorder=0)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Scan
-    from pindrive.evaluation.results import Judgement
+    from pindrive.evaluation.perception import Judgement
 
 WIDTH: Final = 180.0
 """Of the page that it is drawn for, mm."""
@@ -228,7 +228,7 @@ def _draw_way(scan: Scan, axes: Axes) -> None:
 def _strokes(scan: Scan) -> Iterator[tuple[NDArray[np.float64], bool]]:
     """Times along each stroke of the hand, and whether it goes back; pauses are left out."""
     path = scan.path
-    cuts = np.unique([path.begin, *turnings(scan).tolist(), path.end])
+    cuts = np.unique([path.begin, *turnings(path, scan.device.array.axis).tolist(), path.end])
     plate = path.plate_velocity(scan.device.array.axis)
     for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         t = np.linspace(begin, end, 200)
