@@ -122,7 +122,7 @@ def draw_history(
     _draw_force(judgement, pin, force, t, ms)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
-        f"pin{number} from {chosen.begin:.3f} s on, along the green line above",
+        f"pin{number} from {chosen.begin:.3f} s on, along the thick line above",
         loc="left",
         fontsize=SMALL + 0.5,
         pad=3.0,
