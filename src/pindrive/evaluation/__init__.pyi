@@ -2,6 +2,7 @@
 
 from pindrive.evaluation.perception import judge as judge
 from pindrive.evaluation.resolution import SpeedLimit as SpeedLimit
+from pindrive.evaluation.resolution import SpeedLimits as SpeedLimits
 from pindrive.evaluation.resolution import largest_speeds as largest_speeds
 from pindrive.device.criteria import Criteria as Criteria
 from pindrive.evaluation.results import Echo as Echo
