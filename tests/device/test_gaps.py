@@ -351,7 +351,7 @@ def test_the_device_that_is_handed_out_can_be_built_and_works(what: str) -> None
     example = Path(__file__).parents[2] / "examples" / "tactile-reader.toml"
     file = load_device("device.toml" if what == "template" else example)
     assert file.whole
-    device, reading = file.whole.device(file.drive), file.whole.reading()
+    device, reading = file.device, file.reading
     assert "cannot meet" in " ".join(meeting_words(device, reading.return_speed))
     assert device.friction.doubt is None
     magnet, height = device.magnet.outer_diameter, device.magnet.height

@@ -70,7 +70,9 @@ def test_edges_are_where_the_lines_were_drawn() -> None:
     done = scan(Device(drive=drive(), array=array), scene, path)
     begin = scene.extent[0] + 0.012
     drawn = [(0.0, 0.002), (0.004, 0.006), (0.018, 0.01905), (0.0201, 0.02115)]
-    for (shift, _), passed in zip(array.spots, printed(done), strict=True):
+    for (shift, _), passed in zip(
+        array.spots, printed(done.device, done.path, done.scene), strict=True
+    ):
         assert all(line.whole for line in passed)
         for line, edges in zip(passed, drawn, strict=True):
             for time, edge in zip((line.begin, line.end), edges, strict=True):
@@ -89,7 +91,7 @@ def test_a_line_on_which_the_hand_turns_or_begins_is_not_whole() -> None:
         ([(left + 0.002, y), (right - 0.002, y), (left + 0.002, y)], [True, True]),
     ):
         done = scan(Device(drive=drive()), scene, strokes(stops, 0.06, pause=0.05))
-        (passed,) = printed(done)
+        (passed,) = printed(done.device, done.path, done.scene)
         assert [line.whole for line in passed] == whole
         assert len(judge(done).lines) == sum(whole)
 
@@ -99,7 +101,7 @@ def test_turnings_are_where_the_hand_stops_or_turns() -> None:
     y = scene.lines[0]
     path = HandPath([0.0, 0.1, 0.2, 0.3], [0.06, -0.02, 0.0, 0.0], [0.0] * 4, (0.0, y))
     done = scan(Device(drive=drive()), scene, path)
-    assert turnings(done) == pytest.approx([0.075, 0.2])
+    assert turnings(done.path, done.device.array.axis) == pytest.approx([0.075, 0.2])
 
 
 # ---- against dense samples -----------------------------------------------------------------------
@@ -128,7 +130,7 @@ def sampled(done: Scan, pin: PinScan, passed: Any, felt: float) -> list[dict[str
         first_climb(x, on, nxt)
         for (on, _), nxt in zip(spans, [*(s[0] for s in spans[1:]), pin.end], strict=True)
     ]
-    stops = [s for s in turnings(done) if s > spans[-1][1]]
+    stops = [s for s in turnings(done.path, done.device.array.axis) if s > spans[-1][1]]
     for k, line in enumerate(passed):
         on, off = spans[k]
         i = begins[k]
@@ -176,7 +178,9 @@ def test_numbers_are_those_of_dense_samples(finger: Contact, speed: float) -> No
     done = scan(Device(drive=drive(finger)), scene, across(scene, speed))
     told = judge(done)
     assert {line.fate for line in told.lines} == {"shown"}
-    expected = sampled(done, done.pins[0], printed(done)[0], told.criteria.felt)
+    expected = sampled(
+        done, done.pins[0], printed(done.device, done.path, done.scene)[0], told.criteria.felt
+    )
     for line, samples in zip(told.lines, expected, strict=True):
         for name, value in samples.items():
             size = {"line.overshoot": 1e-4, "line.contrast": 1e-4, "line.smear": 1e-6}

@@ -10,13 +10,20 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from notebook_reading import check_faces
 from pindrive import Contact, Drive
 from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
 from pindrive.device import Device, Electromagnet, HandPath, Scene, scan
 from pindrive.evaluation import Criteria, judge
-from pindrive.evaluation.resolution import SpeedLimit, largest_speeds, steady, two_lines
+from pindrive.evaluation.resolution import (
+    SpeedLimit,
+    SpeedLimits,
+    largest_speeds,
+    steady,
+    two_lines,
+)
 from pindrive.plot.resolution import plot_speeds
 from pindrive.quantities.table import QUANTITIES
 
@@ -35,7 +42,7 @@ TRIED = (0.01, 0.4)
 
 
 @pytest.fixture(scope="module")
-def limits() -> tuple[SpeedLimit, ...]:
+def limits() -> SpeedLimits:
     return largest_speeds(DEVICE, [0.004, 0.002], slowest=TRIED[0], fastest=TRIED[1])
 
 
@@ -73,7 +80,7 @@ def test_a_steady_pin_stays() -> None:
         assert abs(float(pin.velocity(0.1))) < 1e-9
 
 
-def test_the_limit_lies_between_distinct_and_not(limits: tuple[SpeedLimit, ...]) -> None:
+def test_the_limit_lies_between_distinct_and_not(limits: SpeedLimits) -> None:
     limit, criteria = limits[0], Criteria()
     within, past = (
         two_lines(DEVICE, 0.004, 0.002, factor * limit.speed, criteria) for factor in (1.0, 1.002)
@@ -86,7 +93,7 @@ def test_the_limit_lies_between_distinct_and_not(limits: tuple[SpeedLimit, ...])
 
 
 def test_the_settled_limit_is_where_the_transient_of_a_line_alone_just_fits(
-    limits: tuple[SpeedLimit, ...],
+    limits: SpeedLimits,
 ) -> None:
     """On drawn pages: one line and its settling, two lines and when the second moves the pin."""
     speed = limits[0].settled_speed
@@ -116,7 +123,7 @@ def test_the_settled_limit_is_where_the_transient_of_a_line_alone_just_fits(
 
 
 def test_wider_pitches_weaker_demands_and_faster_magnets_allow_more(
-    limits: tuple[SpeedLimit, ...],
+    limits: SpeedLimits,
 ) -> None:
     wide, narrow = limits
     assert narrow.speed < wide.speed
@@ -212,8 +219,12 @@ def test_bad_values_are_refused() -> None:
         assert str(refused.value).startswith(message)
 
 
-def test_the_figure_shows_the_curve(limits: tuple[SpeedLimit, ...]) -> None:
-    figure = plot_speeds(limits, 0.5, Criteria(), "a mouse")
+def test_the_figure_shows_the_curve(limits: SpeedLimits) -> None:
+    assert check_faces(limits) == 0
+    data = limits.to_dataset()
+    assert data.speed_distinct.values.tolist() == [limit.speed for limit in limits]
+    assert data.speed_settled.units == "m/s"
+    figure = limits.plot("a mouse")
     (axes,) = figure.axes
     curves = {line.get_gid(): line for line in axes.lines}
     x, y = np.asarray(curves["distinct"].get_data(), float)

@@ -49,13 +49,13 @@ def write() -> Write:
 
 def test_a_plain_drive_has_no_device_around_it_unless_asked(write: Write) -> None:
     assert load_device(write("")).whole is None
-    whole = load_device(write(""), whole=True).whole
-    assert whole
-    device = whole.device(load_device(write("")).drive)
+    whole = load_device(write(""), whole=True)
+    assert whole.whole
+    device = whole.device
     assert device.array == PinArray()
     assert device.control == ControlBlock()
     assert device.magnet == Electromagnet.from_times()
-    assert whole.reading() == Reading()
+    assert whole.reading == Reading()
 
 
 def test_every_table_is_read(write: Write) -> None:
@@ -76,7 +76,7 @@ line_pitch = "15 mm"
 """
     file = load_device(write(more))
     assert file.whole
-    device, reading = file.whole.device(file.drive), file.whole.reading()
+    device, reading = file.device, file.reading
     assert device.magnet.coil
     assert device.magnet.coil.turns == 300.0
     assert device.magnet.residual == 0.010
@@ -226,7 +226,7 @@ def test_scan_of_a_letter(device: Path) -> None:
     assert dict(told.sizes)["pin"] == 16
     file = load_device(device)
     assert file.whole
-    whole, reading = file.whole.device(file.drive), file.whole.reading()
+    whole, reading = file.device, file.reading
     scene = reading.text("A", whole.array)
     done = scan(whole, scene, reading.strokes(scene, whole.array))
     xr.testing.assert_identical(told, done.to_dataset())
@@ -248,7 +248,7 @@ def test_numbers_are_exact(device: Path) -> None:
     told = xr.load_dataset("a.nc", engine="h5netcdf")
     file = load_device(device, ["columns=2"])
     assert file.whole
-    whole, reading = file.whole.device(file.drive), file.whole.reading()
+    whole, reading = file.device, file.reading
     scene = reading.text("VA", whole.array)
     done = scan(whole, scene, reading.strokes(scene, whole.array))
     t = np.linspace(done.path.begin, done.path.end, 100_001)

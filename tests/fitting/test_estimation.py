@@ -49,7 +49,7 @@ def test_candidates_of_plain_releases_are_simulated_as_a_batch(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Friction may be free, too."""
-    monkeypatch.setattr("pindrive.fitting.candidates._single_costs", None)
+    monkeypatch.setattr("pindrive.fitting.search._single_costs", None)
     assert fit(recorded(rate=5e3), START, RELEASE, free=FREE, profiles=False).converged
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from notebook_reading import check_faces
 from pindrive import Contact, Drive, Recording, Release, fit, fit_friction
 from pindrive.fitting.comparison import LAWS, compare_models
 from recordings import recorded
@@ -117,6 +118,7 @@ def test_the_law_that_made_a_recording_is_the_best_of_four() -> None:
     assert compared.to_dataset().parameters.values.tolist() == [3, 4, 6, 4]
     skin = compared.fits["compliant skin"]["finger.stiffness"]
     assert abs(skin.value - 700.0) < 4.0 * skin.standard_error
+    assert check_faces(compared) == 1 + len(LAWS)
     panels = compared.plot().axes
     for axes, law in zip(panels, LAWS, strict=True):
         assert axes.get_title("left").startswith(f"{law}: AICc {compared.excess[law]:+.1f}")

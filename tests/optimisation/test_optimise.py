@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 import pindrive as pd
+from notebook_reading import check_faces
 from pindrive.optimisation import Design, optimise
 from pindrive.optimisation.search import non_dominated
 from pindrive.quantities.status import Status
@@ -269,6 +270,7 @@ def test_a_design_goes_to_a_dataset(bought: Design) -> None:
     assert data.limit_excess.values.tolist() == [d.excess for d in bought.demands]
     assert repr(bought).startswith("<Design of tactile mouse: settling_time ")
     assert repr(bought).endswith(", ok>")
+    assert check_faces(bought) > 1
 
 
 def test_progress_is_told_and_ctrl_c_ends_it() -> None:

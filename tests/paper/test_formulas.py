@@ -19,6 +19,7 @@ from sympy import Expr
 
 from pindrive import paper
 from pindrive.paper import Releases, as_printed, population
+from pindrive.paper.population import motion_of
 
 Array = NDArray[np.float64]
 
@@ -268,7 +269,7 @@ def test_every_formula_is_the_exact_motion_until_friction_reverses(r: Releases) 
     w = float(paper.natural_frequency(r))
     late = float(paper.limit_reversal_time(r))
     turn = 2 * pi / float(paper.damped_frequency(r))
-    motion = r.motion(duration=1.5 * late)
+    motion = motion_of(r, duration=1.5 * late)
     for name, size in (
         ("peak_time", turn),
         ("trough_time", turn),
@@ -310,7 +311,7 @@ def test_21_the_first_reversal_is_where_the_core_finds_it(r: Releases) -> None:
         before = float(paper.velocity(np.linspace(0.01, 0.999, 97) * t_1, r).max())
         assert before < float(r.mouse_velocity)
         # Then friction has changed sign, and the formulas are over.
-        motion = r.motion(duration=2 * late)
+        motion = motion_of(r, duration=2 * late)
         friction = motion.force("plate", t_1, "left"), motion.force("plate", t_1, "right")
         assert friction[0] == float(r.friction)
         assert friction[1] < friction[0]
@@ -341,7 +342,7 @@ def test_steady_state_of_the_undamped_drive() -> None:
     amplitude, count = paper.steady_amplitude(r), paper.reversals_to_steady(r)
     begins, period = paper.time_to_steady(r), 2 * pi / paper.natural_frequency(r)
     for i in range(300):
-        motion = r.motion(i)
+        motion = motion_of(r, i)
         assert motion.ending.kind == "steady"
         assert motion.ending.amplitude == pytest.approx(amplitude[i], rel=1e-12)
         assert motion.transient.plate.reversals == count[i]
@@ -365,7 +366,7 @@ def test_the_undamped_release_from_the_other_side() -> None:
         displacement=[-1.73e-3, -1e-4, 1e-4, 1.5e-3, -1.5e-3],
     )
     for i, begins in enumerate(paper.time_to_steady(r)):
-        motion = r.motion(i)
+        motion = motion_of(r, i)
         steady = motion.ending.kind == "steady"
         found = motion.ending.steady_since if steady else motion.transient.rest_time
         assert found == pytest.approx(begins, rel=1e-12, abs=1e-15)
@@ -380,7 +381,7 @@ def test_rest_under_finger_friction() -> None:
     assert np.abs(expected - as_printed.periods_to_rest(r, finger)).max() <= 0.25 + 1e-12
     carried = 0
     for i in range(300):
-        motion = r.motion(i, finger=float(finger[i]))
+        motion = motion_of(r, i, finger=float(finger[i]))
         assert motion.ending.kind == "resting"
         let_go = [e.time for e in motion.events if e.contact == "plate" and e.kind == "slip"]
         if let_go:
@@ -438,7 +439,7 @@ def test_atan2_alone_misses_a_turn() -> None:
     assert paper.applies(r)
     c1, c2 = paper.coefficients(r)
     assert np.arctan2(c2, c1) == pytest.approx(float(paper.initial_phase(r)) - 2 * pi)
-    peak = r.motion(duration=1.0).transient.peak_time
+    peak = motion_of(r, duration=1.0).transient.peak_time
     assert peak == pytest.approx(float(paper.peak_time(r)), rel=1e-13)
 
 

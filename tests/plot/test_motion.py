@@ -19,6 +19,7 @@ from figure_reading import collisions, data, events, lay_out, legend_of, lines, 
 from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.plot.motion import plot_motion
 from pindrive.plot.style import PALETTE, save
+from pindrive.plot.trace import Trace
 
 OKABE_ITO = {
     *("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"),
@@ -359,6 +360,17 @@ def test_too_many_events_are_not_marked_and_it_says_so(
     assert panel(figure, "a").get_xlim() == pytest.approx((0.0, t[-1]))
     said = f"time after release (s): the first {t[-1]:.4g} s of 200 s"
     assert panel(figure, "a").get_xlabel() == said
+
+
+def test_a_long_motion_is_drawn_round() -> None:
+    """Halfway between two points of the curve the pin is next to the line that joins them."""
+    freely = drive(2e-4, NONE, (2e-5, 2e-5))
+    motion = simulate(freely, Release(0.06, 2e-3), duration=40.0)
+    trace = Trace.of(motion)
+    assert trace.end > 30.0
+    between = (trace.t[1:] + trace.t[:-1]) / 2.0 / trace.scale
+    off = np.abs(1e3 * motion.position(between) - (trace.x[1:] + trace.x[:-1]) / 2.0)
+    assert off.max() < 5e-4 * np.ptp(trace.x)
 
 
 def test_a_pin_that_is_carried_for_days_is_drawn_to_its_end() -> None:

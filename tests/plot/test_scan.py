@@ -130,7 +130,7 @@ def test_the_history_shows_what_was_under_the_spot(judged: Judgement, figure: Fi
     pin, axes = judged.scan.pins[chosen.pin], panel(figure, "seen")
     under = [
         (1e3 * (line.begin - chosen.begin), 1e3 * (line.end - chosen.begin))
-        for line in printed(judged.scan)[chosen.pin]
+        for line in printed(judged.scan.device, judged.scan.path, judged.scan.scene)[chosen.pin]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
     for name in ("seen", "pull", "x", "force"):
@@ -178,6 +178,22 @@ def test_the_tactile_image_is_drawn_as_it_is(judged: Judgement, figure: Figure) 
     scale = panel(figure, "scale")
     assert scale.get_ylabel() == "deflection, forward (mm)"
     assert scale.get_ylim() == (low, high)
+
+
+def test_what_goes_back_is_dotted_for_print_in_grey(judged: Judgement, figure: Figure) -> None:
+    axes, painting = panel(figure, "felt"), paint(judged.scan)
+    (image,) = (i for i in axes.images if i.get_gid() == "relief")
+    (dots,) = (c for c in axes.collections if c.get_gid() == "back")
+    left, right, top, bottom = (1e3 * edge for edge in painting.extent)
+    rows, columns = painting.deflection.shape
+    x, y = np.meshgrid((np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows)
+    places = np.column_stack([(left + x * (right - left)).flat, (top + y * (bottom - top)).flat])
+    (path,) = dots.get_paths()
+    dotted = path.contains_points(places).reshape(rows, columns)
+    part = 1e3 * painting.deflection / image.get_clim()[1]
+    assert (part < -0.3).any() and dotted[part < -0.3].mean() > 0.9
+    assert not dotted[part > 0.0].any()
+    assert legend_of(figure)["deflected backwards"].get_hatch() == "...."
 
 
 def test_the_way_and_the_spots_are_those_of_the_hand(judged: Judgement, figure: Figure) -> None:

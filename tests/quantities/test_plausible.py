@@ -39,7 +39,7 @@ SIZES = (1e-12, 1.0, 1e12)
 
 
 @pytest.mark.filterwarnings("ignore::pindrive.ImplausibleValueWarning")
-@pytest.mark.parametrize(("mass", "stiffness"), product(SIZES, SIZES))
+@pytest.mark.parametrize(("mass", "stiffness"), [*product(SIZES, SIZES)])
 def test_the_corners_of_the_bounds_are_computed(mass: float, stiffness: float) -> None:
     """Nothing overflows, nothing hangs, and the law of motion holds to rounding."""
     critical = 2.0 * (mass * stiffness) ** 0.5

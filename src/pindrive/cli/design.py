@@ -111,8 +111,6 @@ def _png(figure: Figure) -> bytes:
 def _speeds(found: Design) -> Figure:
     """How fast a hand may move with the design, for pitches around those of the page."""
     from pindrive.evaluation.resolution import largest_speeds
-    from pindrive.plot.resolution import plot_speeds
-    from pindrive.quantities.table import default
 
     page = found.wish.plan.page
     assert page
@@ -120,4 +118,4 @@ def _speeds(found: Design) -> Figure:
     pitches = sorted({factor * pitch for pitch in own for factor in (0.5, 1.0, 2.0)})
     criteria = found.device.criteria
     limits = largest_speeds(found.device.device, pitches, criteria=criteria)
-    return plot_speeds(limits, default("speed.part"), criteria, found.device.name)
+    return limits.plot(found.device.name)

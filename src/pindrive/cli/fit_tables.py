@@ -15,8 +15,7 @@ from pindrive.quantities.quantity import DISPLAY, significant
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from pindrive.fitting.comparison import ModelComparison
-    from pindrive.fitting.results import Fit
+    from pindrive.fitting.results import Fit, ModelComparison
 
 
 def fit_report(found: Fit) -> RenderableType:

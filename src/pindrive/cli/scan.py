@@ -63,8 +63,7 @@ def scan(
 
     with refusing(), ExitStack() as stack:
         device_file = load_device(file, overrides or (), whole=True)
-        assert device_file.whole
-        device, reading = device_file.whole.device(device_file.drive), device_file.whole.reading()
+        device, reading = device_file.device, device_file.reading
         from pindrive.files.output import FILMS, LINES_CSV, SCAN_NETCDF, Output, naming, writing
 
         outputs = [picture(plot)] if plot else []
@@ -117,7 +116,7 @@ def scan(
             frame_times(hand, slow)
         with bar("Pins") as progress:
             done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
-        judgement = judge(done, device_file.whole.criteria())
+        judgement = judge(done, device_file.criteria)
         if output:
             from pindrive.device.dataset import write_netcdf
 

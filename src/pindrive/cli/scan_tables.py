@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from pindrive.device.device import Criteria
+    from pindrive.device.criteria import Criteria
     from pindrive.device.scanning import PinScan, Scan
+    from pindrive.evaluation.perception import Judgement
     from pindrive.evaluation.resolution import Band, SpeedLimit
-    from pindrive.evaluation.results import Judgement
 
 _MM: Final = 1e3
 PINS_HEAD, PINS_TAIL = 24, 8

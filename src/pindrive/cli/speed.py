@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -18,9 +18,6 @@ from pindrive.cli.options import (
     picturing,
 )
 from pindrive.cli.progress import bar
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 
@@ -47,7 +44,6 @@ def speed(
 
     with refusing():
         device_file = load_device(file, overrides or (), whole=True)
-        assert device_file.whole
         pitches = [
             step
             for text in pitch or [USUAL]
@@ -62,8 +58,8 @@ def speed(
         from pindrive.evaluation.resolution import largest_speeds
 
         with picturing(plot, [file]) as draw:
-            device = device_file.whole.device(device_file.drive)
-            criteria = device_file.whole.criteria()
+            device = device_file.device
+            criteria = device_file.criteria
             with bar("Pitches") as progress:
                 limits = largest_speeds(
                     device,
@@ -75,13 +71,7 @@ def speed(
                     criteria=criteria,
                     progress=progress,
                 )
-
-            def figure() -> Figure:
-                from pindrive.plot.resolution import plot_speeds
-
-                return plot_speeds(limits, part, criteria, device_file.name)
-
-            draw(figure)
+            draw(lambda: limits.plot(device_file.name))
     from pindrive.cli.scan_tables import speed_report
     from pindrive.cli.tables import show
 

@@ -75,7 +75,7 @@ def device_report(device: DeviceFile) -> RenderableType:
     words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
     lines = [f"{device.name or 'The drive'}: {words}."]
     if device.whole:
-        whole, hand = device.whole.device(drive), device.whole.reading()
+        whole, hand = device.device, device.reading
         lines += device_words(whole)
         lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
     elif not drive.plate.frictionless:

@@ -15,7 +15,7 @@ from pindrive.quantities.table import check, checked, default
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from pindrive.quantities.table import Number, OptionalNumber
+    from pindrive.quantities.part import Number, OptionalNumber
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""

@@ -16,7 +16,7 @@ from pindrive.quantities.table import checked, default
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from pindrive.quantities.table import Number
+    from pindrive.quantities.part import Number
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.device.geometry import doubts
-from pindrive.device.scanning import AT_ONCE
+from pindrive.device.page import AT_ONCE
 from pindrive.device.trajectory import peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns

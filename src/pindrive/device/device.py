@@ -1,4 +1,4 @@
-"""The whole device as data: drive, electromagnet, control block, pin array; and what is felt."""
+"""The whole device as data: drive, electromagnet, control block, pin array."""
 
 from __future__ import annotations
 
@@ -6,19 +6,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
 from pindrive.device.controller import ControlBlock
-from pindrive.device.electromagnet import Electromagnet
+from pindrive.device.electromagnet import Electromagnet, check_holds
 from pindrive.device.pin_array import PinArray
 from pindrive.motion.coefficients import Coefficients
-from pindrive.motion.drive import Contact, Drive
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import checked, default
+from pindrive.motion.drive import Drive
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from pindrive.device.pin_array import Neighbours
-    from pindrive.quantities.table import Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,32 +88,3 @@ class Device:
     def load(self, pull: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
         """The factor on the plate's friction at a pull (N), any shape: (W + P) / W."""
         return 1.0 + pull / self.drive.normal_force
-
-
-def check_holds(plate: Contact) -> None:
-    """Refuse a plate that no magnet can hold by."""
-    if plate.kinetic == 0.0:
-        required = "greater than 0 N where a magnet holds by friction"
-        raise ValueError(refusal("plate.kinetic", required, "0.0 N"))
-
-
-@checked
-class Criteria:
-    """What counts as felt, by the sources in the table of quantities.
-
-    Args:
-        felt: motion that is felt as a pulse, m, greater than 0.
-        direction: motion of skin whose direction is perceived, m, greater than 0.
-        direction_sure: whose direction is told right in more than 95 % of cases, m.
-        direction_speed: at which that must be gone, m/s.
-        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
-
-    Raises:
-        ValueError: a value is no number or out of its range.
-    """
-
-    felt: Number = default("felt")
-    direction: Number = default("direction")
-    direction_sure: Number = default("direction_sure")
-    direction_speed: Number = default("direction_speed")
-    echo: Number = default("echo")

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from pindrive.device.current import Commands
-    from pindrive.quantities.table import Number, OptionalNumber
+    from pindrive.motion.drive import Contact
+    from pindrive.quantities.part import Number, OptionalNumber
 
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this
@@ -425,3 +426,10 @@ def check_residual(residual: float, hold_force: float) -> None:
     if residual >= hold_force:
         required = f"less than the hold force, {hold_force!r} N"
         raise ValueError(refusal("residual", required, f"{residual!r} N"))
+
+
+def check_holds(plate: Contact) -> None:
+    """Refuse a plate that no magnet can hold by."""
+    if plate.kinetic == 0.0:
+        required = "greater than 0 N where a magnet holds by friction"
+        raise ValueError(refusal("plate.kinetic", required, "0.0 N"))

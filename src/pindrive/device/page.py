@@ -41,6 +41,10 @@ STRIP: Final = 1 << 20
 INCH: Final = 0.0254
 NEAR: Final = 1e-9
 """Off the page by no more than that (m) is on its border."""
+AT_ONCE: Final = 1 << 18
+"""Looks at the page that are taken together: more take memory and save no time."""
+FINER: Final = 4.0
+"""A scene is looked at for lines so many times in each pixel of the way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,7 +16,7 @@ from pindrive.quantities.table import checked, default
 
 if TYPE_CHECKING:
     from pindrive.device.pin_array import PinArray
-    from pindrive.quantities.table import Number, OptionalNumber
+    from pindrive.quantities.part import Number, OptionalNumber
 
 RUN_IN: Final = 0.005
 """White before and after the text of a line, beyond the array's width, m."""

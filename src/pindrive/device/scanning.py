@@ -12,17 +12,18 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Decision
+from pindrive.device.criteria import Criteria
 from pindrive.device.current import CoilState, Commands, Current, commanded_spans
-from pindrive.device.device import Criteria, Device
+from pindrive.device.device import Device
 from pindrive.device.gaps import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
-from pindrive.device.page import Scene
+from pindrive.device.page import AT_ONCE, FINER, Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Reading
@@ -47,10 +48,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-AT_ONCE: Final = 1 << 18
-"""Looks at the page that are taken together: more take memory and save no time."""
-FINER: Final = 4.0
-"""A scene is looked at for lines so many times in each pixel of the way."""
 
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pindrive.device.hand import HandPath
     from pindrive.motion.drive import Drive
     from pindrive.motion.motion import Motion
-    from pindrive.motion.results import Side
+    from pindrive.quantities.status import Side
 
 PIECES: Final = 64
 """Into so many pieces together, at least two each, brackets are cut at once: a call of what is

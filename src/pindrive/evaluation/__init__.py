@@ -8,6 +8,7 @@
 - `largest_speeds`: the largest hand speed at which two lines stay distinct
 - `Line`: one printed line under one pin
 - `SpeedLimit`: how fast a hand may go over two lines
+- `SpeedLimits`: the same of each of several pitches
 """
 
 from pindrive.lazy import attach

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pindrive.device.scanning import AT_ONCE, FINER
+from pindrive.device.page import AT_ONCE, FINER
 from pindrive.device.trajectory import Way, roots
 from pindrive.quantities import budgets
 
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from pindrive.device.device import Device
     from pindrive.device.hand import HandPath
-    from pindrive.device.scanning import Scan
+    from pindrive.device.page import Scene
 
 GRAZED: Final = 0.5
 """What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
@@ -36,7 +37,7 @@ class Printed:
     """Whether it did both: the way neither begins nor ends on the line, nor turns back there."""
 
 
-def printed(scan: Scan) -> list[list[Printed]]:
+def printed(device: Device, path: HandPath, scene: Scene) -> list[list[Printed]]:
     """The lines along the way of each pin: where the luminance is below the threshold.
 
     The luminance is linear between the middles of pixels (`Scene.at`), its edges are found by
@@ -46,11 +47,10 @@ def printed(scan: Scan) -> list[list[Printed]]:
     Raises:
         ValueError: too many lines.
     """
-    path, scene, device = scan.path, scan.scene, scan.device
     way = Way(path)
     lengths = np.diff(way(path.times))
     counts = 1 + np.ceil(lengths * FINER / scene.pixel).astype(int)
-    turned = turnings(scan)
+    turned = turnings(path, device.array.axis)
     threshold = device.control.threshold
     offsets = device.array.on_page(device.array.spots)
     found: list[list[Printed]] = []
@@ -124,9 +124,8 @@ def _looks(path: HandPath, counts: NDArray[np.int64]) -> Iterator[NDArray[np.flo
     yield path.times[-1:]
 
 
-def turnings(scan: Scan) -> NDArray[np.float64]:
-    """When the hand comes to a stop or turns back along the drive axis, s, increasing."""
-    axis, path = scan.device.array.axis, scan.path
+def turnings(path: HandPath, axis: float) -> NDArray[np.float64]:
+    """When the hand comes to a stop or turns back along an axis (rad) of the page, s, in order."""
     along = path.vx * cos(axis) + path.vy * sin(axis)
     along[np.abs(along) < 1e-9 * np.abs(along).max()] = 0.0  # across the axis except for rounding
     still = path.times[1:-1][(along[1:-1] == 0.0) & ((along[:-2] != 0.0) | (along[2:] != 0.0))]

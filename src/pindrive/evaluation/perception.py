@@ -28,23 +28,126 @@ plate passes under the mouse while the line is read.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, pi
-from typing import TYPE_CHECKING
+from math import isnan, nan, pi
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pindrive import lazy
 from pindrive._core import settling_band
-from pindrive.device.device import Criteria
+from pindrive.device.criteria import Criteria
 from pindrive.device.trajectory import Course, Signal, Way
 from pindrive.evaluation.line_crossings import Printed, printed, turnings
-from pindrive.evaluation.results import CUES, Cue, Echo, Edge, Fate, Judgement, Line
+from pindrive.evaluation.results import CUES, FATES, Cue, Echo, Edge, Fate, Line
+from pindrive.lazy import xr
+from pindrive.quantities.quantity import counted
+from pindrive.quantities.results import LINE
+from pindrive.quantities.status import Status
+from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import PinScan, Scan
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Judgement(lazy.NotebookHtml):
+    """What the finger was shown in a scan."""
+
+    scan: Scan
+    criteria: Criteria
+    lines: tuple[Line, ...]
+    """Pin after pin, in the order of time. Lines that the way does not cross whole are left out."""
+    echoes: tuple[Echo, ...]
+    """False lines."""
+
+    def __repr__(self) -> str:
+        """What became of the lines, in a line."""
+        lines, missed = len(self.lines), len(self.lines) - len(self.shown)
+        shown = f"{lines - missed} of {counted(lines, 'line')} shown"
+        return f"<Judgement of {self.scan.scene.title}: {shown}, {len(self.echoes)} false>"
+
+    @property
+    def status(self) -> Status:
+        """That of the scan."""
+        return self.scan.status
+
+    def plot(self, pin: int | None = None) -> Figure:
+        """The scan and one pin of it, from 0, as `Scan.plot` draws them."""
+        figure: Figure = lazy.call("pindrive.plot.scan:plot_scan", self, pin)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """Each line under each pin, each false line, and the counts, with units.
+
+        Returns:
+            Variables over `line`: `pin`, `fate`, `time_begin` and `time_end` (s, when its edges
+            passed under the spot) and the numbers of `Line.numbers`; over `echo`: those of `Echo`;
+            a scalar for each of `counts`.
+        """
+        from pindrive import __version__
+
+        lines, echoes = self.lines, self.echoes
+        data: dict[str, Any] = {
+            "pin": ("line", np.array([line.pin for line in lines], np.int64)),
+            "fate": ("line", np.array([line.fate for line in lines], "<U6")),
+        }
+        for end in ("begin", "end"):
+            times = np.array([getattr(line, end).time for line in lines], np.float64)
+            words = {"long_name": f"when the {end} of the line passed under the spot", "units": "s"}
+            data[f"time_{end}"] = ("line", times, words)
+        rows = [line.numbers for line in lines]
+        for quantity in LINE:
+            values = np.array([row[quantity.name] for row in rows], np.float64)
+            data[quantity.name.replace(".", "_")] = ("line", values, quantity.attributes)
+        data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
+        for name, unit, meaning in (
+            ("time", "s", "when it was highest"),
+            ("x", "m", "where the spot was then, across the page"),
+            ("y", "m", "where the spot was then, down the page"),
+            ("stroke", "m", "how high it was"),
+        ):
+            values = np.array([getattr(echo, name) for echo in echoes], np.float64)
+            data[f"echo_{name}"] = ("echo", values, {"long_name": meaning, "units": unit})
+        for name, count in self.counts.items():
+            data[name.replace(".", "_")] = ((), count, QUANTITIES[name].attributes)
+        title = f"Lines of {self.scan.scene.title}, as they were shown"
+        return xr.Dataset(data, attrs={"title": title, "source": f"pindrive {__version__}"})
+
+    @property
+    def shown(self) -> tuple[Line, ...]:
+        """The lines that were shown."""
+        return tuple(line for line in self.lines if line.fate == "shown")
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many lines, and what became of them, by the names of the table of quantities."""
+        shown = self.shown
+        cues = [CUES.index(line.begin.cue) for line in shown]
+        return {
+            "judged.lines": len(self.lines),
+            **{f"judged.{fate}": sum(line.fate == fate for line in self.lines) for fate in FATES},
+            "judged.echoes": len(self.echoes),
+            "judged.unsettled": sum(isnan(line.settled) for line in shown),
+            "judged.direction": sum(cue >= CUES.index("direction") for cue in cues),
+            "judged.sure": sum(cue >= CUES.index("sure") for cue in cues),
+        }
+
+    def spread(self, name: str) -> tuple[float, float, float]:
+        """Least, median and largest of a number of the lines shown, SI; NaN where none has it.
+
+        Args:
+            name: of `Line.numbers`.
+        """
+        values = np.array([line.numbers[name] for line in self.shown])
+        known = values[~np.isnan(values)]
+        if not known.size:
+            return nan, nan, nan
+        return float(known.min()), float(np.median(known)), float(known.max())
 
 
 def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
@@ -55,10 +158,11 @@ def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:
         criteria: what counts as felt; the middle of the literature unless given.
     """
     limits = criteria or Criteria()
-    stops, way = turnings(scan), Way(scan.path)
+    stops, way = turnings(scan.path, scan.device.array.axis), Way(scan.path)
     lines: list[Line] = []
     echoes: list[Echo] = []
-    for pin, passed in zip(scan.pins, printed(scan), strict=True):
+    lines_passed = printed(scan.device, scan.path, scan.scene)
+    for pin, passed in zip(scan.pins, lines_passed, strict=True):
         judged = JudgedPin(scan, pin, passed, stops, way, limits)
         lines += judged.lines()
         echoes += judged.echoes()

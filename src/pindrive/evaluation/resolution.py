@@ -23,11 +23,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf, isnan, nan, pi
-from typing import Final
+from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
-from pindrive.device.device import Criteria, Device
+from pindrive import lazy
+from pindrive.device.criteria import Criteria
+from pindrive.device.device import Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
@@ -36,10 +38,15 @@ from pindrive.device.trajectory import Way, check_vibration
 from pindrive.evaluation.line_crossings import Printed
 from pindrive.evaluation.perception import JudgedPin
 from pindrive.evaluation.results import Line
+from pindrive.lazy import xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import check, default
+from pindrive.quantities.status import Status
+from pindrive.quantities.table import QUANTITIES, check, default
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PHASES: Final = 4
 TRIED: Final = 32
@@ -106,6 +113,66 @@ class SpeedLimit:
         return self.settled[0][1] if self.settled else nan
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
+    """How fast a hand may go over two lines of each of several pitches; a sequence of limits.
+
+    Attributes:
+        limits: of each pitch, in the order in which they were given.
+        part: of its way that the pin had to be back in between.
+        criteria: what counted as felt.
+    """
+
+    limits: tuple[SpeedLimit, ...]
+    part: float
+    criteria: Criteria
+
+    @overload
+    def __getitem__(self, index: int) -> SpeedLimit: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[SpeedLimit, ...]: ...
+    def __getitem__(self, index: int | slice) -> SpeedLimit | tuple[SpeedLimit, ...]:
+        """The limit of a pitch, by its place."""
+        return self.limits[index]
+
+    def __len__(self) -> int:
+        """How many pitches there are."""
+        return len(self.limits)
+
+    def __repr__(self) -> str:
+        """The speed of each pitch, in a line."""
+        shown = [f"{1e3 * one.speed:.4g} mm/s at {1e3 * one.pitch:g} mm" for one in self.limits[:3]]
+        more = ", ..." if len(self.limits) > 3 else ""
+        return f"<SpeedLimits {', '.join(shown)}{more}, {self.status.name}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where lines are distinct at no speed."""
+        return Status.incomplete if any(isnan(one.speed) for one in self.limits) else Status.ok
+
+    def plot(self, device: str = "") -> Figure:
+        """The speeds over the pitch; `device` is a name for the title."""
+        figure: Figure = lazy.call(
+            "pindrive.plot.resolution:plot_speeds", self.limits, self.part, self.criteria, device
+        )
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """The speeds and the width of the lines over `speed_pitch`, with units."""
+        columns = {
+            "speed.pitch": [one.pitch for one in self.limits],
+            "speed.width": [one.width for one in self.limits],
+            "speed.distinct": [one.speed for one in self.limits],
+            "speed.settled": [one.settled_speed for one in self.limits],
+        }
+        data = {
+            name.replace(".", "_"): ("speed_pitch", values, QUANTITIES[name].attributes)
+            for name, values in columns.items()
+        }
+        status = {"status": self.status.name, "speed_part": self.part}
+        return xr.Dataset(data, attrs=status).set_coords("speed_pitch")
+
+
 def largest_speeds(
     device: Device,
     pitches: Sequence[float],
@@ -116,7 +183,7 @@ def largest_speeds(
     fastest: float = default("speed.fastest"),
     criteria: Criteria | None = None,
     progress: Progress | None = None,
-) -> tuple[SpeedLimit, ...]:
+) -> SpeedLimits:
     """The largest hand speed at which two lines stay distinct, for each pitch.
 
     Args:
@@ -160,7 +227,7 @@ def largest_speeds(
         found.append(_limit(device, pitch, line, needed, (least, most), limits))
         if progress:
             progress(len(found), len(steps))
-    return tuple(found)
+    return SpeedLimits(tuple(found), needed, limits)
 
 
 def check_work(

@@ -14,6 +14,10 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pindrive.device.controller import ControlBlock
+from pindrive.device.criteria import Criteria
+from pindrive.device.device import Device
+from pindrive.device.reading import Reading
 from pindrive.files.keys import keys_meant, nearest, not_known, written
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
@@ -38,8 +42,6 @@ from pindrive.quantities.table import warn_of
 from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
-    from pindrive.device.device import Criteria, Device
-    from pindrive.device.reading import Reading
     from pindrive.motion.motion import Motion
 
 
@@ -116,17 +118,19 @@ class DeviceFile:
         Raises:
             ConfigError: no magnet can hold by this drive's plate.
         """
-        return self._whole.device(self.drive)
+        whole = self._whole
+        control = ControlBlock(**table_of(whole.values, "control"))
+        return Device(drive=self.drive, magnet=whole.magnet(), control=control, array=whole.array())
 
     @property
     def reading(self) -> Reading:
         """How a hand reads with it."""
-        return self._whole.reading()
+        return Reading(**table_of(self._whole.values, "scan"))
 
     @property
     def criteria(self) -> Criteria:
         """What counts as felt."""
-        return self._whole.criteria()
+        return Criteria(**table_of(self._whole.values, "judge"))
 
     @property
     def inputs(self) -> tuple[Path, ...]:

@@ -12,11 +12,9 @@ from math import inf
 from typing import Any, Final
 
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil
-from pindrive.device.controller import ControlBlock, check_band
-from pindrive.device.device import Criteria, Device, check_holds
-from pindrive.device.electromagnet import DIRECT, Electromagnet, check_one_way
+from pindrive.device.controller import check_band
+from pindrive.device.electromagnet import DIRECT, Electromagnet, check_holds, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
-from pindrive.device.reading import Reading
 from pindrive.files.keys import Tables, friction_parts, number, written
 from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual, usual_rows
 from pindrive.motion.drive import (
@@ -290,19 +288,6 @@ class Whole:
         given = table_of(self.values, "array")
         grid, places = {name: given.pop(name) for name in _GRID}, given.pop("places")
         return PinArray.grid(**grid, **given) if places is None else PinArray.at(places, **given)
-
-    def device(self, drive: Drive) -> Device:
-        """The whole device about a drive."""
-        control = ControlBlock(**table_of(self.values, "control"))
-        return Device(drive=drive, magnet=self.magnet(), control=control, array=self.array())
-
-    def reading(self) -> Reading:
-        """How a hand reads with it."""
-        return Reading(**table_of(self.values, "scan"))
-
-    def criteria(self) -> Criteria:
-        """What counts as felt."""
-        return Criteria(**table_of(self.values, "judge"))
 
     def in_si(self) -> dict[str, Value]:
         """The value of each key, given or not; None where nothing was given and nothing holds."""

@@ -1,6 +1,6 @@
 # Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
 
-from pindrive.fitting.comparison import ModelComparison as ModelComparison
+from pindrive.fitting.results import ModelComparison as ModelComparison
 from pindrive.fitting.comparison import compare_models as compare_models
 from pindrive.fitting.estimation import fit as fit
 from pindrive.fitting.friction_curve import FrictionCurve as FrictionCurve

@@ -2,89 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import exp, inf
+from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive import lazy
 from pindrive.fitting.estimation import fit
-from pindrive.fitting.results import Fit
-from pindrive.lazy import xr
+from pindrive.fitting.results import Fit, ModelComparison
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.profile import Profile
-from pindrive.quantities.status import Status
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
-__all__ = ["ModelComparison", "compare_models"]
+__all__ = ["compare_models"]
 
 SPEEDS: Final = (0.0, 0.1, 0.4, 1.0)
 """Rows of a friction curve that is tried, in parts of the largest sliding speed."""
 LAWS: Final = ("Coulomb", "static friction", "friction curve", "compliant skin")
 """In their order."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class ModelComparison(lazy.NotebookHtml):
-    """Fits of several laws of friction to the same recordings.
-
-    Attributes:
-        fits: by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
-        refused: why, of each law that this drive or release cannot have.
-    """
-
-    fits: Mapping[str, Fit]
-    refused: Mapping[str, str]
-
-    def __repr__(self) -> str:
-        """The best law, and how far behind the next one is, in a line."""
-        order = sorted(self.excess.items(), key=lambda item: item[1])
-        rest = ", ".join(f"{name} +{value:.1f}" for name, value in order[1:])
-        return f"<ModelComparison by AICc: {order[0][0]} is best; {rest}, {self.status.name}>"
-
-    @property
-    def best(self) -> str:
-        """The law with the least AICc."""
-        return min(self.fits, key=lambda name: self.fits[name].aicc)
-
-    @property
-    def excess(self) -> dict[str, float]:
-        """The AICc of each law less that of the best; above 10 it has next to no support."""
-        least = self.fits[self.best].aicc
-        return {name: found.aicc - least for name, found in self.fits.items()}
-
-    @property
-    def weights(self) -> dict[str, float]:
-        """Akaike weights: how likely each law is the best of these."""
-        parts = {name: exp(-0.5 * value) for name, value in self.excess.items()}
-        total = sum(parts.values())
-        return {name: part / total for name, part in parts.items()}
-
-    @property
-    def status(self) -> Status:
-        """`incomplete` where a law could not be fitted."""
-        complete = not self.refused and all(found.converged for found in self.fits.values())
-        return Status.ok if complete else Status.incomplete
-
-    def plot(self) -> Figure:
-        """The residuals of each law over time, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.fit:plot_comparison", self)
-        return figure
-
-    def to_dataset(self) -> xr.Dataset:
-        """AICc, its excess over the best, weights and the count of parameters over `law`."""
-        data: dict[str, Any] = {
-            "aicc": ("law", [found.aicc for found in self.fits.values()], {"units": "1"}),
-            "excess": ("law", [*self.excess.values()], {"units": "1"}),
-            "weight": ("law", [*self.weights.values()], {"units": "1"}),
-            "parameters": ("law", [len(found.theta) for found in self.fits.values()]),
-        }
-        attributes = {"status": self.status.name, "best": self.best}
-        return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
 
 
 def compare_models(found: Fit, seed: int = 1) -> ModelComparison:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
-
-    from pindrive.fitting.model import Model
 
     Array = NDArray[np.float64]
 
@@ -36,6 +34,26 @@ class Optimum:
     cost: float
     """Weighted sum of squares."""
     converged: bool
+
+
+class Model(Protocol):
+    """What is fitted, as far as it matters here: `pindrive.fitting.model.Model`."""
+
+    parameters: tuple[Any, ...]
+    """Each with a `start` between `lower` and `upper`."""
+    blocks: list[Any]
+    """Of samples, each with its `size`."""
+    data: Array
+
+    @property
+    def range(self) -> Array:
+        """The extent of each block."""
+
+    def predict(self, theta: Array) -> Array:
+        """What the samples are, shape (n,)."""
+
+    def linearise(self, theta: Array) -> tuple[Array, Array]:
+        """The same, and its derivatives, shape (n, k)."""
 
 
 class Problem:

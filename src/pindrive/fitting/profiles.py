@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
 POINTS: Final = 4
 """Steps from the optimum to the end of an interval, about."""
-BEYOND: Final = 1.15
-"""How far past the end of the interval a profile is drawn, of its square root."""
 MOST: Final = 60
 """Points of one side, before it is called open."""
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, log, pi
+from math import exp, isfinite, log, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["Estimate", "Fit"]
+__all__ = ["Estimate", "Fit", "ModelComparison"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,6 +284,65 @@ class Fit(lazy.NotebookHtml):
             verdict = str(e.identifiability) + (f": {e.explanation}" if e.explanation else "")
             rows.append([e.name, significant(e.value * scale, 5), error, *ends, unit, verdict])
         return rows
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelComparison(lazy.NotebookHtml):
+    """Fits of several laws of friction to the same recordings.
+
+    Attributes:
+        fits: by the law: "Coulomb", "static friction", "friction curve", "compliant skin".
+        refused: why, of each law that this drive or release cannot have.
+    """
+
+    fits: Mapping[str, Fit]
+    refused: Mapping[str, str]
+
+    def __repr__(self) -> str:
+        """The best law, and how far behind the next one is, in a line."""
+        order = sorted(self.excess.items(), key=lambda item: item[1])
+        rest = ", ".join(f"{name} +{value:.1f}" for name, value in order[1:])
+        return f"<ModelComparison by AICc: {order[0][0]} is best; {rest}, {self.status.name}>"
+
+    @property
+    def best(self) -> str:
+        """The law with the least AICc."""
+        return min(self.fits, key=lambda name: self.fits[name].aicc)
+
+    @property
+    def excess(self) -> dict[str, float]:
+        """The AICc of each law less that of the best; above 10 it has next to no support."""
+        least = self.fits[self.best].aicc
+        return {name: found.aicc - least for name, found in self.fits.items()}
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """Akaike weights: how likely each law is the best of these."""
+        parts = {name: exp(-0.5 * value) for name, value in self.excess.items()}
+        total = sum(parts.values())
+        return {name: part / total for name, part in parts.items()}
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where a law could not be fitted."""
+        complete = not self.refused and all(found.converged for found in self.fits.values())
+        return Status.ok if complete else Status.incomplete
+
+    def plot(self) -> Figure:
+        """The residuals of each law over time, as a figure."""
+        figure: Figure = lazy.call("pindrive.plot.fit:plot_comparison", self)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """AICc, its excess over the best, weights and the count of parameters over `law`."""
+        data: dict[str, Any] = {
+            "aicc": ("law", [found.aicc for found in self.fits.values()], {"units": "1"}),
+            "excess": ("law", [*self.excess.values()], {"units": "1"}),
+            "weight": ("law", [*self.weights.values()], {"units": "1"}),
+            "parameters": ("law", [len(found.theta) for found in self.fits.values()]),
+        }
+        attributes = {"status": self.status.name, "best": self.best}
+        return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
 
 
 def is_of_sensor(estimate: Estimate) -> bool:

@@ -9,15 +9,20 @@ from math import inf, isinf, nan, sqrt
 from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.motion.friction import COEFFICIENTS, normal_force
+from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.part import Part, checked_by
 from pindrive.quantities.quantity import brief, counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
-from pindrive.quantities.table import QUANTITIES, check, checked, default
 
 if TYPE_CHECKING:
-    from pindrive.quantities.table import Number, OptionalNumber
+    from pindrive.quantities.part import Number, OptionalNumber
 
 __all__ = ["Contact", "Drive"]
+
+_TABLE: Final = Part((*INPUTS, *PARTS))
+check: Final = _TABLE.check
+default: Final = _TABLE.default
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -138,7 +143,7 @@ class Contact:
         return isinf(self.stiffness)
 
 
-@checked
+@checked_by(_TABLE)
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
 
@@ -178,7 +183,7 @@ class Drive:
 
     def __post_init__(self) -> None:
         """Validate what follows from them; coefficients become forces."""
-        ratios = QUANTITIES["damping_ratio"].limits
+        ratios = _TABLE.rows["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios
         ):  # what a ratio was made from is rounded
@@ -407,7 +412,7 @@ def _checked_curve(
     )
     check_increasing(speeds, "m/s", label=f"{name}[{{}}] speed")
     found = tuple(zip(speeds, values, strict=True))
-    check_slopes(found, QUANTITIES[SLOPES[name]], label=name)
+    check_slopes(found, _TABLE.rows[SLOPES[name]], label=name)
     return found
 
 

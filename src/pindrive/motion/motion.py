@@ -26,7 +26,6 @@ from pindrive.motion.results import (
     Ledger,
     QuantityName,
     Segment,
-    Side,
     Table,
     Transient,
     events_at,
@@ -38,7 +37,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
-from pindrive.quantities.status import End, Status
+from pindrive.quantities.status import End, Side, Status
 from pindrive.quantities.table import check, default
 
 if TYPE_CHECKING:

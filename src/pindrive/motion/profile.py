@@ -8,16 +8,20 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import isnan
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Final, overload
 
+from pindrive.quantities.drive import INPUTS, PARTS
+from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_slopes, check_times
-from pindrive.quantities.table import QUANTITIES, check
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+
+_TABLE: Final = Part((*INPUTS, *PARTS))
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -56,7 +60,7 @@ class Profile:
         if len(t) != len(y):
             raise ValueError(refusal("values", f"as many as times, {len(t)}", len(y)))
         check_times(t, label="times[{}]")
-        check_slopes(list(zip(t, y, strict=True)), QUANTITIES["profile.rate"], label="profile")
+        check_slopes(list(zip(t, y, strict=True)), _TABLE.rows["profile.rate"], label="profile")
         object.__setattr__(self, "times", t)
         object.__setattr__(self, "values", y)
         object.__setattr__(self, "unit", unit)
@@ -107,7 +111,7 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
     """The SI unit of values of which some are text, empty where none is, and all of them in SI."""
     if str not in set(map(type, values)):
         return "", values
-    over_time = [quantity for quantity in QUANTITIES.values() if quantity.rows_of == "profile"]
+    over_time = [quantity for quantity in _TABLE.rows.values() if quantity.rows_of == "profile"]
     first = {quantity.unit: quantity for quantity in reversed(over_time)}  # of each unit
     units = [*dict.fromkeys(quantity.unit for quantity in over_time)]
     for unit in units:
@@ -120,11 +124,11 @@ def _in_si(values: list[Any]) -> tuple[str, list[Any]]:
 
 def _column(values: list[Any], name: str, label: str) -> tuple[float, ...]:
     """Numbers of the quantity called `name`, each checked; plain finite floats all at once."""
-    bounds = QUANTITIES[name].limits
+    bounds = _TABLE.rows[name].limits
     plain = set(map(type, values)) == {float} and not any(map(isnan, values))
     if plain and min(values) in bounds and max(values) in bounds:
         return tuple(values)
-    return tuple(check(name, y, label=f"{label}[{i}]") for i, y in enumerate(values))
+    return tuple(_TABLE.check(name, y, label=f"{label}[{i}]") for i, y in enumerate(values))
 
 
 def check_continuous(name: str, velocity: Profile) -> None:

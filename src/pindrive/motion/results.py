@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Side = Literal["left", "right"]
 ContactName = Literal["plate", "finger", "stop"]
 
 

@@ -18,7 +18,7 @@ from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
-from pindrive.quantities.status import Status
+from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from pindrive.motion.core_numbers import CoreNumbers, Rows
     from pindrive.motion.drive import Drive
-    from pindrive.motion.results import Side
 
 __all__ = ["Sensitivity"]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pindrive.optimisation.catalogue import Catalogue
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
-from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Demand, label
+from pindrive.study.outputs import NUMBERS, Demand, label
 
 Array = NDArray[np.float64]
 
@@ -133,12 +133,6 @@ class Wish:
         """What varies and what is best, in a line."""
         what = ", ".join(variable.name for variable in self.variables)
         return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
-
-
-def outputs_of(wish: Wish) -> tuple[str, ...]:
-    """The numbers of motions or scans that it needs."""
-    names = (*(goal.name for goal in wish.goals), *(demand.name for demand in wish.demands))
-    return tuple(name for name in dict.fromkeys(names) if name not in DESIGN_OUTPUTS)
 
 
 def unit_of(name: str) -> tuple[str, float]:

@@ -9,7 +9,7 @@ import numpy as np
 from pindrive.paper import as_printed, formulas, population
 from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis
 from pindrive.paper.exhibit import at_most, share
-from pindrive.paper.population import TINY, Claim, finger_friction, swing
+from pindrive.paper.population import TINY, Claim, finger_friction, motion_of, swing
 from pindrive.paper.scope import statements
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def steady_state() -> Iterator[Claim]:
     for i in range(count):
         slips = [
             e.time
-            for e in r.motion(i, finger=float(finger[i])).events
+            for e in motion_of(r, i, finger=float(finger[i])).events
             if e.contact == "plate" and e.kind == "slip"
         ]
         if slips:
@@ -105,7 +105,7 @@ def conclusions(facts: Facts) -> Iterator[Claim]:
     finger = finger_friction(count)
     held = r.stiffness * r.displacement + r.damping * r.mouse_velocity + finger <= r.friction
     leaves = np.array(
-        [r.motion(i, finger=float(finger[i])).segments[0].mode == "slip" for i in range(count)]
+        [motion_of(r, i, finger=float(finger[i])).segments[0].mode == "slip" for i in range(count)]
     )
     yield Claim(
         place,
@@ -153,7 +153,9 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
     xd, d = formulas.friction_offset(r), r.displacement - formulas.friction_offset(r)
     finger = finger_friction(count)
 
-    residuals = [r.motion(i, finger=float(finger[i])).certificate() for i in range(0, count, 20)]
+    residuals = [
+        motion_of(r, i, finger=float(finger[i])).certificate() for i in range(0, count, 20)
+    ]
     worst = max(c.kinematics for c in residuals)
     yield Claim(
         place,

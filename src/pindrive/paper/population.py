@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.release import Release
+from pindrive.motion.simulate import simulated
 from pindrive.paper import formulas
 from pindrive.paper.release import Releases
 
@@ -21,8 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
+    from pindrive.motion.motion import Motion
     from pindrive.paper.formulas import Array
-    from pindrive.paper.release import Releases
 
     Truth = NDArray[np.bool_]
 
@@ -80,6 +83,32 @@ def limit_cases(count: int = COUNT, seed: int = SEED) -> Releases:
     return r.replace(damping=2 * ratio * np.sqrt(r.mass * r.stiffness))
 
 
+def motion_of(
+    r: Releases,
+    index: tuple[int, ...] | int = (),
+    *,
+    finger: float = 0.0,
+    duration: float | None = None,
+) -> Motion:
+    """The exact motion of one of these releases.
+
+    Args:
+        r: the releases.
+        index: which, in their arrays.
+        finger: friction force of the finger, N, kinetic = static; the analysis has none.
+        duration: as for `pindrive.simulate`.
+    """
+    drive = Drive(
+        mass=float(r.mass[index]),
+        stiffness=float(r.stiffness[index]),
+        damping=float(r.damping[index]),
+        plate=Contact(float(r.friction[index])),
+        finger=Contact(finger),
+    )
+    release = Release(float(r.mouse_velocity[index]), float(r.displacement[index]))
+    return simulated(drive, release, duration=duration)
+
+
 SAMPLED: Final = 400
 """Of the releases, how many are sampled over time."""
 SAMPLES: Final = 9
@@ -116,7 +145,7 @@ class Facts:
         """Exact position, velocity and acceleration there."""
         found = np.empty((3, SAMPLES, SAMPLED))
         for i in range(SAMPLED):
-            motion, t = self.r.motion(i, duration=1.02 * float(self.until[i])), self.times[:, i]
+            motion, t = motion_of(self.r, i, duration=1.02 * float(self.until[i])), self.times[:, i]
             for row, of in enumerate((motion.position, motion.velocity, motion.acceleration)):
                 found[row, :, i] = of(t, "left")
             found[2, 0, i] = motion.acceleration(0.0)
@@ -149,7 +178,7 @@ class Facts:
         worst = np.empty(SAMPLED)
         r = self.r
         for i, finger in enumerate(draw.uniform(0.0, 0.01, SAMPLED)):
-            motion = r.motion(i, finger=float(finger))
+            motion = motion_of(r, i, finger=float(finger))
             t = draw.uniform(0.0, min(1.0, motion.duration), 20)
             x, v, a = motion.position(t), motion.velocity(t), motion.acceleration(t)
             u = v - r.mouse_velocity[i]

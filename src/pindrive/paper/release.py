@@ -10,7 +10,6 @@ import numpy as np
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
-from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import NON_NEGATIVE
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.motion.motion import Motion
 
 __all__ = ["Releases"]
 
@@ -100,30 +97,6 @@ class Releases:
         return Releases(
             **{f.name: changes.get(f.name, getattr(self, f.name)) for f in fields(self)}
         )
-
-    def motion(
-        self,
-        index: tuple[int, ...] | int = (),
-        *,
-        finger: float = 0.0,
-        duration: float | None = None,
-    ) -> Motion:
-        """The exact motion of one of these releases.
-
-        Args:
-            index: which, in the arrays.
-            finger: friction force of the finger, N, kinetic = static; the analysis has none.
-            duration: as for `pindrive.simulate`.
-        """
-        drive = Drive(
-            mass=float(self.mass[index]),
-            stiffness=float(self.stiffness[index]),
-            damping=float(self.damping[index]),
-            plate=Contact(float(self.friction[index])),
-            finger=Contact(finger),
-        )
-        release = Release(float(self.mouse_velocity[index]), float(self.displacement[index]))
-        return simulated(drive, release, duration=duration)
 
     def batch(
         self, *, outputs: Sequence[str] | None = None, **others: ArrayLike | None

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import Progress, Scan
-    from pindrive.evaluation.results import Judgement
+    from pindrive.evaluation.perception import Judgement
 
 
 FRAMES: Final = 25

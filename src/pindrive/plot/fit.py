@@ -26,9 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from pindrive.fitting.comparison import ModelComparison
     from pindrive.fitting.friction_curve import FrictionCurve
-    from pindrive.fitting.results import Estimate, Fit
+    from pindrive.fitting.results import Estimate, Fit, ModelComparison
 
     Array = NDArray[np.float64]
 

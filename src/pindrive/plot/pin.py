@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import PinScan
-    from pindrive.evaluation.results import Judgement, Line
+    from pindrive.evaluation.perception import Judgement
+    from pindrive.evaluation.results import Line
 
 LINES: Final = 4
 """Shown in the history, at most."""
@@ -121,7 +122,7 @@ def draw_history(
     _draw_force(judgement, pin, force, t, ms)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
-        f"pin{number} from {chosen.begin:.3f} s on, along the green line above",
+        f"pin{number} from {chosen.begin:.3f} s on, along the thick line above",
         loc="left",
         fontsize=SMALL + 0.5,
         pad=3.0,
@@ -143,9 +144,10 @@ def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
 
 def _draw_bands(judgement: Judgement, chosen: Moment, axes: Axes) -> None:
     """Where a printed line is under the pin's spot."""
+    scan = judgement.scan
     spans = [
         (MS * (line.begin - chosen.begin), MS * (line.end - line.begin))
-        for line in printed(judgement.scan)[chosen.pin]
+        for line in printed(scan.device, scan.path, scan.scene)[chosen.pin]
         if line.end > chosen.begin and line.begin < chosen.end
     ]
     shade(axes, spans, "printed", **PRINTED, zorder=0)

@@ -9,6 +9,7 @@ import matplotlib.style
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from pindrive.device.dataset import gap_words
 from pindrive.evaluation.line_crossings import turnings
@@ -19,7 +20,7 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Scan
-    from pindrive.evaluation.results import Judgement
+    from pindrive.evaluation.perception import Judgement
 
 WIDTH: Final = 180.0
 """Of the page that it is drawn for, mm."""
@@ -57,6 +58,9 @@ RELIEF: Final = LinearSegmentedColormap.from_list(
     ],
 )
 """Back is orange, at rest is white, forward is blue."""
+BACK: Final = 0.1
+"""What is deflected back by more than this part of the scale is dotted, which grey print keeps."""
+DOTTED: Final[dict[str, Any]] = {"fc": "none", "ec": "0.35", "hatch": "....", "lw": 0.0}
 
 
 def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
@@ -106,7 +110,7 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         else:
             felt.set_ylabel("")
             felt.tick_params(labelleft=False)
-        handles = [*_key(scan), *draw_history(judgement, chosen, figure, rows[1])]
+        handles = [*_key(scan, [felt]), *draw_history(judgement, chosen, figure, rows[1])]
         lines = -(-len(handles) // KEY_COLUMNS)
         figure.set_figheight((pages + 106.0 + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
@@ -149,18 +153,21 @@ def plot_reliefs(judgements: Sequence[Judgement]) -> Figure:
         panels[0].set_xlim(MM * left, MM * right)
         panels[0].set_ylim(MM * bottom, MM * top)
         _scale(figure, image, figure.add_subplot(cells[0, count], label="scale"))
-        _draw_key(figure, _key(first), 4)
+        _draw_key(figure, _key(first, panels), 4)
     return figure
 
 
-def _key(scan: Scan) -> list[Artist]:
+def _key(scan: Scan, panels: Iterable[Axes]) -> list[Artist]:
     """What the signs on the page mean."""
     way: dict[str, Any] = {"color": PALETTE["stick"], "alpha": 0.8}
     handles: list[Artist] = [Line2D([], [], **way, lw=0.9, label="way of the hand, reading")]
     if any(back for _, back in _strokes(scan)):
         handles.append(Line2D([], [], **way, **RETURN, label="and back"))
     spot = Line2D([], [], **SPOT, label="what a pin's sensor sees at first")
-    return [*handles, spot, Line2D([], [], color="0.35", lw=0.5, label="outline of the print")]
+    handles += [spot, Line2D([], [], color="0.35", lw=0.5, label="outline of the print")]
+    if any(mark.get_gid() == "back" for axes in panels for mark in axes.collections):
+        handles.append(Patch(**DOTTED, label="deflected backwards"))
+    return handles
 
 
 def _draw_key(figure: Figure, handles: list[Artist], columns: int) -> None:
@@ -228,7 +235,7 @@ def _draw_way(scan: Scan, axes: Axes) -> None:
 def _strokes(scan: Scan) -> Iterator[tuple[NDArray[np.float64], bool]]:
     """Times along each stroke of the hand, and whether it goes back; pauses are left out."""
     path = scan.path
-    cuts = np.unique([path.begin, *turnings(scan).tolist(), path.end])
+    cuts = np.unique([path.begin, *turnings(path, scan.device.array.axis).tolist(), path.end])
     plate = path.plate_velocity(scan.device.array.axis)
     for begin, end in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         t = np.linspace(begin, end, 200)
@@ -251,13 +258,15 @@ def _draw_felt(
         interpolation="nearest",
         gid="relief",
     )
+    _dot_back(axes, painting, size)
     dark = scan.scene.luminance
     if dark.min() < scan.device.control.threshold < dark.max():
-        rows, columns = dark.shape
-        x = left + (np.arange(columns) + 0.5) * (right - left) / columns
-        y = top + (np.arange(rows) + 0.5) * (bottom - top) / rows
         outline = axes.contour(
-            x, y, dark, [scan.device.control.threshold], colors="0.35", linewidths=0.5
+            *_middles(painting, dark.shape),
+            dark,
+            [scan.device.control.threshold],
+            colors="0.35",
+            linewidths=0.5,
         )
         outline.set_gid("outline")
     axes.set_facecolor("0.94")
@@ -265,6 +274,23 @@ def _draw_felt(
     if chosen:
         _draw_moment(scan, axes, chosen)
     return image
+
+
+def _dot_back(axes: Axes, painting: Painting, size: float) -> None:
+    """Dots where the pin was deflected backwards, which a colour alone would say."""
+    back = MM * painting.deflection < -BACK * size
+    if back.any() and min(back.shape) > 1:
+        middles = _middles(painting, back.shape)
+        marks = axes.contourf(*middles, back, [0.5, 1.5], colors="none", hatches=[DOTTED["hatch"]])
+        marks.set(edgecolor=DOTTED["ec"], linewidth=0.0, gid="back")
+
+
+def _middles(painting: Painting, shape: tuple[int, ...]) -> tuple[NDArray[np.float64], ...]:
+    """The places x and y (mm) of the middles of so many rows and columns on its extent."""
+    left, right, top, bottom = (MM * edge for edge in painting.extent)
+    rows, columns = shape
+    x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+    return x, top + (np.arange(rows) + 0.5) * (bottom - top) / rows
 
 
 def _size(painting: Painting) -> float:

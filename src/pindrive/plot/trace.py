@@ -75,7 +75,7 @@ class Trace:
         )
         density = 2000.0 / end
         if oscillates:
-            density = min(200.0 / period, max(40.0 / period, 20_000 / (free or end)))
+            density = min(200.0 / period, max(90.0 / period, 20_000 / (free or end)))
         fastest = frequency * (ratio + sqrt(max(0.0, ratio**2 - 1.0)))
         skin, spring = motion.drive.finger, motion.drive.stiffness
         gripped = 1.0 if skin.rigid else min(sqrt(1.0 + skin.stiffness / spring), _MOST_CLOSER)

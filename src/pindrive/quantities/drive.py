@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
-from typing import Final
+from typing import Any, Final
 
 from pindrive.quantities.quantity import (
     FINITE,
@@ -146,79 +146,111 @@ _DRIVE: Final = (
     ),
 )
 
+Given = tuple[Any, str]
+"""A value, or rows, and the source."""
+
+
+def _friction(
+    contact: str,
+    letter: str,
+    *,
+    words: tuple[str, str, str],
+    kinetic: Given,
+    static: Given,
+    curve: Given,
+    coefficient: Given,
+    static_coefficient: Given,
+    coefficient_curve: Given,
+) -> tuple[Quantity, ...]:
+    """The friction of a contact, by forces and by coefficients.
+
+    `words` are what is said of its force, what has a curve, and what its coefficients are of.
+    """
+    sliding, curved, presses = words
+    forces, plain = between(0.0, 1e3), between(0.0, 10.0)
+
+    def rows(name: str, symbol: str, unit: str, what: str, of: str, given: Given) -> Quantity:
+        return Quantity(
+            f"{contact}.{name}",
+            f"{symbol}_{letter}(|u|)",
+            unit,
+            f"friction {what} of {curved} over sliding speed, linear between rows",
+            NON_NEGATIVE,
+            source=given[1],
+            remark=f"speeds from 0 m/s up; {of} may then be left out",
+            rows_of=name,
+            rows=given[0],
+            follows=(f"{contact}.{of}",),
+            seen=forces if unit == "N" else plain,
+        )
+
+    return (
+        Quantity(
+            f"{contact}.kinetic",
+            f"F_{letter}",
+            "N",
+            f"friction force of the {contact} while sliding{sliding}",
+            NON_NEGATIVE,
+            *kinetic,
+            seen=forces,
+            mandatory=True,
+            alternative=tuple(
+                f"{contact}.{n}" for n in ("curve", "coefficient", "coefficient_curve")
+            ),
+        ),
+        Quantity(
+            f"{contact}.static",
+            f"F_{letter},s",
+            "N",
+            f"largest friction force of the {contact} without sliding",
+            NON_NEGATIVE,
+            *static,
+            remark="the kinetic one unless given",
+            follows=(f"{contact}.kinetic",),
+            seen=forces,
+        ),
+        rows("curve", "F", "N", "force", "kinetic", curve),
+        Quantity(
+            f"{contact}.coefficient",
+            f"μ_{letter}",
+            "1",
+            f"friction coefficient of the {contact} while sliding, of {presses}",
+            NON_NEGATIVE,
+            source=coefficient[1],
+            example=coefficient[0],
+            remark="in place of the forces kinetic, static and curve",
+            seen=plain,
+        ),
+        Quantity(
+            f"{contact}.static_coefficient",
+            f"μ_{letter},s",
+            "1",
+            "the same at rest",
+            NON_NEGATIVE,
+            source=static_coefficient[1],
+            example=static_coefficient[0],
+            remark="the kinetic one unless given",
+            follows=(f"{contact}.coefficient",),
+            seen=plain,
+        ),
+        rows("coefficient_curve", "μ", "1", "coefficient", "coefficient", coefficient_curve),
+    )
+
+
 _CONTACTS: Final = (
-    Quantity(
-        "plate.kinetic",
-        "F_p",
-        "N",
-        "friction force of the plate while sliding, magnet off",
-        NON_NEGATIVE,
-        0.022,
-        STEEL.format("0.225 (the middle)"),
-        seen=between(0.0, 1e3),
-        mandatory=True,
-        alternative=("plate.curve", "plate.coefficient", "plate.coefficient_curve"),
-    ),
-    Quantity(
-        "plate.static",
-        "F_p,s",
-        "N",
-        "largest friction force of the plate without sliding",
-        NON_NEGATIVE,
-        0.0265,
-        STEEL.format("0.27 (oxidised)"),
-        remark="the kinetic one unless given",
-        follows=("plate.kinetic",),
-        seen=between(0.0, 1e3),
-    ),
-    Quantity(
-        "plate.curve",
-        "F_p(|u|)",
-        "N",
-        "friction force of the plate over sliding speed, linear between rows",
-        NON_NEGATIVE,
-        source=STEEL.format("0.225 falling to 0.15 (the lowest)"),
-        remark="speeds from 0 m/s up; kinetic may then be left out",
-        rows_of="curve",
-        rows=((0.0, 0.022), (0.05, 0.015)),
-        follows=("plate.kinetic",),
-        seen=between(0.0, 1e3),
-    ),
-    Quantity(
-        "plate.coefficient",
-        "μ_p",
-        "1",
-        "friction coefficient of the plate while sliding, of weight, preload and pull",
-        NON_NEGATIVE,
-        source="steel on steel, 0.15-0.30 (handbook tables); the middle",
-        example=0.225,
-        remark="in place of the forces kinetic, static and curve",
-        seen=between(0.0, 10.0),
-    ),
-    Quantity(
-        "plate.static_coefficient",
-        "μ_p,s",
-        "1",
-        "the same at rest",
-        NON_NEGATIVE,
-        source="steel on steel, oxidised, 0.27 (handbook tables)",
-        example=0.27,
-        remark="the kinetic one unless given",
-        follows=("plate.coefficient",),
-        seen=between(0.0, 10.0),
-    ),
-    Quantity(
-        "plate.coefficient_curve",
-        "μ_p(|u|)",
-        "1",
-        "friction coefficient of the plate over sliding speed, linear between rows",
-        NON_NEGATIVE,
-        source="steel on steel, 0.225 falling to 0.15 (the lowest)",
-        remark="speeds from 0 m/s up; coefficient may then be left out",
-        rows_of="coefficient_curve",
-        rows=((0.0, 0.225), (0.05, 0.15)),
-        follows=("plate.coefficient",),
-        seen=between(0.0, 10.0),
+    *_friction(
+        "plate",
+        "p",
+        words=(", magnet off", "the plate", "weight, preload and pull"),
+        kinetic=(0.022, STEEL.format("0.225 (the middle)")),
+        static=(0.0265, STEEL.format("0.27 (oxidised)")),
+        curve=(((0.0, 0.022), (0.05, 0.015)), STEEL.format("0.225 falling to 0.15 (the lowest)")),
+        coefficient=(0.225, "steel on steel, 0.15-0.30 (handbook tables); the middle"),
+        static_coefficient=(0.27, "steel on steel, oxidised, 0.27 (handbook tables)"),
+        coefficient_curve=(
+            ((0.0, 0.225), (0.05, 0.15)),
+            "steel on steel, 0.225 falling to 0.15 (the lowest)",
+        ),
     ),
     *in_table(
         "plate",
@@ -234,78 +266,20 @@ _CONTACTS: Final = (
             seen=between(0.0, 1e3),
         ),
     ),
-    Quantity(
-        "finger.kinetic",
-        "F_f",
-        "N",
-        "friction force of the finger while sliding",
-        NON_NEGATIVE,
-        0.005,
-        "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 10 mN of touch, assumed",
-        seen=between(0.0, 1e3),
-        mandatory=True,
-        alternative=("finger.curve", "finger.coefficient", "finger.coefficient_curve"),
-    ),
-    Quantity(
-        "finger.static",
-        "F_f,s",
-        "N",
-        "largest friction force of the finger without sliding",
-        NON_NEGATIVE,
-        0.0075,
-        f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
-        remark="the kinetic one unless given",
-        follows=("finger.kinetic",),
-        seen=between(0.0, 1e3),
-    ),
-    Quantity(
-        "finger.curve",
-        "F_f(|u|)",
-        "N",
-        "friction force of a rigid finger over sliding speed, linear between rows",
-        NON_NEGATIVE,
-        source="assumed: by a fifth less at 50 mm/s",
-        remark="speeds from 0 m/s up; kinetic may then be left out",
-        rows_of="curve",
-        rows=((0.0, 0.005), (0.05, 0.004)),
-        follows=("finger.kinetic",),
-        seen=between(0.0, 1e3),
-    ),
-    Quantity(
-        "finger.coefficient",
-        "μ_f",
-        "1",
-        "friction coefficient of the finger while sliding, of touch_force",
-        NON_NEGATIVE,
-        source="skin, typically 0.5 (Derler & Gerhardt, review)",
-        example=0.5,
-        remark="in place of the forces kinetic, static and curve",
-        seen=between(0.0, 10.0),
-    ),
-    Quantity(
-        "finger.static_coefficient",
-        "μ_f,s",
-        "1",
-        "the same at rest",
-        NON_NEGATIVE,
-        source=f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}",
-        example=0.75,
-        remark="the kinetic one unless given",
-        follows=("finger.coefficient",),
-        seen=between(0.0, 10.0),
-    ),
-    Quantity(
-        "finger.coefficient_curve",
-        "μ_f(|u|)",
-        "1",
-        "friction coefficient of a rigid finger over sliding speed, linear between rows",
-        NON_NEGATIVE,
-        source="assumed: by a fifth less at 50 mm/s",
-        remark="speeds from 0 m/s up; coefficient may then be left out",
-        rows_of="coefficient_curve",
-        rows=((0.0, 0.5), (0.05, 0.4)),
-        follows=("finger.coefficient",),
-        seen=between(0.0, 10.0),
+    *_friction(
+        "finger",
+        "f",
+        words=("", "a rigid finger", "touch_force"),
+        kinetic=(
+            0.005,
+            "skin, friction coefficient 0.5 (Derler & Gerhardt, review), of 10 mN of touch, "
+            "assumed",
+        ),
+        static=(0.0075, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
+        curve=(((0.0, 0.005), (0.05, 0.004)), "assumed: by a fifth less at 50 mm/s"),
+        coefficient=(0.5, "skin, typically 0.5 (Derler & Gerhardt, review)"),
+        static_coefficient=(0.75, f"1.5 times the kinetic one, as 2.1 to 1.4 in {FINGER}"),
+        coefficient_curve=(((0.0, 0.5), (0.05, 0.4)), "assumed: by a fifth less at 50 mm/s"),
     ),
     *in_table(
         "finger",

@@ -294,8 +294,10 @@ SPEED: Final[tuple[Quantity, ...]] = (
         source=f"ten times the fastest of {HANDS}",
         absent=1.0,
     ),
+    Quantity("speed.distinct", "v_d", "m/s", "largest hand speed at which the lines are distinct"),
+    Quantity("speed.settled", "v_s", "m/s", "largest up to which the pin settles in between, too"),
 )
-"""What the largest hand speed is found for."""
+"""What the largest hand speed is found for, and what it is."""
 
 JUDGE: Final = LINE + JUDGED + SPEED
 """What is found of scans and speeds."""

@@ -6,13 +6,16 @@ The numbers are the same in the core, in datasets and in the files of studies.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from pindrive.quantities.drive import INPUTS, PARTS
 
-__all__ = ["OUTCOMES", "End", "SimulationError", "Status", "outcome_attributes"]
+__all__ = ["OUTCOMES", "End", "Side", "SimulationError", "Status", "outcome_attributes"]
+
+Side = Literal["left", "right"]
+"""Which limit of a motion at an event."""
 
 
 class Status(IntEnum):

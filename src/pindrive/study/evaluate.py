@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Progress
-    from pindrive.evaluation.results import Judgement
+    from pindrive.evaluation.perception import Judgement
     from pindrive.files.device import DeviceFile
     from pindrive.study.design import Columns, Plan, Ranges
 
@@ -54,12 +54,11 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     if plan.page is None:
         raise ValueError(f"{plan.path}: has no page to scan; write what is on it in [page]")
     file = device_at(plan, at)
-    assert file.whole
-    device, reading = file.whole.device(file.drive), file.whole.reading()
+    device, reading = file.device, file.reading
     scene = plan.page.scene(reading, device.array)
     path = plan.page.hand(reading, scene, device.array)
     done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
-    judgement: Judgement = done.evaluate(file.whole.criteria())
+    judgement: Judgement = done.evaluate(file.criteria)
     return judgement
 
 

@@ -62,7 +62,7 @@ def _sizes(key: str) -> bool:
 def _unreadable(plan: Plan) -> Iterator[str]:
     """Of a page that is the same at every point."""
     if plan.page and plan.device.whole:
-        reading, array = plan.device.whole.reading(), plan.device.whole.array()
+        reading, array = plan.device.reading, plan.device.whole.array()
         try:
             plan.page.hand(reading, plan.page.scene(reading, array), array)
         except ValueError as error:
