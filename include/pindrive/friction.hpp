@@ -306,14 +306,13 @@ struct Touch {
     if (before == ContactState::absent) return;
     at_ = Bound::none;
     rest_ = ContactState::elastic_stick;  // with the force that it has
-    either_way_ = !(stick_limit() > 0);   // without static friction it holds nothing
+    either_way_ = !(stick_limit() > 0) && s.skin == 0;  // without static friction it holds nothing
     sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
     if (-sense_ * s.skin < stick_limit() || sense_ * u > 0) return;
     at_ = Bound::upper;
-    const T asked = -sense_ * s.skin / load.value;
-    const T most = contact.static_limit;
-    breaks_ = asked > (1 + rounding<T>) * most;
-    landing_ = slider(-sense_, u).faster(0, breaks_ ? asked : most);
+    breaks_ = -sense_ * s.skin > stick_limit() + rounding<T> * stick_limit() + s.roundoff;
+    const T asked = breaks_ ? -sense_ * s.skin / load.value : contact.static_limit;
+    landing_ = slider(-sense_, u).faster(0, asked);
     count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
   }
 

@@ -35,10 +35,14 @@ class Slider {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
       const bool last = !(range.to < never);
-      if (range.slope > 0 && (last || asked <= range.at(range.to))) {
-        const T beyond = (asked - range.force) / range.slope;
-        if (beyond > 0) return {j, range.from + beyond, asked};
-        return {j, range.from, range.force, Bound::lower};
+      if (range.slope > 0) {
+        const T most = last ? never : contact_.branch(j + 1).force;
+        if (asked < most) {
+          const T beyond = (asked - range.force) / range.slope;
+          if (beyond > 0) return {j, range.from + beyond, asked};
+          return {j, range.from, range.force, Bound::lower};
+        }
+        if (asked == most && !(pin_(asked) > range.to)) return {j, range.to, asked, Bound::upper};
       }
       if (range.slope != 0 || !(last || range.force >= asked)) continue;
       const bool drops = range.force < asked;
@@ -64,8 +68,9 @@ class Slider {
         return {j, range.from + (asked - range.force) / range.slope, asked};
       }
       const T speed = pin_(range.force);
-      if (range.slope > 0 && j == 0 && asked >= contact_.static_limit && speed > 0)
-        return {0, T(0), range.force, Bound::lower};
+      const bool holds = j == 0 && asked < contact_.static_limit;
+      if (range.slope > 0 && asked == range.force && speed > range.from && !holds)
+        return {j, range.from, range.force, Bound::lower};
       if (range.slope != 0 || range.force > asked) continue;
       if (!(speed > range.from)) continue;
       if (speed < range.to) return {j, speed, range.force};
