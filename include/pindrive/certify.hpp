@@ -590,14 +590,33 @@ class Certifier {
     return finger.curve[finger.branches - 1].slope > 0 ? never : most;
   }
 
+  /// How far within its limit the force is of what sticks, N; 0 where nothing does.
+  template <class Stage>
+  T within_limit(const Stage& stage, const Numbers& s) const {
+    using std::abs;
+    const Mode mode = stage.segment.mode;
+    T most{0}, force{0};
+    if (mode.plate == ContactState::stick) {
+      most += drive_.plate.static_limit * stage.load.value;
+      force += s.plate_force;
+    }
+    if (mode.finger == ContactState::stick) {
+      most += drive_.finger.static_limit * stage.finger_load.value;
+      force += s.finger_force;
+    }
+    return most - abs(force);
+  }
+
   /// A contact begins to slip from rest only where it cannot stick. Segments in which nothing has time
-  /// to change are one instant with the next.
+  /// to change are one instant with the next, but for what sticks within its limit however briefly.
   template <class Stage>
   void breaks_away(const Stage& stage) {
     using std::abs;
     const Segment<T>& segment = stage.segment;
     if (!brief_) instant_ = segment.begin;
-    brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_;
+    Numbers s = state(stage, T(0));
+    brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_ &&
+             !(within_limit(stage, s) > 8 * detail::rounding<T> * force_scale_);
     const auto began = [&](ContactState does, ContactState& was, T& since) {
       const bool slides_on = was == ContactState::slip_oblique && slips(does);
       if (does != was && !slides_on) since = segment.begin;
@@ -607,7 +626,6 @@ class Certifier {
     const bool plate = began(segment.mode.plate, plate_, plate_since_);
     const bool finger = began(segment.mode.finger, finger_, finger_since_);
     if (brief_ || held_by_stop(drive_, segment.mode)) return;
-    Numbers s = state(stage, T(0));
     const T still = T(1e-12) * v_scale_;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
     const bool oblique = segment.mode.plate == ContactState::slip_oblique;

@@ -134,6 +134,7 @@ class Profile {
 
   /// Value and rate from time t on, until the next row.
   Line<T> from(T t) const {
+    if (constant()) return {constant_, T(0)};
     const std::size_t i = rows_until(t);
     if (i == 0) return {constant_, T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
@@ -143,6 +144,7 @@ class Profile {
   }
   /// The first row after time t; infinite when there is none.
   T next_row(T t) const {
+    if (constant()) return std::numeric_limits<T>::infinity();
     const std::size_t i = rows_until(t);
     return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
   }

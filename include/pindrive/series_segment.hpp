@@ -24,11 +24,13 @@ class SeriesSegment {
   /// `at_limit` is the side on which a stick force is at its limit, `no_push` says that a stop's push is
   /// exactly zero, `span` the time until the next row or the
   /// end, s. Its guards come with their zeros.
-  template <class Side, class Input>
-  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive,
-             const Inputs<T, Input>& inputs, const Side& plate, const Side& finger,
-             const State<T>& state, T acceleration, int at_limit, bool no_push, T span) {
-    const SeriesMode<T> mode(drive, segment.mode, InputLines<T>::of(inputs, segment));
+  template <class Side>
+  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
+             const Side& finger, const Line<T>& force, const State<T>& state, T acceleration,
+             int at_limit, bool no_push, T span) {
+    const SeriesMode<T> mode(
+        drive, segment.mode,
+        {segment.plate_velocity, plate.load, plate.across, force, finger.load});
     segment.creeps = false;
     used_ = !mode.has_closed_form();
     if (!used_) return false;

@@ -117,7 +117,7 @@ class Simulation : private Selection<T, Surface> {
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
     if constexpr (!Surface::plain)
-      if (series_.begin(segment, guards_, drive_, inputs_, plate_, finger_, state_, acceleration_,
+      if (series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
                         continues() ? limit_ : 0, stop_.no_push(),
                         std::min(row_, inputs_.duration) - time_))
         return;

@@ -30,6 +30,7 @@ class EndStops {
 
   /// Finds out what they may do.
   void ask(const State<T>& s) {
+    if (!stops_.present()) return;
     const int end = s.x < 0 ? -1 : 1;
     const bool edge = end * s.x == stops_.travel;
     const StopState touching = at_end(end, true);
@@ -56,8 +57,8 @@ class EndStops {
   void take(int option) { does = options_[option]; }
 
   bool rigid() const { return stops_.rigid(); }
-  bool holds() const { return stops_.rigid() && touches(does); }
-  bool pushes() const { return !stops_.rigid() && touches(does); }
+  bool holds() const { return touches(does) && stops_.rigid(); }
+  bool pushes() const { return touches(does) && !stops_.rigid(); }
   T stiffness() const { return pushes() ? stops_.stiffness : T(0); }
   T damping() const { return pushes() ? stops_.damping : T(0); }
   T spring_force(const State<T>& s) const {
@@ -68,7 +69,7 @@ class EndStops {
   /// … and how large the terms of it are.
   T size(const State<T>& s) const {
     using std::abs;
-    if (stops_.rigid() || (does == StopState::apart && at_ == Bound::none)) return T(0);
+    if ((does == StopState::apart && at_ == Bound::none) || stops_.rigid()) return T(0);
     return stops_.stiffness * (s.x_size + stops_.travel) + stops_.damping * abs(s.v);
   }
 

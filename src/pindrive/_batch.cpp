@@ -251,9 +251,11 @@ class Batch {
       if (!go_on(count)) return;
       Block& block = space.block;
       points(inputs_, first, count, varies_, block.input);
+      std::array<pe::Extremes, input_count> of_share = ends;
       for (std::size_t k = 0; k < input_count; ++k)
-        if (varies_[k]) merge(ends[k], kernel_.extremes(block.input[k], count));
-      const bool good = kernel_.judge(block, static_cast<int>(count), bounds_, space.broken);
+        if (varies_[k]) merge(ends[k], of_share[k] = kernel_.extremes(block.input[k], count));
+      const bool good =
+          kernel_.judge(block, static_cast<int>(count), of_share.data(), bounds_, space.broken);
       press(block, count);
       const bool followed = by_kernel(first, count, space);
       if (good && followed && !energy_) continue;

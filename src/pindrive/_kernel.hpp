@@ -24,9 +24,9 @@ struct KernelFunctions {
   void (*follow)(pindrive::detail::KernelBlock& block, int count, pindrive::detail::Asked asked);
   /// 0, or 1 and more for the first bound that a release of the block breaks: those of its inputs, a
   /// static friction below the kinetic one (as if it broke its own), those of what they make together.
-  /// Whether all are 0.
-  bool (*judge)(const pindrive::detail::KernelBlock& block, int count, const Bounds& bounds,
-                signed char* broken);
+  /// Whether all are 0. `of_inputs`: the extremes of each input of the block.
+  bool (*judge)(const pindrive::detail::KernelBlock& block, int count, const Extremes* of_inputs,
+                const Bounds& bounds, signed char* broken);
   Extremes (*extremes)(const double* values, std::size_t count);
   /// `which` of the elementary functions, in the order of their header, at arguments a (and b).
   void (*elementary)(int which, const double* a, const double* b, double* found, std::size_t count);

@@ -50,24 +50,19 @@ int flag(int check) {
   return 1 + (check < inputs ? check : of_others[check - inputs]);
 }
 
-/// Whether all of a column keep its bound.
-bool all_keep(const double* column, int count, const Interval& bound) {
-  pk::MaskOf<V> good(true);
-  for (int first = 0; first < count; first += PINDRIVE_WIDTH) {
-    const V value = pk::load<V>(column + first);
-    pk::MaskOf<V> within = (V(bound[0]) <= value) & (value <= V(bound[1]));
-    if (bound[2] == bound[2]) within = within | (value == V(bound[2]));
-    good = good & within;
-  }
-  using pk::any;
-  return !any(!good);
+/// Whether all between two ends keep a bound.
+bool surely_keeps(const Extremes& ends, const Interval& bound) {
+  return (bound[0] <= ends.least && ends.largest <= bound[1]) ||
+         (ends.least == bound[2] && ends.largest == bound[2]);
 }
 
-/// Whether all releases surely keep the bounds of `checks`: told without a division or a root, so one
-/// within rounding of a bound, or of powers beyond a double's, is not sure.
-bool all_surely_keep(const pk::KernelBlock& block, int count, const Bounds& bounds) {
+/// Whether all releases surely keep the bounds of `checks`: told from the extremes of the inputs and
+/// without a division or a root, so one within rounding of a bound, or of powers beyond a double's, is
+/// not sure.
+bool all_surely_keep(const pk::KernelBlock& block, int count, const Extremes* of_inputs,
+                     const Bounds& bounds) {
   for (int k = 0; k < inputs; ++k)
-    if (!all_keep(block.input[k], count, bounds[k])) return false;
+    if (!surely_keeps(of_inputs[k], bounds[k])) return false;
   const Interval &ratio = bounds[inputs], &phase = bounds[inputs + 1];
   if (phase[0] > 0.0) return false;
   constexpr double less = 1.0 - 1e-9, more = 1.0 + 1e-9, least = 1e-290, most = 1e290;
@@ -88,9 +83,10 @@ bool all_surely_keep(const pk::KernelBlock& block, int count, const Bounds& boun
   return !any(!good);
 }
 
-bool judge(const pk::KernelBlock& block, int count, const Bounds& bounds, signed char* broken) {
+bool judge(const pk::KernelBlock& block, int count, const Extremes* of_inputs, const Bounds& bounds,
+           signed char* broken) {
   for (int i = 0; i < count; ++i) broken[i] = 0;
-  if (all_surely_keep(block, count, bounds)) return true;
+  if (all_surely_keep(block, count, of_inputs, bounds)) return true;
   bool all = true;
   for (int first = 0; first < count; first += PINDRIVE_WIDTH) {
     V in[inputs];
