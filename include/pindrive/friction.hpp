@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
@@ -16,13 +15,10 @@ namespace pindrive::detail {
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
 /// what it does.
 template <class T, class Surface>
-struct Touch {
-  struct Option {
-    ContactState state{ContactState::absent};
-    Bound at{Bound::none};
-    int branch{0};
-    T sense{0};  ///< in which it slips: 1, −1 or 0
-  };
+struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
+  using OfSlider = SliderOf<Touch<T, Surface>, T, Surface>;
+  using Option = TouchOption<T>;
+  using OfSlider::lags, OfSlider::slide, OfSlider::gap, OfSlider::drops;
 
   explicit Touch(const Surface& given) : contact(given) {}
 
@@ -44,10 +40,6 @@ struct Touch {
   bool stuck() const { return does.state == ContactState::stick; }
   bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
   bool oblique() const { return !Surface::plain && does.state == ContactState::slip_oblique; }
-  /// Whether the velocity of its slider is a state of its own, beside that of the pin.
-  bool lags() const {
-    return !Surface::plain && !contact.rigid() && sliding() && branch().slope != 0;
-  }
   Branch<T> branch() const { return contact.branch(does.branch); }
   T stick_limit() const { return contact.static_limit * load.value; }  ///< N
   /// Whether nothing but its relative acceleration tells where it goes.
@@ -55,11 +47,6 @@ struct Touch {
     if (does.at == Bound::none || oblique()) return false;
     return elastic() ? v == 0 : !lags() || gap(v) == 0;
   }
-  /// The speed of its slider, which lags; along its slip.
-  T slide() const { return landed() ? T(landing_.speed) : slid_; }
-  /// Whether its skin has become shorter at once.
-  bool drops() const { return landed() && landing_.drops; }
-
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(State<T>& s, bool stretched) {
     const T u = s.v - surface.value, size = u < 0 ? -u : u;
@@ -68,8 +55,7 @@ struct Touch {
     does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
     if (elastic || u == 0) return;
     does = slip(u / size, Bound::none, contact.branch_of(size));
-    if constexpr (!Surface::plain)
-      if (lags()) begin_slider(s, size);
+    if (lags()) this->begin_slider(s, size);
   }
 
   /// Finds out what it may do. A speed that has reached no bound and is not inside its branch is at the end
@@ -87,8 +73,7 @@ struct Touch {
     sense_ = does.sense;
     branch_ = does.branch;
     if (across_too) return;
-    if constexpr (!Surface::plain)
-      if (!contact.rigid()) return ask_slider(s, u);
+    if (!contact.rigid()) return this->ask_slider(s, u);
     if (sliding()) {
       const Branch<T> range = branch();
       const T speed = sense_ * u;
@@ -113,38 +98,23 @@ struct Touch {
 
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
-    if constexpr (!Surface::plain)
-      if (breaks_) return after_landing(-sense_);
+    if (this->breaks()) return this->after_landing(-sense_);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
-      if constexpr (!Surface::plain)
-        if (!contact.rigid()) return after_landing(sense_);
+      if (!contact.rigid()) return this->after_landing(sense_);
       const bool faster = at_ == Bound::upper;
       return {goes_on_, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
     }
     if (index == 0) return {rest_, at_, 0, T(0)};
     const bool backward = (index == 1) == (sense_ > 0);
     const T sense = backward ? T(-1) : T(1);
-    if constexpr (!Surface::plain)
-      if (!contact.rigid()) return after_landing(sense);
-    return slip(sense, parts_);
-  }
-
-  /// What a compliant contact that slips stretches its skin with, N.
-  T skin_force(const State<T>& s) const {
-    const T from = branch().from;
-    return does.sense * branch().at(lags() ? does.sense * s.slide : from) * load.value;
-  }
-  /// Brings the state to where the mode that was selected begins.
-  void land(State<T>& s) const {
-    if (drops()) s.skin = (s.skin < 0 ? T(-1) : T(1)) * carried() * load.value;
-    if (lags()) s.slide = does.sense * slide();
+    return contact.rigid() ? slip(sense, parts_) : this->after_landing(sense);
   }
 
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const {
-    if (elastic() && drops()) return (s.skin < 0 ? T(1) : T(-1)) * carried() * load.value;
-    return elastic() ? -s.skin : -(oblique() ? direction : does.sense) * carried() * load.value;
+    if (elastic()) return -this->grip(s);
+    return -(oblique() ? direction : does.sense) * this->carried() * load.value;
   }
   /// … how fast it changes on a pin of this acceleration, how large the terms of that rate are, as its slope
   /// is known to rounding only, and how fast the rate changes while the acceleration is constant.
@@ -156,11 +126,7 @@ struct Touch {
     const T stretching = contact.stiffness * v;
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
-    if (lags()) {  // the skin stretches by what the pin is faster than the slider
-      const T rate = -contact.stiffness * (v - does.sense * slide());
-      return {rate, abs(stretching) + contact.stiffness * slide(),
-              -contact.stiffness * (acceleration - does.sense * slide_rate(v))};
-    }
+    if (lags()) return this->template slip_rate<Rate>(v, acceleration);
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate;
     T rate{}, bend{};
@@ -179,8 +145,7 @@ struct Touch {
   T size(T v) const {
     using std::abs;
     if (contact.branches == 0 || !sliding()) return stick_limit();
-    const T fastest = lags() ? branch().from + slid_ : abs(v) + abs(surface.value);
-    const T rounded = abs(branch().slope) * fastest;
+    const T rounded = abs(branch().slope) * this->fastest(v);
     return (contact.static_limit + rounded) * load.value + friction * load.value;
   }
 
@@ -226,7 +191,7 @@ struct Touch {
                       : does.sense * (does.at == Bound::lower ? decides : -decides);
       return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
-    if (either_way_) return s.v == 0 && decides == 0;
+    if (this->either_way()) return s.v == 0 && decides == 0;
     const T inside = s.skin > 0 ? T(-1) : T(1);
     if (s.v == 0) return inside * decides >= 0;
     return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
@@ -238,84 +203,7 @@ struct Touch {
   }
 
  private:
-  using Landed = std::conditional_t<Surface::plain, NoLanding, Landing<T>>;
-
-  /// Whether what it does is where its slider has come to at once.
-  bool landed() const {
-    if (Surface::plain || contact.rigid()) return false;
-    const bool rests = rest_ == ContactState::elastic_stick;
-    return breaks_ || does.at != at_ || (rests ? sliding() : elastic() || does.branch != branch_);
-  }
-  /// Its friction under a load of 1 in what it does, N.
-  T carried() const { return landed() ? T(landing_.friction) : friction; }
-  /// By how much the pin is faster than its slider, along its slip.
-  T gap(T v) const {
-    return meets_ && slide() == slid_ ? T(0) : does.sense * v - slide();
-  }
-  /// How fast its slider becomes faster, along its slip.
-  T slide_rate(T v) const {
-    return contact.stiffness * gap(v) / (branch().slope * load.value);
-  }
-  Option after_landing(T sense) const {
-    if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
-    return slip(sense, landing_.at, landing_.branch);
-  }
-  auto slider(T sense, T u) const {
-    return Slider(contact, [=](T) { return sense * u; });
-  }
-
-  /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
-  void begin_slider(State<T>& s, T speed) {
-    const Branch<T> range = branch();
-    const T asked = range.at(speed);
-    slid_ = speed;
-    s.skin = does.sense * asked * load.value;
-    if (range.slope < 0) {
-      landing_ = slider(does.sense, does.sense * speed).slower(does.branch, asked);
-      slid_ = landing_.speed;
-      does = after_landing(does.sense);
-      does.at = Bound::none;
-    }
-    s.slide = does.sense * slid_;
-  }
-
-  /// `ask` of a compliant contact.
-  void ask_slider(const State<T>& s, T u) {
-    breaks_ = false;
-    meets_ = sliding() && !lags();
-    if (sliding()) {
-      const Branch<T> range = branch();
-      const T speed = sense_ * (lags() ? s.slide : u);
-      if (at_ == Bound::none && speed >= range.to) at_ = Bound::upper;
-      if (at_ == Bound::none && !(speed > range.from)) at_ = Bound::lower;
-      slid_ = at_ == Bound::none ? speed : at_ == Bound::upper ? range.to : range.from;
-      friction = range.at(lags() ? slid_ : range.from);
-      if (at_ == Bound::none) return;
-      if (at_ == Bound::upper || branch_ > 0) {
-        const int beyond = at_ == Bound::upper ? branch_ + 1 : branch_;
-        friction = contact.branch(beyond).force;
-        const auto goes = slider(sense_, u);
-        landing_ =
-            at_ == Bound::upper ? goes.faster(beyond, friction) : goes.slower(beyond, friction);
-        count = 2;
-        if (at_ == Bound::upper || !landing_.grips || friction < contact.static_limit) return;
-      }
-    }
-    friction = contact.branch(0).force;
-    count = 1;
-    if (before == ContactState::absent) return;
-    at_ = Bound::none;
-    rest_ = ContactState::elastic_stick;  // with the force that it has
-    either_way_ = !(stick_limit() > 0) && s.skin == 0;  // without static friction it holds nothing
-    sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
-    if (-sense_ * s.skin < stick_limit() || sense_ * u > 0) return;
-    at_ = Bound::upper;
-    breaks_ = -sense_ * s.skin > stick_limit() + rounding<T> * stick_limit() + s.roundoff;
-    const T asked = breaks_ ? -sense_ * s.skin / load.value : contact.static_limit;
-    landing_ = slider(-sense_, u).faster(0, asked);
-    count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
-  }
-
+  friend OfSlider;
   ContactState goes_on_{
       ContactState::absent};  ///< what it does unless it comes to an end of its range,
   T sense_{0};                ///< in which direction it slips then,
@@ -323,9 +211,6 @@ struct Touch {
   Bound at_{Bound::none};     ///< and the end of its range that it is at now
   ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
   Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
-  T slid_{0};         ///< the speed of its slider until now, which lags, …
-  Landed landing_{};  ///< … and where that comes to
-  bool either_way_{false}, breaks_{false}, meets_{false};
 };
 
 }  // namespace pindrive::detail
