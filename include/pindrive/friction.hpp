@@ -98,7 +98,7 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
 
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
-    if (this->breaks()) return this->after_landing(-sense_);
+    if (this->breaks()) return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
       if (!contact.rigid()) return this->after_landing(sense_);

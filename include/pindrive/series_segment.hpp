@@ -77,15 +77,23 @@ class SeriesSegment {
 
   /// Brings the state on by τ, unless the mode has a closed form.
   template <class Side>
-  void move(State<T>& state, const Side& finger, T tau) const {
+  void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {
     using std::abs;
+    using std::sqrt;
     if (!used_) return;
     const SeriesState<T> now = step_.at(tau);
     state.x = now.x;
     state.v = now.v;
     state.x_size = std::max(state.x_size, abs(state.x));
     if (finger.elastic()) state.skin = now.skin;
-    if (finger.lags()) state.slide = now.skin;
+    if (!finger.lags()) return;
+    state.slide = now.skin;
+    // A pin and a slider whose velocities have faded into rounding, on forces that cancel to it, are at rest.
+    const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
+    const T pull = drive.mass * step_.velocity.derivative().at(tau);
+    if (finger.does.branch == 0 && abs(state.v) <= still && abs(state.slide) <= still &&
+        abs(pull) <= state.roundoff)
+      state.v = state.slide = T(0);
   }
 
  private:

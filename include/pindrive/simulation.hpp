@@ -187,7 +187,7 @@ class Simulation : private Selection<T, Surface> {
   void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    if constexpr (!Surface::plain) series_.move(state_, finger_, tau);
+    if constexpr (!Surface::plain) series_.move(state_, drive_, finger_, tau);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);

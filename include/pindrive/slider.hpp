@@ -193,8 +193,13 @@ class SliderOf {
       if (touch.sliding()) {
         const Branch<T> range = touch.branch();
         const T speed = touch.sense_ * (lags() ? s.slide : u);
+        const Bound before = at;
         if (at == Bound::none && speed >= range.to) at = Bound::upper;
         if (at == Bound::none && !(speed > range.from)) at = Bound::lower;
+        // A pin whose velocity has jumped takes along a slider that does not lag.
+        const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
+        breaks_ = meets_ && before == Bound::none && at != Bound::none &&
+                  jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
         slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
         touch.friction = range.at(lags() ? slid_ : range.from);
         if (at == Bound::none) return;
@@ -203,12 +208,13 @@ class SliderOf {
           const T asked = touch.friction = touch.contact.branch(beyond).force;
           const auto goes = slider(touch.sense_, u);
           landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
-          touch.count = 2;
+          touch.count = breaks_ ? 1 : 2;
           if (at == Bound::upper || !landing_.grips || asked < touch.contact.static_limit) return;
         }
       }
       touch.friction = touch.contact.branch(0).force;
       touch.count = 1;
+      breaks_ = false;
       if (touch.before == ContactState::absent) return;
       at = Bound::none;
       touch.rest_ = ContactState::elastic_stick;  // with the force that it has

@@ -139,12 +139,12 @@ class Draw {
     }
     const double load = c.finger_load.value[0];
     if (load == 0) return;
-    c.duration = std::min({c.duration, 3 * period_, 1e4 * flattest * load / c.skin});
+    c.duration = std::min({c.duration, 3 * period_, 2e3 * flattest * load / c.skin});
     // Where it falls, skin slips and grips the more often the less the friction falls by.
     double least = c.limit[1];
     for (const double force : c.curve[1].value) least = std::min(least, force);
     if (c.limit[1] > least)
-      c.duration = std::min(c.duration, 1e3 * load * (c.limit[1] - least) / (c.skin * speed_));
+      c.duration = std::min(c.duration, 3e2 * load * (c.limit[1] - least) / (c.skin * speed_));
   }
 
   Rows curve() {
