@@ -64,8 +64,8 @@ StateOfDual lifted(const State& s) {
   const auto option = [](const auto& o) {
     return decltype(StateOfDual::plate){o.state, o.at, o.branch, o.sense};
   };
-  const pd::detail::State<Dual> pin{s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff,
-                                   s.pin.slide};
+  const pd::detail::State<Dual> pin{s.pin.x,      s.pin.v,        s.pin.skin,
+                                    s.pin.x_size, s.pin.roundoff, s.pin.slide};
   return {s.now,
           s.since,
           pin,

@@ -78,8 +78,7 @@ class Certifier {
       if (segment.end > duration_) break;
       const Segment<T>* next = motion_.after(segment);
       if (next == nullptr) break;
-      if (next == &segment + 1)
-        worst(result_.continuity, segment.end - next->begin, segment.end);
+      if (next == &segment + 1) worst(result_.continuity, segment.end - next->begin, segment.end);
       junction(segment, last, start_of(*next));
     }
     const T energy = std::max({stored_, input_, dissipated_});
@@ -574,8 +573,8 @@ class Certifier {
     const bool gripped = before.mode.finger == ContactState::elastic_stick;
     if (gripped)
       worst(result_.transitions, drive_.finger.static_limit * load - asked, force_scale_);
-    const T unmet = std::max(load * most_from(gripped ? 0 : before.mode.finger_branch + 1) - asked,
-                             T(0));
+    const T unmet =
+        std::max(load * most_from(gripped ? 0 : before.mode.finger_branch + 1) - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, force_scale_);
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
   }

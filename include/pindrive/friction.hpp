@@ -98,7 +98,8 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
 
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
-    if (this->breaks()) return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_);
+    if (this->breaks())
+      return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
       if (!contact.rigid()) return this->after_landing(sense_);
@@ -186,9 +187,8 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
       const T faster = lags() ? gap(s.v) : T(0);
-      const T inwards =
-          faster != 0 ? (does.at == Bound::lower ? faster : -faster)
-                      : does.sense * (does.at == Bound::lower ? decides : -decides);
+      const T inwards = faster != 0 ? (does.at == Bound::lower ? faster : -faster)
+                                    : does.sense * (does.at == Bound::lower ? decides : -decides);
       return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
     if (this->either_way()) return s.v == 0 && decides == 0;

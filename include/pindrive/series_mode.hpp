@@ -62,9 +62,7 @@ class SeriesMode {
   }
 
   /// Whether the slider of a compliant finger lags behind the pin: it slips on a sloped branch.
-  bool lags() const {
-    return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0;
-  }
+  bool lags() const { return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0; }
 
   /// Its equation. The state of the skin is its force, or the sliding velocity where the finger slips on
   /// a sloped branch of its curve.

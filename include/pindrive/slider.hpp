@@ -19,11 +19,11 @@ namespace pindrive::detail {
 template <class T>
 struct Landing {
   int branch{0};
-  T speed{0};              ///< along the slip, m/s
-  T friction{0};           ///< under a load of 1, N
-  Bound at{Bound::none};   ///< the end of the branch that it is at
-  bool grips{false};       ///< it does not slide …
-  bool drops{false};       ///< or it slid so fast that the skin has become shorter
+  T speed{0};             ///< along the slip, m/s
+  T friction{0};          ///< under a load of 1, N
+  Bound at{Bound::none};  ///< the end of the branch that it is at
+  bool grips{false};      ///< it does not slide …
+  bool drops{false};      ///< or it slid so fast that the skin has become shorter
 };
 
 /// The landings of a slider on a curve. `pin(F)` is the speed that it has where its friction stays F.
@@ -113,9 +113,7 @@ class SliderOf {
   /// The speed of its slider, which lags; along its slip.
   T slide() const { return landed() ? T(landing_.speed) : slid_; }
   /// By how much the pin is faster than that.
-  T gap(T v) const {
-    return meets_ && slide() == slid_ ? T(0) : self().does.sense * v - slide();
-  }
+  T gap(T v) const { return meets_ && slide() == slid_ ? T(0) : self().does.sense * v - slide(); }
   /// Whether its skin has become shorter at once.
   bool drops() const { return landed() && landing_.drops; }
 

@@ -158,7 +158,8 @@ class BySeries {
     const Path<T>& v = segment.flow.velocity;
     const Path<T>& of_finger = segment.finger_force;
     // The slider of a finger that lags is slower than the pin by what the skin stretches.
-    const T skin = mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
+    const T skin =
+        mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
     const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
     if (segment.creeps)

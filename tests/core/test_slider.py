@@ -49,7 +49,9 @@ def test_a_curve_on_skin_against_forty_digits(name: str) -> None:
     told = [(e.time, e.kind) for e in motion.events if e.contact == "finger"]
     assert [kind for _, kind in told] == [kind for _, kind in truth.events]
     assert len(told) >= 3
-    late = [abs(one - float(other)) for (one, _), (other, _) in zip(told, truth.events, strict=True)]
+    late = [
+        abs(one - float(other)) for (one, _), (other, _) in zip(told, truth.events, strict=True)
+    ]
     assert max(late) < 1e-11 * 0.06
     assert np.abs(motion.position(times) - x).max() < 1e-11 * 2e-3
     assert np.abs(motion.velocity(times) - v).max() < 1e-11 * 0.2

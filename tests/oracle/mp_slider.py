@@ -97,7 +97,9 @@ def solve(inputs: dict[str, Any], times: Sequence[float]) -> tuple[list[State], 
     state: State = (mpf(inputs["displacement"]), mpf(inputs["velocity"]), mpf(0))
     side, piece = 0, (mpf(0), mpf(1))
     now, found = mpf(0), []
-    rate = of.skin / min(abs(g - f) / (w - u) for (u, f), (w, g) in zip(rows, rows[1:], strict=False))
+    rate = of.skin / min(
+        abs(g - f) / (w - u) for (u, f), (w, g) in zip(rows, rows[1:], strict=False)
+    )
     step = 1 / (rate + (of.stiffness + of.skin) ** mpf("0.5") / of.mass ** mpf("0.5"))
     for time in map(mpf, times):
         while now < time:
