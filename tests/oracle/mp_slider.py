@@ -1,14 +1,15 @@
 """Motions on a compliant finger with a friction curve, in forty digits.
 
-The pin slides on the plate, with constant friction; the slider of the finger's skin grips, or slides at
-the speed at which its curve carries what the skin asks. Each mode is followed by the Taylor series of
-its own linear equations, and its end is found by bisection.
+The pin slides on the plate, with constant friction; the slider of the finger's skin grips, or
+slides at the speed at which its curve carries what the skin asks. Each mode is followed by the
+Taylor series of its own linear equations, and its end is found by bisection.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 from mpmath import mp, mpf
@@ -97,44 +98,31 @@ def solve(inputs: dict[str, Any], times: Sequence[float]) -> tuple[list[State], 
     state: State = (mpf(inputs["displacement"]), mpf(inputs["velocity"]), mpf(0))
     side, piece = 0, (mpf(0), mpf(1))
     now, found = mpf(0), []
-    rate = of.skin / min(
-        abs(g - f) / (w - u) for (u, f), (w, g) in zip(rows, rows[1:], strict=False)
-    )
+    rate = of.skin / min(abs(g - f) / (w - u) for (u, f), (w, g) in pairwise(rows))
     step = 1 / (rate + (of.stiffness + of.skin) ** mpf("0.5") / of.mass ** mpf("0.5"))
     for time in map(mpf, times):
         while now < time:
             terms = of.terms(state, side, piece)
             end = min(step, time - now)
-            guards: list[tuple[str, Callable[[State], mpf]]]
-            if side == 0:
-                guards = [
-                    ("1", lambda s: of.static - s[2]),
-                    ("-1", lambda s: of.static + s[2]),
-                ]
-            else:
-                low, high = _ends(of, piece)
-                n, p = side, piece
-                guards = [("low", lambda s, n=n, p=p, u=low: of.speed(s, n, p) - u)]
-                if high is not None:
-                    guards.append(("high", lambda s, n=n, p=p, w=high: w - of.speed(s, n, p)))
+            guards = _guards(of, side, piece)
             met = None
-            for name, guard in guards:
-                if guard(value(terms, end)) < 0 and guard(value(terms, end / 1024)) > 0:
-                    low_time, high_time = end / 1024, end
-                    while high_time - low_time > TINY * end:
-                        middle = (low_time + high_time) / 2
+            for name, guard in guards.items():
+                if guard(value(terms, end)) < 0 < guard(value(terms, end / 1024)):
+                    early, late = end / 1024, end
+                    while late - early > TINY * end:
+                        middle = (early + late) / 2
                         if guard(value(terms, middle)) < 0:
-                            high_time = middle
+                            late = middle
                         else:
-                            low_time = middle
-                    if met is None or low_time < met[0]:
-                        met = (low_time, name)
+                            early = middle
+                    if met is None or early < met[0]:
+                        met = (early, name)
             after = met[0] if met else end
             state = value(terms, after)
             now += after
             if not met:
                 continue
-            x, v, q = state
+            asked = abs(state[2])
             if side == 0:
                 side = int(met[1])
                 at = landing(of, of.static, [mpf(0)], up=True)
@@ -145,11 +133,11 @@ def solve(inputs: dict[str, Any], times: Sequence[float]) -> tuple[list[State], 
             low, high = _ends(of, piece)
             if met[1] == "high":
                 assert high is not None
-                at = landing(of, abs(q), [high + TINY], up=True)
+                at = landing(of, asked, [high + TINY], up=True)
                 assert at is not None
                 piece = of.piece(at + TINY)
             else:
-                at = landing(of, abs(q), [low - TINY], up=False) if low > 0 else None
+                at = landing(of, asked, [low - TINY], up=False) if low > 0 else None
                 if at is None:
                     side = 0
                     of.events.append((now, "stick"))
@@ -157,6 +145,17 @@ def solve(inputs: dict[str, Any], times: Sequence[float]) -> tuple[list[State], 
                     piece = of.piece(at - TINY)
         found.append(state)
     return found, of
+
+
+def _guards(of: Slider, side: int, piece: tuple[mpf, mpf]) -> dict[str, Callable[[State], mpf]]:
+    """What stays positive in a mode."""
+    if side == 0:
+        return {"1": lambda s: of.static - s[2], "-1": lambda s: of.static + s[2]}
+    low, high = _ends(of, piece)
+    guards: dict[str, Callable[[State], mpf]] = {"low": lambda s: of.speed(s, side, piece) - low}
+    if high is not None:
+        guards["high"] = lambda s: high - of.speed(s, side, piece)
+    return guards
 
 
 def _ends(of: Slider, piece: tuple[mpf, mpf]) -> tuple[mpf, mpf | None]:
