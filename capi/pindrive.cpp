@@ -210,9 +210,6 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check("skin_stretch", release.skin_stretch, finite_or(release.skin_stretch, none),
                   "finite, or NaN");
   if (error) return error;
-  if (drive.finger.curve.size() > 1 && std::isfinite(drive.finger.stiffness))
-    return fail(PINDRIVE_UNSUPPORTED,
-                "a compliant finger must have one kinetic friction, not a curve");
   if (release.finger_load.size() > 1 &&
       (drive.finger.curve.size() > 1 || std::isfinite(drive.finger.stiffness)))
     return fail(PINDRIVE_UNSUPPORTED,

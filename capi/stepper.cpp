@@ -64,7 +64,8 @@ StateOfDual lifted(const State& s) {
   const auto option = [](const auto& o) {
     return decltype(StateOfDual::plate){o.state, o.at, o.branch, o.sense};
   };
-  const pd::detail::State<Dual> pin{s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff};
+  const pd::detail::State<Dual> pin{s.pin.x,      s.pin.v,        s.pin.skin,
+                                    s.pin.x_size, s.pin.roundoff, s.pin.slide};
   return {s.now,
           s.since,
           pin,
@@ -211,7 +212,7 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
     number(h.since, h.ends);
     line(h.line);
   };
-  number(s.now, s.since, s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff);
+  number(s.now, s.since, s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff, s.pin.slide);
   option(s.plate);
   option(s.finger);
   number(s.at_plate, s.at_finger, s.limit);

@@ -76,13 +76,9 @@ class Certifier {
         return walk(stage);
       });
       if (segment.end > duration_) break;
-      const Segment<T>* next = &segment + 1;
-      if (next != motion_.end())
-        worst(result_.continuity, segment.end - next->begin, segment.end);
-      else if (motion_.outcome().cycles())
-        next = motion_.locate(motion_.outcome().cycle_begin, Side::right).segment;
-      else
-        break;
+      const Segment<T>* next = motion_.after(segment);
+      if (next == nullptr) break;
+      if (next == &segment + 1) worst(result_.continuity, segment.end - next->begin, segment.end);
       junction(segment, last, start_of(*next));
     }
     const T energy = std::max({stored_, input_, dissipated_});
@@ -166,11 +162,11 @@ class Certifier {
       stage.watches[stage.count++] = {guard_of(along, path), law, scale};
     };
     const auto slipping = [&](const Contact<T>& contact, ContactState does, int index,
-                              Line<T> surface) {
+                              const auto& sliding) {
       if (!slips(does)) return;
       const Branch<T> branch =
           contact.branch(std::clamp(index, 0, std::max(contact.branches - 1, 0)));
-      const auto speed = T(sign(does)) * (along.velocity() + T(-1) * along.line(surface));
+      const auto speed = T(sign(does)) * sliding;
       watch(along.above(speed, branch.from), &Certificate<T>::sliding_sign, v_scale_);
       if (branch.to < never)
         watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
@@ -181,7 +177,8 @@ class Certifier {
       watch(limit + T(-1) * force, &Certificate<T>::force_bound, force_scale_);
     };
     if (mode.plate != ContactState::slip_oblique) {
-      slipping(drive_.plate, mode.plate, mode.plate_branch, stage.plate_velocity);
+      slipping(drive_.plate, mode.plate, mode.plate_branch,
+               along.velocity() + T(-1) * along.line(stage.plate_velocity));
     } else if constexpr (std::is_same_v<Trajectory, BySeries<T>>) {
       const Branch<T> branch = drive_.plate.branch(mode.plate_branch);
       const auto& speed = along.sliding_speed();
@@ -190,7 +187,12 @@ class Certifier {
       if (branch.to < never)
         watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
     }
-    slipping(drive_.finger, mode.finger, mode.finger_branch, {});
+    // A slider is slower than the pin by what its skin stretches.
+    if (soft())
+      slipping(drive_.finger, mode.finger, mode.finger_branch,
+               along.velocity() + 1 / drive_.finger.stiffness * stage.finger_rate);
+    else
+      slipping(drive_.finger, mode.finger, mode.finger_branch, along.velocity());
     stops_at(stage, watch);
     if (held_by_stop(drive_, mode)) return stage;
     if (mode.both_stuck()) {
@@ -504,11 +506,19 @@ class Certifier {
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
             stage.load.at(s.tau));
-    contact(drive_.finger, mode.finger, s.v, s.finger_force, stage.finger_load.at(s.tau));
+    contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force,
+            stage.finger_load.at(s.tau));
   }
 
-  template <class Stage>
-  void gather(const Stage& stage, const Numbers& s, T weight, Sums& sums) {
+  /// The sliding velocity on the finger.
+  template <class Trajectory>
+  T on_finger(const Stage<Trajectory>& stage, const State<Trajectory>& s) const {
+    if (!soft()) return s.v;
+    return s.v + stage.along.at(stage.finger_rate, s.moment) / drive_.finger.stiffness;
+  }
+
+  template <class Trajectory>
+  void gather(const Stage<Trajectory>& stage, const State<Trajectory>& s, T weight, Sums& sums) {
     // A whole wave may begin and end at nothing, and be summed from what is stored on the way.
     stored_ = std::max(stored_, energy(s));
     const T v_plate = stage.plate_velocity.at(s.tau);
@@ -525,7 +535,7 @@ class Certifier {
           (touches(stop) ? drive_.stops.damping * s.v
                          : drive_.stops.stiffness * (side(stop) * drive_.stops.travel - s.x));
     if (stage.segment.mode.finger != ContactState::elastic_stick)
-      sums.finger -= weight * s.finger_force * s.v;
+      sums.finger -= weight * s.finger_force * on_finger(stage, s);
   }
 
   void account(T before, T after, const Sums& sums) {
@@ -552,15 +562,31 @@ class Certifier {
     } else {
       worst(result_.continuity, left.v - right.v, v_scale_);
     }
-    const bool skin_slips = soft() && event.finger == Transition::slip;
-    if (soft() && !skin_slips)
+    if (!soft()) return;
+    using std::abs;
+    const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
+    if (event.finger != Transition::slip) {
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
-    if (skin_slips) {
-      const T load = motion_.inputs().finger_load.from(before.begin).value;
-      worst(result_.transitions, drive_.finger.static_limit * load - std::abs(left.finger_force),
-            force_scale_);
-      raise(gained_, std::min(energy(left) - energy(right), T(0)));
+      return;
     }
+    const T load = motion_.inputs().finger_load.from(before.begin).at(before.end - before.begin);
+    const bool gripped = before.mode.finger == ContactState::elastic_stick;
+    if (gripped)
+      worst(result_.transitions, drive_.finger.static_limit * load - asked, force_scale_);
+    const T unmet =
+        std::max(load * most_from(gripped ? 0 : before.mode.finger_branch + 1) - asked, T(0));
+    worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, force_scale_);
+    raise(gained_, std::min(energy(left) - energy(right), T(0)));
+  }
+
+  /// The largest friction of the finger from a branch of its curve on, under a load of 1: skin becomes
+  /// shorter at once only where no speed carries what it asks.
+  T most_from(int index) const {
+    const Contact<T>& finger = drive_.finger;
+    if (finger.branches == 0) return finger.kinetic;
+    T most{0};
+    for (int i = index; i < finger.branches; ++i) most = std::max(most, finger.curve[i].force);
+    return finger.curve[finger.branches - 1].slope > 0 ? never : most;
   }
 
   /// How far within its limit the force is of what sticks, N; 0 where nothing does.

@@ -64,10 +64,23 @@ class ContactMeasurement {
                T to, T times) const {
     const bool whole = to >= segment.end - segment.begin;
     const T distance = moved(along, from, to);
-    use(result.plate, along, segment, segment.mode.plate, segment.plate_velocity,
-        along.plate_force(), whole && stops(segment.event.plate), from, to, distance, times);
-    use(result.finger, along, segment, segment.mode.finger, {}, along.finger_force(),
-        whole && stops(segment.event.finger), from, to, distance, times);
+    const Line<T> plate = segment.plate_velocity;
+    const T carried = (plate.at(from) + plate.at(to)) / 2 * (to - from);
+    use(result.plate, along, segment, segment.mode.plate,
+        along.velocity() + T(-1) * along.line(plate), along.plate_force(),
+        whole && stops(segment.event.plate), from, to, distance - carried, times);
+    const auto finger = [&](const auto& sliding, T slid) {
+      use(result.finger, along, segment, segment.mode.finger, sliding, along.finger_force(),
+          whole && stops(segment.event.finger), from, to, slid, times);
+    };
+    if (!skin())
+      finger(along.velocity(), distance);
+    else {  // its slider is slower than the pin by what the skin stretches
+      const T compliance = 1 / motion_.drive().finger.stiffness;
+      const T stretched = along.at(along.finger_force(), from) - along.at(along.finger_force(), to);
+      finger(along.velocity() + compliance * along.derivative(along.finger_force()),
+             distance - compliance * stretched);
+    }
     if (segment.mode.both_stuck())
       for (const T tau : {from, to}) {
         using std::abs;
@@ -76,7 +89,7 @@ class ContactMeasurement {
         result.finger.peak_force = std::max(result.finger.peak_force, abs(friction.finger));
       }
     if (!skin()) return;
-    result.finger.dissipated += times * skin_loss(along, segment, from, to, whole);
+    if (whole) result.finger.dissipated += times * skin_loss(along, segment, to);
     const auto in_skin = (-1 / motion_.drive().finger.stiffness) * along.finger_force();
     peak(result.peak_stretch, along, in_skin, from, to);
     peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
@@ -96,8 +109,8 @@ class ContactMeasurement {
 
   template <class Trajectory, class Quantity>
   void use(ContactUse<T>& contact, const Trajectory& along, const Segment<T>& segment,
-           ContactState does, Line<T> surface, const Quantity& force, bool came_to_zero, T from,
-           T to, T distance, T times) const {
+           ContactState does, const Quantity& sliding, const Quantity& force, bool came_to_zero,
+           T from, T to, T distance, T times) const {
     using std::abs;
     if (does == ContactState::absent) return;
     if (!segment.mode.both_stuck()) peak(contact.peak_force, along, force, from, to);
@@ -109,31 +122,25 @@ class ContactMeasurement {
       if (does == ContactState::slip_oblique)
         contact.distance_slid +=
             times * gauss<T>([&](T tau) { return along.at(along.sliding_speed(), tau); }, from, to);
-    const T slid = abs(distance - (surface.at(from) + surface.at(to)) / 2 * (to - from));
+    const T slid = abs(distance);
     if (does != ContactState::slip_oblique) contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
     if (along.constant(force)) {
       contact.dissipated += times * abs(along.start(force)) * slid;
     } else {
-      auto sliding = T(-1) * along.line(surface);
-      sliding = along.velocity() + sliding;
       contact.dissipated -= times * along.product_integral(force, sliding, from, to);
     }
   }
 
-  /// What a stretched skin gives to its slider, or takes from it, beside the pin's own sliding, J.
+  /// What a stretched skin loses as it becomes shorter at once, at the end of a segment, J.
   template <class Trajectory>
-  T skin_loss(const Trajectory& along, const Segment<T>& segment, T from, T to, bool whole) const {
-    const Contact<T>& finger = motion_.drive().finger;
-    const auto energy = [&](T force) { return force * force / (2 * finger.stiffness); };
-    const T start = energy(along.at(along.finger_force(), from));
-    const T end = energy(along.at(along.finger_force(), to));
-    if (slips(segment.mode.finger)) return start - end;
-    if (!whole || segment.event.finger != Transition::slip) return T(0);
-    using std::abs;
-    const T speed = abs(along.at(along.velocity(), to));
-    const T load = motion_.inputs().finger_load.from(segment.begin).value;
-    return end - energy(finger.branch(finger.branch_of(speed)).at(speed) * load);
+  T skin_loss(const Trajectory& along, const Segment<T>& segment, T to) const {
+    const Segment<T>* next = motion_.after(segment);
+    if (segment.event.finger != Transition::slip || next == nullptr) return T(0);
+    const auto energy = [&](T force) {
+      return force * force / (2 * motion_.drive().finger.stiffness);
+    };
+    return energy(along.at(along.finger_force(), to)) - energy(next->finger_force.start);
   }
 
   const Motion<T>& motion_;

@@ -7,6 +7,7 @@
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/series_oblique.hpp"
+#include "pindrive/slider.hpp"
 #include "pindrive/state.hpp"
 
 namespace pindrive::detail {
@@ -14,13 +15,10 @@ namespace pindrive::detail {
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
 /// what it does.
 template <class T, class Surface>
-struct Touch {
-  struct Option {
-    ContactState state{ContactState::absent};
-    Bound at{Bound::none};
-    int branch{0};
-    T sense{0};  ///< in which it slips: 1, −1 or 0
-  };
+struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
+  using OfSlider = SliderOf<Touch<T, Surface>, T, Surface>;
+  using Option = TouchOption<T>;
+  using OfSlider::lags, OfSlider::slide, OfSlider::gap, OfSlider::drops;
 
   explicit Touch(const Surface& given) : contact(given) {}
 
@@ -45,15 +43,19 @@ struct Touch {
   Branch<T> branch() const { return contact.branch(does.branch); }
   T stick_limit() const { return contact.static_limit * load.value; }  ///< N
   /// Whether nothing but its relative acceleration tells where it goes.
-  bool rests(T v) const { return does.at != Bound::none && (!elastic() || v == 0) && !oblique(); }
-
+  bool rests(T v) const {
+    if (does.at == Bound::none || oblique()) return false;
+    return elastic() ? v == 0 : !lags() || gap(v) == 0;
+  }
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
-  void begin(T v, bool stretched) {
-    const T u = v - surface.value, size = u < 0 ? -u : u;
+  void begin(State<T>& s, bool stretched) {
+    const T u = s.v - surface.value, size = u < 0 ? -u : u;
     if (!contact.present() || (!contact.rigid() && load.value == 0)) return;
-    const bool elastic = !contact.rigid() && (stretched || v == 0);
+    const bool elastic = !contact.rigid() && (stretched || s.v == 0);
     does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
-    if (!elastic && u != 0) does = slip(u / size, Bound::none, contact.branch_of(size));
+    if (elastic || u == 0) return;
+    does = slip(u / size, Bound::none, contact.branch_of(size));
+    if (lags()) this->begin_slider(s, size);
   }
 
   /// Finds out what it may do. A speed that has reached no bound and is not inside its branch is at the end
@@ -71,6 +73,7 @@ struct Touch {
     sense_ = does.sense;
     branch_ = does.branch;
     if (across_too) return;
+    if (!contact.rigid()) return this->ask_slider(s, u);
     if (sliding()) {
       const Branch<T> range = branch();
       const T speed = sense_ * u;
@@ -89,35 +92,30 @@ struct Touch {
     if (before == ContactState::absent) return;
     at_ = Bound::none;
     parts_ = Bound::lower;
-    // A compliant contact sticks with the force that it has.
-    const bool sticks = stuck() || (sliding() && contact.rigid());
-    rest_ = sticks ? ContactState::stick : ContactState::elastic_stick;
-    if (sticks) {
-      count = 3;
-      return;
-    }
-    sense_ = s.skin > 0 ? T(-1) : T(1);  // of the force
-    if (-sense_ * s.skin < stick_limit() || sense_ * u > 0) return;
-    at_ = Bound::upper;
-    if (u != 0) parts_ = Bound::none;
-    count = 2;
+    rest_ = ContactState::stick;
+    count = 3;
   }
 
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
+    if (this->breaks())
+      return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
+      if (!contact.rigid()) return this->after_landing(sense_);
       const bool faster = at_ == Bound::upper;
       return {goes_on_, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
     }
     if (index == 0) return {rest_, at_, 0, T(0)};
     const bool backward = (index == 1) == (sense_ > 0);
-    return slip(backward ? T(-1) : T(1), parts_);
+    const T sense = backward ? T(-1) : T(1);
+    return contact.rigid() ? slip(sense, parts_) : this->after_landing(sense);
   }
 
   /// Its force on the pin, unless it sticks, N, …
   T force(const State<T>& s) const {
-    return elastic() ? -s.skin : -(oblique() ? direction : does.sense) * friction * load.value;
+    if (elastic()) return -this->grip(s);
+    return -(oblique() ? direction : does.sense) * this->carried() * load.value;
   }
   /// … how fast it changes on a pin of this acceleration, how large the terms of that rate are, as its slope
   /// is known to rounding only, and how fast the rate changes while the acceleration is constant.
@@ -129,6 +127,7 @@ struct Touch {
     const T stretching = contact.stiffness * v;
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
+    if (lags()) return this->template slip_rate<Rate>(v, acceleration);
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate;
     T rate{}, bend{};
@@ -147,7 +146,7 @@ struct Touch {
   T size(T v) const {
     using std::abs;
     if (contact.branches == 0 || !sliding()) return stick_limit();
-    const T rounded = abs(branch().slope) * (abs(v) + abs(surface.value));
+    const T rounded = abs(branch().slope) * this->fastest(v);
     return (contact.static_limit + rounded) * load.value + friction * load.value;
   }
 
@@ -169,7 +168,7 @@ struct Touch {
 
   /// Whether its force goes on without a jump after a stick force has come to its limit on a side.
   bool continues(int limit) const {
-    if (before == does.state) return true;
+    if (before == does.state) return !drops();
     if (contact.kinetic != contact.static_limit && load.value != 0) return false;
     return before == ContactState::stick ? does.sense == -limit
                                          : before == ContactState::elastic_stick;
@@ -187,9 +186,12 @@ struct Touch {
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;
     if (!elastic()) {
-      const T inwards = does.sense * (does.at == Bound::lower ? decides : -decides);
+      const T faster = lags() ? gap(s.v) : T(0);
+      const T inwards = faster != 0 ? (does.at == Bound::lower ? faster : -faster)
+                                    : does.sense * (does.at == Bound::lower ? decides : -decides);
       return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
+    if (this->either_way()) return s.v == 0 && decides == 0;
     const T inside = s.skin > 0 ? T(-1) : T(1);
     if (s.v == 0) return inside * decides >= 0;
     return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
@@ -201,6 +203,7 @@ struct Touch {
   }
 
  private:
+  friend OfSlider;
   ContactState goes_on_{
       ContactState::absent};  ///< what it does unless it comes to an end of its range,
   T sense_{0};                ///< in which direction it slips then,

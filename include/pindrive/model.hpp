@@ -83,7 +83,9 @@ struct Contact {
     while (index + 1 < branches && speed >= curve[index].to) ++index;
     return index;
   }
-  bool present() const { return static_limit > 0 || branches > 1; }
+  bool present() const {
+    return static_limit > 0 || branches > 1 || (branches == 1 && curve[0].slope > 0);
+  }
 };
 
 /// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,

@@ -64,6 +64,12 @@ class Motion {
     return outcome_.end == End::moving ? outcome_.until : std::numeric_limits<T>::infinity();
   }
 
+  /// The segment that follows one, in a cycle its first one after the last; null without one.
+  const Segment<T>* after(const Segment<T>& segment) const {
+    if (&segment + 1 != end()) return &segment + 1;
+    return outcome_.cycles() ? locate(outcome_.cycle_begin, Side::right).segment : nullptr;
+  }
+
   struct Place {
     const Segment<T>* segment;
     T tau;
@@ -94,7 +100,8 @@ class Motion {
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
     const bool bilinear = drive_.plate.branches > 0 && !inputs_.plate_load.constant();
-    if (!bilinear && segment.mode.plate != ContactState::slip_oblique)
+    const bool lags = drive_.finger.branches > 0 && !drive_.finger.rigid();
+    if (!bilinear && !lags && segment.mode.plate != ContactState::slip_oblique)
       return visit(ClosedForm<T>(segment));
     return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
   }

@@ -139,19 +139,21 @@ class Selection {
   bool stays_at_stop() {
     tangential_ = false;
     acceleration_ = T(0);
-    finger_.does = finger_.option(0);
     const T end = side(stop_.does);
-    for (int k = 0; k < plate_.count; ++k) {
-      plate_.does = plate_.option(k);
+    const bool soft = !finger_.contact.rigid();  // a rigid finger at rest does nothing there
+    for (int k = 0; k < plate_.count * (soft ? finger_.count : 1); ++k) {
+      plate_.does = plate_.option(k % plate_.count);
+      finger_.does = finger_.option(k / plate_.count);
       const T apart = -plate_.surface.rate;
       if (plate_.stuck() ? apart != 0 : !plate_.goes_inside(state_, apart)) continue;
+      if (soft && !finger_.goes_inside(state_, T(0))) continue;
       const T force = inertia_ - pull_ + plate_.force(state_) + finger_.force(state_);
-      const auto rate = plate_.force_rate(T(0), T(0));
-      const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value),
-                         end * rate.bend};
+      const auto rate = plate_.force_rate(T(0), T(0)), skin = finger_.force_rate(T(0), T(0));
+      const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value + skin.value),
+                         end * (rate.bend + skin.bend)};
       using std::abs;
-      if (stop_.holds_under(push, abs(force_.rate) + rate.size, no_push(), state_.roundoff,
-                            guards_))
+      if (stop_.holds_under(push, abs(force_.rate) + rate.size + skin.size, no_push(),
+                            state_.roundoff, guards_))
         return true;
     }
     return false;

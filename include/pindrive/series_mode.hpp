@@ -58,8 +58,11 @@ class SeriesMode {
   bool has_closed_form() const {
     const bool slides = slips(mode_.plate);
     const bool bilinear = slides && inputs_.plate_load.rate != 0 && plate().slope != 0;
-    return !bilinear && !(slides && inputs_.oblique()) && !sheared();
+    return !bilinear && !(slides && inputs_.oblique()) && !lags();
   }
+
+  /// Whether the slider of a compliant finger lags behind the pin: it slips on a sloped branch.
+  bool lags() const { return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0; }
 
   /// Its equation. The state of the skin is its force, or the sliding velocity where the finger slips on
   /// a sloped branch of its curve.
@@ -83,9 +86,9 @@ class SeriesMode {
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
     }
-    if (sheared()) {
-      e.skin_factor = finger().slope;
-      e.skin_gain = e.skin_decay = drive_.finger.stiffness / finger().slope;
+    if (lags()) {
+      e.skin_factor = finger().slope * inputs_.finger_load.value;
+      e.skin_gain = e.skin_decay = drive_.finger.stiffness / e.skin_factor;
     } else if (mode_.finger == ContactState::elastic_stick) {
       e.skin_factor = T(1);
       e.skin_gain = drive_.finger.stiffness;
@@ -105,7 +108,7 @@ class SeriesMode {
   /// The force that stretches the skin, from the state of the skin; 0 of a rigid finger, N.
   T skin_force(T skin) const {
     if (drive_.finger.rigid()) return T(0);
-    if (sheared()) return along(mode_.finger, at_rest(finger())) + finger().slope * skin;
+    if (lags()) return along(mode_.finger, at_rest(finger())) + finger().slope * skin;
     return slips(mode_.finger) ? along(mode_.finger, finger().force) : skin;
   }
 
@@ -175,7 +178,7 @@ class SeriesMode {
     }
     if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
     if (slips(mode_.finger))
-      between(found, along(mode_.finger, T(1)) * (sheared() ? step.skin : step.velocity), finger(),
+      between(found, along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity), finger(),
               at.finger, false, false);
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
@@ -192,11 +195,6 @@ class SeriesMode {
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
-
-  /// Whether the finger's skin lags behind its slider: it slips on a sloped branch.
-  bool sheared() const {
-    return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0;
-  }
 
   void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,
                bool is_plate, bool oblique) const {

@@ -34,7 +34,8 @@ class SeriesSegment {
     used_ = !mode.has_closed_form();
     if (!used_) return false;
     const SeriesEquation<T> equation = mode.equation();
-    const SeriesState<T> start{state.x, state.v, state.skin, acceleration};
+    const bool lags = finger.lags();
+    const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration};
     step_ = series_step(equation, start, span);
     segment.creeps = step_.creeps;
     const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit, no_push});
@@ -62,6 +63,8 @@ class SeriesSegment {
     segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
+    // Of skin whose slider lags, with the rate at which it stretches.
+    if (lags) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
     return true;
   }
 
@@ -72,14 +75,28 @@ class SeriesSegment {
   }
 
   /// Brings the state on by τ, unless the mode has a closed form.
-  void move(State<T>& state, bool elastic, T tau) const {
+  template <class Side>
+  void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {
     using std::abs;
+    using std::sqrt;
     if (!used_) return;
     const SeriesState<T> now = step_.at(tau);
     state.x = now.x;
     state.v = now.v;
     state.x_size = std::max(state.x_size, abs(state.x));
-    if (elastic) state.skin = now.skin;
+    if (finger.elastic()) state.skin = now.skin;
+    if (!finger.lags()) return;
+    state.slide = now.skin;
+    // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
+    // known no better than by what these still carry.
+    const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
+    const T pull = drive.mass * step_.velocity.derivative().at(tau) + drive.damping * state.v +
+                   finger.branch().slope * finger.load.value * state.slide;
+    const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
+    if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
+    if (known > 64 * (1 + drive.damping * still / state.roundoff) * state.x_size) return;
+    state.v = state.slide = T(0);
+    state.x_size = std::max(state.x_size, known);
   }
 
  private:

@@ -47,8 +47,10 @@ class Simulation : private Selection<T, Surface> {
         const Mode after = mode();
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
-        if constexpr (!Surface::plain)
+        if constexpr (!Surface::plain) {
           segment.event.stop = change(segment.mode.stop, after.stop, struck_);
+          if (finger_.drops()) segment.event.finger = Transition::slip;
+        }
         if (Return<T>::watches(segment.mode, after) && !(row_ < never))
           returns_.meet(drive_, segment, after, state_, outcome_);
       } else if (tau == never) {
@@ -95,13 +97,14 @@ class Simulation : private Selection<T, Surface> {
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
     if constexpr (!Surface::plain) stop_.begin(state_);
-    plate_.begin(state_.v, false);
-    finger_.begin(state_.v, given);
+    plate_.begin(state_, false);
+    finger_.begin(state_, given);
   }
 
   /// Flat, as calls would cost a plain release a tenth of its time.
   [[gnu::flatten]] void select() {
     if (!Selected::select()) outcome_.status = Status::inconsistent;
+    if constexpr (!Surface::plain) finger_.land(state_);
   }
 
   /// The segment of the mode that was selected, and its guards.
@@ -184,15 +187,12 @@ class Simulation : private Selection<T, Surface> {
   void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    if constexpr (!Surface::plain) series_.move(state_, finger_.elastic(), tau);
+    if constexpr (!Surface::plain) series_.move(state_, drive_, finger_, tau);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
       state_.move(segment, finger_.elastic());
     }
-    if constexpr (!Surface::plain)
-      if (finger_.sliding())
-        state_.skin = finger_.does.sense * drive_.finger.kinetic * finger_.load.value;
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
     const T across = plate_.across.at(tau);
@@ -210,6 +210,10 @@ class Simulation : private Selection<T, Surface> {
         side.reached = guard.bound;
         if (side.oblique()) continue;
         const T speed = guard.bound == Bound::lower ? side.branch().from : side.branch().to;
+        if (side.lags()) {
+          state_.slide = side.does.sense * speed;
+          continue;
+        }
         state_.v = side.surface.value + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
@@ -222,6 +226,7 @@ class Simulation : private Selection<T, Surface> {
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
     if constexpr (!Surface::plain) {
+      if (finger_.sliding() && !drive_.finger.rigid()) state_.skin = finger_.skin_force(state_);
       land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
       if (stop_.settles(state_) || struck_) begin_at_stop();
     }
@@ -239,9 +244,10 @@ class Simulation : private Selection<T, Surface> {
     struck_ = true;
     state_.v = T(0);
     for (Side* side : {&plate_, &finger_}) {
-      side->does = {};
       side->reached = Bound::none;
-      side->begin(T(0), side == &finger_);
+      if (side->lags()) continue;
+      side->does = {};
+      side->begin(state_, side == &finger_);
     }
     limit_ = 0;
   }

@@ -19,6 +19,7 @@ struct State {
   T skin{0};      ///< force in an elastic stick, N
   T x_size{0};    ///< the largest that the position is a sum of, m
   T roundoff{0};  ///< forces that differ by less are one, N
+  T slide{0};     ///< velocity of the slider of a compliant finger on a sloped branch, m/s
 
   /// Brings it to the end of a segment in closed form.
   void move(const Segment<T>& along, bool elastic) {

@@ -256,12 +256,13 @@ class Stepper {
     if (plain(jump) == 0) return;
     finger.reached = detail::Bound::none;
     const T sense = finger.does.sense;
+    if (finger.sliding() && finger.contact.branches > 0 && !finger.contact.rigid()) return;
     if (finger.sliding() && sense * v > 0) {
       finger.does =
           Option{finger.does.state, detail::Bound::none, finger.contact.branch_of(abs(v)), sense};
     } else {
       finger.does = {};
-      finger.begin(v, true);
+      finger.begin(simulation_.state_, true);
     }
   }
 

@@ -156,8 +156,11 @@ class BySeries {
                               const InputLines<T>& lines) {
     const SeriesMode<T> mode(drive, segment.mode, lines);
     const Path<T>& v = segment.flow.velocity;
-    const SeriesState<T> start{segment.flow.position.start, v.start, -segment.finger_force.start,
-                               v.drift};
+    const Path<T>& of_finger = segment.finger_force;
+    // The slider of a finger that lags is slower than the pin by what the skin stretches.
+    const T skin =
+        mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
+    const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
     if (segment.creeps)
       for (const bool within_step : {true, false})
@@ -168,7 +171,8 @@ class BySeries {
   /// Of a rigid finger, or skin, that slips.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
-    Polynomial<T> force = -branch.slope * load.value * step_.velocity;
+    const bool lags = SeriesMode<T>(drive, mode, {}).lags();
+    Polynomial<T> force = -branch.slope * load.value * (lags ? step_.skin : step_.velocity);
     const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
     force += Line<T>{at_rest * load.value, at_rest * load.rate};
     return force;

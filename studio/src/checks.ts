@@ -124,13 +124,6 @@ export function checkStatic(still: number, kinetic: number, key: string): void {
   throw new Refusal(name, words, `${floatRepr(still)}${unit}`);
 }
 
-export function checkSkin(values: Found): void {
-  const [curve, stiffness] = [frictionOf(values, "finger").curve, values["finger.stiffness"]];
-  if (!curve || curve.length < 2 || stiffness == null) return;
-  const words = "one row for a compliant finger, whose skin would lag behind it";
-  throw new Refusal("finger.curve", words, counted(curve.length, "row"));
-}
-
 /** Refuses what describes end stops without what it needs. */
 export function checkStops(values: Found): void {
   const [travel, stiffness, damping] = STOPS.map((name) => values[`drive.${name}`] ?? null);
@@ -262,7 +255,6 @@ export function problemOf(values: Values): string {
       if (curve) checkCurve(curve, kinetic, ofCurve);
       checkStatic(still, kinetic, ofStatic);
     }
-    checkSkin(found);
     checkStops(found);
     checkWithinTravel(found);
     checkFingerLoad(found);

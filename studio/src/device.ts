@@ -6,7 +6,6 @@ import {
   checkFingerLoad,
   checkOneKind,
   checkRows,
-  checkSkin,
   checkStatic,
   checkStops,
   checkStretch,
@@ -244,7 +243,6 @@ class Reader {
   }
 
   private checkTogether(): void {
-    this.attempt(() => checkSkin(this.values), "finger.curve");
     this.attempt(() => checkStops(this.values), "drive.stop_stiffness", "drive.stop_damping");
     this.attempt(() => checkWithinTravel(this.values), "motion.displacement");
     this.attempt(() => checkFingerLoad(this.values), "motion.finger_load");

@@ -187,14 +187,6 @@ def test_core_gives_the_oracle_answers(family: str) -> None:
     assert not found, "\n".join(found)
 
 
-def test_a_curve_on_compliant_skin_is_refused_with_the_reason() -> None:
-    """Skin lags behind a slope of its friction: a third-order motion, and no damped sinusoid."""
-    curved = Contact(0.01, curve=[(0.0, 0.01), (0.1, 0.005)], stiffness=1000.0)
-    drive = Drive(mass=0.01, stiffness=100.0, damping=0.1, plate=Contact(0.02), finger=curved)
-    with pytest.raises(ValueError, match=r"finger\.curve must be one row for a compliant finger"):
-        simulate(drive, Release(0.1))
-
-
 def check_live(case: Case, oracle: Any, tolerances: Any) -> None:
     run = oracle.solve(case["inputs"], case["duration"], case["times"])
     rows = dict(zip(STATES, np.array(run.rows).T, strict=True))

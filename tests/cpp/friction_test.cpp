@@ -20,7 +20,8 @@ State at(double v, double skin = 0) { return {1e-3, v, skin, 1e-3, 1e-16}; }
 Touch begun(const pd::Contact<double>& contact, double v, double surface = 0) {
   Touch touch(contact);
   touch.surface.value = surface;
-  touch.begin(v, false);
+  State state = at(v);
+  touch.begin(state, false);
   return touch;
 }
 

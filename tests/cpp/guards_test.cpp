@@ -19,7 +19,8 @@ const pd::Contact<double> coulomb{0.1, 0.1};
 Touch slipping(double v, double surface, double rate = 0) {
   Touch touch(coulomb);
   touch.surface = {surface, rate};
-  touch.begin(v, false);
+  pd::detail::State<double> state{0, v};
+  touch.begin(state, false);
   return touch;
 }
 

@@ -19,8 +19,8 @@ struct Carried : pd::detail::Selection<double, pd::Contact<double>> {
       : Base(drive, 0, x, plate.value) {
     limit_ = at_limit;
     plate_.surface = plate;
-    plate_.begin(state_.v, false);
-    finger_.begin(state_.v, false);
+    plate_.begin(state_, false);
+    finger_.begin(state_, false);
     found = select();
   }
   using Base::acceleration_, Base::tangential_, Base::guards_, Base::stick_force_, Base::mode;

@@ -30,8 +30,9 @@ class Random {
   std::uint64_t counter_;
 };
 
-/// Of hands that move along the axis, across it too, or one in ten across; or along it, of pins with stops.
-enum class Family { any, aligned, oblique, stops };
+/// Of hands that move along the axis, across it too, or one in ten across; or along it, of pins with stops or
+/// of fingers that are compliant and have a curve.
+enum class Family { any, aligned, oblique, stops, skin };
 
 class Draw {
  public:
@@ -80,6 +81,7 @@ class Draw {
     const bool oblique = chance(0.1);
     if (family_ == Family::oblique || (family_ == Family::any && oblique)) c.across = across();
     if (family_ == Family::stops) stop(c, critical, length);
+    if (family_ == Family::skin) skin(c, critical, length);
     return c;
   }
 
@@ -114,6 +116,35 @@ class Draw {
     }
     if (std::abs(c.displacement) > c.travel)
       c.displacement = c.travel * (chance(0.3) ? 1 : uniform(-1, 1));
+  }
+
+  /// A friction curve on skin, from soft to stiff, now and then beside stops or under a hand across. It may
+  /// rise, fall or stay, and have no static friction.
+  void skin(Case& c, double critical, double length) {
+    c.skin = c.stiffness * decade(-1, 4);
+    while (c.curve[1].at.size() == 1) c.curve[1] = curve();
+    if (chance(0.3)) std::sort(c.curve[1].value.begin(), c.curve[1].value.end());
+    if (chance(0.3))
+      for (std::size_t i = 1; i < c.curve[1].value.size(); i += 2)
+        c.curve[1].value[i] = c.curve[1].value[i - 1];
+    c.limit[1] = c.curve[1].value[0] * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
+    c.finger_load = {{0}, {chance(0.7) ? 1 : tidy(uniform(0, 2))}};
+    if (chance(0.1)) c.across = across();
+    if (chance(0.2)) stop(c, critical, length);
+    // The steepest rise or fall has the slowest skin, the flattest the fastest.
+    double flattest = never;
+    for (std::size_t i = 1; i < c.curve[1].at.size(); ++i) {
+      const double rise = std::abs(c.curve[1].value[i] - c.curve[1].value[i - 1]);
+      if (rise > 0) flattest = std::min(flattest, rise / (c.curve[1].at[i] - c.curve[1].at[i - 1]));
+    }
+    const double load = c.finger_load.value[0];
+    if (load == 0) return;
+    c.duration = std::min({c.duration, 3 * period_, 2e3 * flattest * load / c.skin});
+    // Where it falls, skin slips and grips the more often the less the friction falls by.
+    double least = c.limit[1];
+    for (const double force : c.curve[1].value) least = std::min(least, force);
+    if (c.limit[1] > least)
+      c.duration = std::min(c.duration, 3e2 * load * (c.limit[1] - least) / (c.skin * speed_));
   }
 
   Rows curve() {

@@ -77,7 +77,7 @@ struct Totals {
   }
 };
 
-inline constexpr std::array<const char*, 4> families{"any", "aligned", "oblique", "stops"};
+inline constexpr std::array<const char*, 5> families{"any", "aligned", "oblique", "stops", "skin"};
 
 /// The family of a name; false if there is none.
 inline bool read(const std::string& name, Family& family) {

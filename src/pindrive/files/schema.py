@@ -23,7 +23,6 @@ from pindrive.motion.drive import (
     Drive,
     check_curve,
     check_one_kind,
-    check_skin,
     check_static,
     check_stops,
     check_stretch,
@@ -240,7 +239,6 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     """What does not fit together between the tables, each of which fits within itself."""
     finger, stretch = contact_of(values, "finger"), values["motion.skin_stretch"]
     problems = Problems(place)
-    problems.check(check_skin, finger, keys=("finger.curve", "finger.stiffness"))
     stops = tuple(f"drive.{name}" for name in ("travel", "stop_stiffness", "stop_damping"))
     travel, stiffness, damping = (values[key] for key in stops)
     problems.check(check_stops, travel, stiffness, damping, keys=(*stops[1:], stops[0]))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.part import Part, checked_by
-from pindrive.quantities.quantity import brief, counted
+from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
 
@@ -289,13 +289,6 @@ def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
     if not by_coefficient and touch_force is not None:
         required = "left out where the finger's friction is given as a force"
         raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
-
-
-def check_skin(finger: Contact) -> None:
-    """Refuse a friction curve at a compliant finger, whose stretch is a third state."""
-    if finger.curved and not finger.rigid:
-        required = "one row for a compliant finger, whose skin would lag behind it"
-        raise ValueError(refusal("finger.curve", required, counted(len(finger.curve or ()), "row")))
 
 
 def check_stops(travel: float | None, stiffness: float | None, damping: float | None) -> None:

@@ -10,7 +10,6 @@ from pindrive.motion.core_numbers import CoreNumbers, Rows
 from pindrive.motion.drive import (
     Contact,
     Drive,
-    check_skin,
     check_stretch,
     check_within_travel,
 )
@@ -129,8 +128,8 @@ def check_fits(drive: Drive, release: Release) -> None:
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a friction curve at a compliant finger; a finger load that changes at either;
-            a displacement beyond rigid end stops.
+            hold; a finger load that changes at a finger with a stiffness or a curve; a
+            displacement beyond rigid end stops.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -138,7 +137,6 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("release", "a Release", repr(release)))
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
-    check_skin(drive.finger)
     check_finger_load(release.finger_load, drive.finger)
     check_within_travel(release.displacement, drive.travel, drive.stop_stiffness)
     if release.skin_stretch is not None:

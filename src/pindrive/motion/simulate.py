@@ -51,7 +51,7 @@ def simulate(
 
     Raises:
         ValueError: a value is no number or out of its range; a compliant plate; a stretch that the
-            skin cannot hold; a friction curve at a compliant finger.
+            skin cannot hold.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.

@@ -83,8 +83,6 @@ def _among(device: DeviceFile, axes: Mapping[str, Axis]) -> Iterator[str]:
     drive = device.drive
     if "finger.touch_force" in axes and drive.finger.coefficient is None:
         yield "finger.touch_force cannot be varied where finger.kinetic is a force"
-    if drive.finger.curved and "finger.stiffness" in axes:
-        yield "finger.stiffness cannot be varied beside finger.curve: skin would lag behind it"
     if "motion.skin_stretch" in axes and drive.finger.rigid and "finger.stiffness" not in axes:
         yield "motion.skin_stretch cannot be varied for a rigid finger; give finger.stiffness"
     for key, link in axes.items():

@@ -1,0 +1,256 @@
+/// The slider of a compliant contact: a point without mass between the skin, which stretches, and the pin, on
+/// which it slides (docs/theory.md, section 11).
+///
+/// Its skin asks of it one friction. Where its curve rises that is one speed, and a plateau leaves it the
+/// speed of the pin; where its curve falls, no speed lasts.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "pindrive/limits.hpp"
+#include "pindrive/model.hpp"
+#include "pindrive/state.hpp"
+
+namespace pindrive::detail {
+
+/// Where a slider is after it has come to an end of what it can do, at once.
+template <class T>
+struct Landing {
+  int branch{0};
+  T speed{0};             ///< along the slip, m/s
+  T friction{0};          ///< under a load of 1, N
+  Bound at{Bound::none};  ///< the end of the branch that it is at
+  bool grips{false};      ///< it does not slide …
+  bool drops{false};      ///< or it slid so fast that the skin has become shorter
+};
+
+/// The landings of a slider on a curve. `pin(F)` is the speed that it has where its friction stays F.
+template <class T, class Pin>
+class Slider {
+ public:
+  Slider(const Contact<T>& contact, Pin pin) : contact_(contact), pin_(pin) {}
+
+  /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
+  /// none does, it is infinitely fast until the skin asks no more than the last.
+  Landing<T> faster(int branch, T asked) const {
+    for (int j = branch;; ++j) {
+      const Branch<T> range = contact_.branch(j);
+      const bool last = !(range.to < never);
+      if (range.slope > 0) {
+        const T most = last ? never : contact_.branch(j + 1).force;
+        if (asked < most) {
+          const T beyond = (asked - range.force) / range.slope;
+          if (beyond > 0) return {j, range.from + beyond, asked};
+          return {j, range.from, range.force, Bound::lower};
+        }
+        if (asked == most && !(pin_(asked) > range.to)) return {j, range.to, asked, Bound::upper};
+      }
+      if (range.slope != 0 || !(last || range.force >= asked)) continue;
+      const bool drops = range.force < asked;
+      const T speed = pin_(range.force);
+      if (speed < range.from && drops) {
+        Landing<T> back = slower(j, range.force);
+        back.drops = true;
+        return back;
+      }
+      if (!(speed > range.from)) return {j, range.from, range.force, Bound::lower, false, drops};
+      if (speed < range.to) return {j, speed, range.force, Bound::none, false, drops};
+    }
+  }
+
+  /// The first speed below the begin of a branch at which its curve carries no more than the friction asked of
+  /// it; without one it grips.
+  Landing<T> slower(int branch, T asked) const {
+    for (int j = branch - 1; j >= 0; --j) {
+      const Branch<T> range = contact_.branch(j);
+      if (range.slope > 0 && asked > range.force) {
+        const bool whole = j + 1 < contact_.branches && asked >= contact_.branch(j + 1).force;
+        if (whole) return {j, range.to, asked, Bound::upper};
+        return {j, range.from + (asked - range.force) / range.slope, asked};
+      }
+      const T speed = pin_(range.force);
+      const bool holds = j == 0 && asked < contact_.static_limit;
+      if (range.slope > 0 && asked == range.force && speed > range.from && !holds)
+        return {j, range.from, range.force, Bound::lower};
+      if (range.slope != 0 || range.force > asked) continue;
+      if (!(speed > range.from)) continue;
+      if (speed < range.to) return {j, speed, range.force};
+      return {j, range.to, range.force, Bound::upper};
+    }
+    return {0, T(0), asked, Bound::none, true};
+  }
+
+ private:
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  const Contact<T>& contact_;
+  Pin pin_;
+};
+
+/// That of a contact without skin.
+struct NoLanding {
+  static constexpr int speed = 0, friction = 0;
+  static constexpr bool drops = false;
+};
+
+/// What a contact may do.
+template <class T>
+struct TouchOption {
+  ContactState state{ContactState::absent};
+  Bound at{Bound::none};
+  int branch{0};
+  T sense{0};  ///< in which it slips: 1, −1 or 0
+};
+
+/// What a compliant contact has beside a rigid one: the part of `Touch` that knows its slider.
+template <class Touch, class T, class Surface>
+class SliderOf {
+ public:
+  /// Whether the velocity of its slider is a state of its own, beside that of the pin.
+  bool lags() const { return compliant() && self().sliding() && self().branch().slope != 0; }
+  /// The speed of its slider, which lags; along its slip.
+  T slide() const { return landed() ? T(landing_.speed) : slid_; }
+  /// By how much the pin is faster than that.
+  T gap(T v) const { return meets_ && slide() == slid_ ? T(0) : self().does.sense * v - slide(); }
+  /// Whether its skin has become shorter at once.
+  bool drops() const { return landed() && landing_.drops; }
+
+  /// What it stretches its skin with as it slips, N.
+  T skin_force(const State<T>& s) const {
+    const Branch<T> range = self().branch();
+    const T sense = self().does.sense;
+    return sense * range.at(lags() ? sense * s.slide : range.from) * self().load.value;
+  }
+  /// Brings the state to where the mode that was selected begins.
+  void land(State<T>& s) const {
+    if (drops()) s.skin = grip(s);
+    if (lags()) s.slide = self().does.sense * slide();
+  }
+
+ protected:
+  /// Its friction under a load of 1 in what it does, N.
+  T carried() const { return landed() ? T(landing_.friction) : self().friction; }
+  /// The force that stretches its skin where it does not slip, N.
+  T grip(const State<T>& s) const {
+    return drops() ? (s.skin < 0 ? T(-1) : T(1)) * carried() * self().load.value : s.skin;
+  }
+  /// The rate of its force where its slider lags: the skin stretches by what the pin is faster.
+  template <class Rate>
+  Rate slip_rate(T v, T acceleration) const {
+    using std::abs;
+    const T stiffness = self().contact.stiffness, sense = self().does.sense;
+    const T faster = stiffness * gap(v) / (self().branch().slope * self().load.value);
+    return {-stiffness * (v - sense * slide()), stiffness * (abs(v) + slide()),
+            -stiffness * (acceleration - sense * faster)};
+  }
+  /// What its slope multiplies, at most.
+  T fastest(T v) const {
+    using std::abs;
+    return lags() ? self().branch().from + slid_ : abs(v) + abs(self().surface.value);
+  }
+
+  bool breaks() const { return compliant() && breaks_; }
+  /// Whether it has neither force nor static friction, so that it may slip either way.
+  bool either_way() const { return compliant() && either_way_; }
+  TouchOption<T> after_landing(T sense) const {
+    if constexpr (!Surface::plain) {
+      if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
+      return Touch::slip(sense, landing_.at, landing_.branch);
+    } else {
+      return Touch::slip(sense, Bound::none);
+    }
+  }
+
+  /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
+  void begin_slider(State<T>& s, T speed) {
+    if constexpr (!Surface::plain) {
+      auto& does = self().does;
+      const Branch<T> range = self().branch();
+      const T asked = range.at(speed);
+      slid_ = speed;
+      s.skin = does.sense * asked * self().load.value;
+      if (range.slope < 0) {
+        landing_ = slider(does.sense, does.sense * speed).slower(does.branch, asked);
+        slid_ = landing_.speed;
+        does = after_landing(does.sense);
+        does.at = Bound::none;
+      }
+      s.slide = does.sense * slid_;
+    }
+  }
+
+  /// Finds out what it may do.
+  void ask_slider(const State<T>& s, T u) {
+    if constexpr (!Surface::plain) {
+      Touch& touch = self();
+      Bound& at = touch.at_;
+      breaks_ = false;
+      meets_ = touch.sliding() && !lags();
+      if (touch.sliding()) {
+        const Branch<T> range = touch.branch();
+        const T speed = touch.sense_ * (lags() ? s.slide : u);
+        const Bound before = at;
+        if (at == Bound::none && speed >= range.to) at = Bound::upper;
+        if (at == Bound::none && !(speed > range.from)) at = Bound::lower;
+        // A pin whose velocity has jumped takes along a slider that does not lag.
+        const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
+        breaks_ = meets_ && before == Bound::none && at != Bound::none &&
+                  jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
+        slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
+        touch.friction = range.at(lags() ? slid_ : range.from);
+        if (at == Bound::none) return;
+        if (at == Bound::upper || touch.branch_ > 0) {
+          const int beyond = touch.branch_ + (at == Bound::upper ? 1 : 0);
+          const T asked = touch.friction = touch.contact.branch(beyond).force;
+          const auto goes = slider(touch.sense_, u);
+          landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
+          touch.count = breaks_ ? 1 : 2;
+          if (at == Bound::upper || !landing_.grips || asked < touch.contact.static_limit) return;
+        }
+      }
+      touch.friction = touch.contact.branch(0).force;
+      touch.count = 1;
+      breaks_ = false;
+      if (touch.before == ContactState::absent) return;
+      at = Bound::none;
+      touch.rest_ = ContactState::elastic_stick;  // with the force that it has
+      const T most = touch.stick_limit();
+      either_way_ = !(most > 0) && s.skin == 0;
+      touch.sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
+      const T pulls = -touch.sense_ * s.skin;
+      if (pulls < most || touch.sense_ * u > 0) return;
+      at = Bound::upper;
+      breaks_ = pulls > most + rounding<T> * most + s.roundoff;
+      landing_ = slider(-touch.sense_, u)
+                     .faster(0, breaks_ ? pulls / touch.load.value : touch.contact.static_limit);
+      touch.count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
+    }
+  }
+
+ private:
+  const Touch& self() const { return static_cast<const Touch&>(*this); }
+  Touch& self() { return static_cast<Touch&>(*this); }
+  bool compliant() const { return !Surface::plain && !self().contact.rigid(); }
+  auto slider(T sense, T u) const {
+    return Slider(self().contact, [=](T) { return sense * u; });
+  }
+
+  /// Whether what it does is where its slider has come to at once.
+  bool landed() const {
+    if (!compliant()) return false;
+    const auto& does = self().does;
+    const bool rests = self().rest_ == ContactState::elastic_stick;
+    const bool elsewhere =
+        rests ? self().sliding() : self().elastic() || does.branch != self().branch_;
+    return breaks_ || does.at != self().at_ || elsewhere;
+  }
+
+  T slid_{0};  ///< the speed of the slider until now, …
+  std::conditional_t<Surface::plain, NoLanding, Landing<T>> landing_{};  ///< … where it comes to, …
+  bool either_way_{false}, breaks_{false};  ///< … whether it could not but go there, …
+  bool meets_{false};                       ///< … and whether it had the speed of the pin
+};
+
+}  // namespace pindrive::detail

@@ -1,0 +1,56 @@
+// Where the slider of a compliant contact goes from an end of its branch.
+#include "pindrive/slider.hpp"
+
+#include <array>
+
+#include "check.hpp"
+
+namespace {
+
+namespace pd = pindrive;
+using check::expect;
+using check::near;
+using pd::detail::Bound;
+
+// Rises to 3 at 0.1 m/s, falls to 1 at 0.2, and stays there from 0.3 on after a rise to 2.
+constexpr std::array<double, 4> speeds{0, 0.1, 0.2, 0.3}, forces{1, 3, 1, 2};
+constexpr std::array<double, 5> level_speeds{0, 0.1, 0.2, 0.3, 0.4}, level_forces{1, 3, 1, 2, 2};
+
+template <std::size_t N>
+auto landings(const std::array<double, N>& u, const std::array<double, N>& f,
+              std::array<pd::Branch<double>, N + 1>& branches, double pin) {
+  const int count = pd::branches_of(u.data(), f.data(), static_cast<int>(N), branches.data());
+  static pd::Contact<double> contact;
+  contact = {f[0], 1.5, 1000.0, branches.data(), count};
+  return pd::detail::Slider(contact, [=](double) { return pin; });
+}
+
+void faster_and_slower() {
+  std::array<pd::Branch<double>, 5> rising{};
+  const auto goes = landings(speeds, forces, rising, 0.01);
+  auto found = goes.faster(0, 1.5);
+  expect(found.branch == 0 && near(found.speed, 0.025, 1e-15) && !found.drops,
+         "from the limit of its grip to the speed that carries it");
+  found = goes.faster(1, 3.0);
+  expect(found.branch == 2 && near(found.speed, 0.4, 1e-15) && !found.drops,
+         "over a fall to the next speed that carries as much");
+  found = goes.slower(2, 1.0);
+  expect(found.grips && found.friction == 1.0, "below the lowest rise it grips");
+  found = goes.slower(2, 2.0);
+  expect(found.branch == 0 && near(found.speed, 0.05, 1e-15), "or slides more slowly");
+
+  std::array<pd::Branch<double>, 6> level{};
+  found = landings(level_speeds, level_forces, level, 0.5).faster(1, 3.0);
+  expect(found.drops && found.friction == 2.0 && found.speed == 0.5 && found.at == Bound::none,
+         "where no speed carries it, the skin is shorter at once and the pin's speed the slider's");
+  found = landings(level_speeds, level_forces, level, 0.01).faster(1, 3.0);
+  expect(found.drops && found.branch == 2 && found.at == Bound::upper,
+         "and beside a slow pin it goes on down from there");
+}
+
+}  // namespace
+
+int main() {
+  faster_and_slower();
+  return check::status();
+}
