@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "interface.hpp"
 #include "pindrive/functions.hpp"
@@ -14,6 +15,7 @@ namespace {
 using pindrive::detail::exp;
 using pindrive::detail::expm1;
 using pindrive::detail::log;
+using pindrive_c::check;
 using pindrive_c::fail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -52,43 +54,44 @@ pindrive_error Magnet::read(const Given& given) {
   const auto number = [&](const char* name, double otherwise = 0) {
     return given.of(name, otherwise).value;
   };
-  const auto wrong = [](const char* name, const char* allowed, double value) {
-    return fail(PINDRIVE_BAD_VALUE, "magnet.%s must be %s, not %.17g", name, allowed, value);
+  pindrive_error error = PINDRIVE_OK;
+  const auto allow = [&](const char* name, double value, bool good, const char* allowed) {
+    if (!error) error = check(name, value, good, allowed);
+  };
+  const auto positive = [&](const char* name, double value) {
+    allow(name, value, value > 0 && value < infinity, "above 0 and finite");
   };
   steps_.clear();
   heat_capacity_ = 0;
   if (given.has("magnet.turns")) {
-    if (const pindrive_error error = read_coil(given)) return error;
+    error = read_coil(given);
   } else {
     const double rise = number("magnet.rise_time"), fall = number("magnet.fall_time");
     saturation_ = number("magnet.saturation");
     hold_force_ = number("magnet.hold_force");
-    if (!(saturation_ > 0 && saturation_ <= 1))
-      return wrong("saturation", "above 0 and at most 1", saturation_);
-    if (!(rise > 0 && rise < infinity)) return wrong("rise_time", "above 0 and finite", rise);
-    if (!(fall > 0 && fall < infinity)) return wrong("fall_time", "above 0 and finite", fall);
-    if (!(hold_force_ > 0 && hold_force_ < infinity))
-      return wrong("hold_force", "above 0 and finite", hold_force_);
+    allow("magnet.saturation", saturation_, saturation_ > 0 && saturation_ <= 1,
+          "above 0 and at most 1");
+    positive("magnet.rise_time", rise);
+    positive("magnet.fall_time", fall);
+    positive("magnet.hold_force", hold_force_);
     rise_constant_ = -rise / log(1 - saturation_ * std::sqrt(0.9));
     fall_constant_ = -fall / log(saturation_ * std::sqrt(0.1));
   }
   residual_ = number("magnet.residual");
-  if (!(residual_ >= 0 && residual_ < hold_force_))
-    return wrong("residual", "at least 0 and less than the full pull", residual_);
+  allow("magnet.residual", residual_, residual_ >= 0 && residual_ < hold_force_,
+        "at least 0 and less than the full pull");
   deviation_ = number("magnet.deviation", 1e-4);
-  if (!(deviation_ >= 1e-8 && deviation_ <= 0.1))
-    return wrong("deviation", "from 1e-8 to 0.1", deviation_);
+  allow("magnet.deviation", deviation_, deviation_ >= 1e-8 && deviation_ <= 0.1,
+        "from 1e-8 to 0.1");
   tolerance_ = (1 - 5 * at_once) * deviation_ * hold_force_ / (hold_force_ - residual_);
   duty_ = number("magnet.pwm_duty", 1);
-  if (!(duty_ > 0 && duty_ <= 1)) return wrong("pwm_duty", "above 0 and at most 1", duty_);
-  frequency_ = number("magnet.pwm_frequency");
-  if (duty_ < 1 && !(frequency_ >= 1 && frequency_ <= 2e4))
-    return wrong("pwm_frequency", "from 1 to 20000", frequency_);
+  allow("magnet.pwm_duty", duty_, duty_ > 0 && duty_ <= 1, "above 0 and at most 1");
+  frequency_ = number("magnet.pwm_frequency", 1);
+  allow("magnet.pwm_frequency", frequency_, frequency_ >= 1 && frequency_ <= 2e4,
+        "from 1 to 20000");
   normal_force_ = given.plate_normal_force().value;
-  if (!(normal_force_ > 0 && normal_force_ < infinity))
-    return fail(PINDRIVE_BAD_VALUE, "weight and plate.preload must be above 0 N, not %.17g",
-                normal_force_);
-  return PINDRIVE_OK;
+  positive("weight and plate.preload", normal_force_);
+  return error;
 }
 
 pindrive_error Magnet::read_coil(const Given& given) {
@@ -103,16 +106,18 @@ pindrive_error Magnet::read_coil(const Given& given) {
   double values[8];
   for (int i = 0; i < 8; ++i) {
     values[i] = given.of(positive[i]).value;
-    if (!(values[i] > 0 && values[i] < infinity))
-      return fail(PINDRIVE_BAD_VALUE, "%s must be above 0 and finite, not %.17g", positive[i],
-                  values[i]);
+    const bool good = values[i] > 0 && values[i] < infinity;
+    if (const pindrive_error error = check(positive[i], values[i], good, "above 0 and finite"))
+      return error;
   }
   const auto [turns, area, gap, wire, length, voltage, most, thermal] = values;
   outer_resistance_ = given.of("magnet.release_resistance").value;
   heat_capacity_ = given.of("magnet.heat_capacity").value;
-  if (!(outer_resistance_ >= 0 && heat_capacity_ >= 0))
-    return fail(PINDRIVE_BAD_VALUE,
-                "magnet.release_resistance and magnet.heat_capacity must be at least 0");
+  for (const auto& [name, value] : {std::pair{"magnet.release_resistance", outer_resistance_},
+                                    std::pair{"magnet.heat_capacity", heat_capacity_}})
+    if (const pindrive_error error =
+            check(name, value, value >= 0 && value < infinity, "at least 0 and finite"))
+      return error;
   own_resistance_ = copper * turns * length / (pi / 4 * wire * wire);
   const double inductance = magnetic_constant * turns * turns * area / (2 * gap);
   const double full = voltage / own_resistance_;
@@ -128,7 +133,8 @@ pindrive_error Magnet::read_coil(const Given& given) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     const Row step{times[i].value, volts[i].value / voltage};
     const bool later = i == 0 ? step.time == 0 : step.time > steps_[i - 1].time;
-    if (!later || !(step.pull >= 0 && step.pull <= 1))
+    const bool within = step.pull >= 0 && step.pull <= 1;
+    if (!later || !within)
       return fail(
           PINDRIVE_BAD_VALUE,
           "magnet.voltage must begin at 0 s, its times increase, and be from 0 V to %.17g V",
