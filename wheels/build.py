@@ -15,6 +15,7 @@ import tempfile
 import time
 import zipfile
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -132,6 +133,7 @@ def environment(python: str | Path, place: Path) -> Path:
     return place / ("Scripts" if os.name == "nt" else "bin")
 
 
+@cache
 def version_of(python: str | Path) -> tuple[int, int]:
     """Of an interpreter: 3, 12."""
     asked = "import sys; print(*sys.version_info[:2])"
