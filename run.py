@@ -14,7 +14,9 @@
     python3 run.py validation         write the published cases and figures of docs/validation.md
     python3 run.py fmu-binaries [PLATFORM...]
                                       compile what FMUs carry for other platforms
-    python3 run.py wheel [--complete] build the sdist and the wheel, judge and try the wheel
+    python3 run.py wheel [--complete] [PYTHON...]
+                                      build the sdist and the wheel, and a wheel for each other
+                                      PYTHON that has none yet; judge them, and try them in each
     python3 run.py bench [NAME [ARG]] time the simulation beside SciPy, or run benchmarks/NAME.py
 
 What is installed is remembered in `.venv/pindrive.json`: requirements are installed again when
@@ -477,9 +479,14 @@ def fmu_binary(name: str) -> Path:
 
 
 def wheel(arguments: list[str]) -> int:
-    """The sdist and the wheel: built, judged and tried; `--complete`: nothing may be missing."""
-    if arguments not in ([], ["--complete"]):
-        stop(f"wheel takes --complete or nothing, not {' '.join(arguments)!r}")
+    """The sdist and the wheels: built, judged and tried; `--complete`: nothing may be missing."""
+    pythons = arguments[1:] if arguments[:1] == ["--complete"] else arguments
+    for python in pythons:
+        if python.startswith("-") or not shutil.which(python):
+            stop(
+                "wheel takes --complete, then interpreters of Python by name or path, "
+                f"not {' '.join(arguments)!r}"
+            )
     install({"wheel"}, project=False)
     return run("python", Path("wheels", "build.py"), *arguments)
 

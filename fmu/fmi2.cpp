@@ -123,8 +123,14 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                        const fmi2Real value[]) {
   return each(c, n, [&](Instance& i, size_t k) { return i.set(vr[k], value[k]); });
 }
-fmi2Status fmi2GetBoolean(fmi2Component, const fmi2ValueReference[], size_t n, fmi2Boolean[]) {
-  return n == 0 ? fmi2OK : fmi2Error;
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                          fmi2Boolean value[]) {
+  return each(c, n, [&](Instance& i, size_t k) {
+    bool flag = false;
+    const pindrive_error error = i.flag(vr[k], flag);
+    value[k] = flag ? fmi2True : fmi2False;
+    return error;
+  });
 }
 fmi2Status fmi2GetString(fmi2Component, const fmi2ValueReference[], size_t n, fmi2String[]) {
   return n == 0 ? fmi2OK : fmi2Error;
@@ -133,9 +139,10 @@ fmi2Status fmi2SetInteger(fmi2Component, const fmi2ValueReference[], size_t n,
                           const fmi2Integer[]) {
   return n == 0 ? fmi2OK : fmi2Error;
 }
-fmi2Status fmi2SetBoolean(fmi2Component, const fmi2ValueReference[], size_t n,
-                          const fmi2Boolean[]) {
-  return n == 0 ? fmi2OK : fmi2Error;
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                          const fmi2Boolean value[]) {
+  return each(c, n,
+              [&](Instance& i, size_t k) { return i.set_flag(vr[k], value[k] != fmi2False); });
 }
 fmi2Status fmi2SetString(fmi2Component, const fmi2ValueReference[], size_t n, const fmi2String[]) {
   return n == 0 ? fmi2OK : fmi2Error;

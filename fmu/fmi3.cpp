@@ -117,6 +117,14 @@ fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
                         size_t) {
   return each(c, n, [&](Instance& i, size_t k) { return i.whole(vr[k], value[k]); });
 }
+fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                          fmi3Boolean value[], size_t) {
+  return each(c, n, [&](Instance& i, size_t k) { return i.flag(vr[k], value[k]); });
+}
+fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                          const fmi3Boolean value[], size_t) {
+  return each(c, n, [&](Instance& i, size_t k) { return i.set_flag(vr[k], value[k]); });
+}
 
 #define PINDRIVE_NO_VARIABLES(type)                                                            \
   fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3##type[], \
@@ -135,7 +143,6 @@ PINDRIVE_NO_VARIABLES(UInt16)
 PINDRIVE_NO_VARIABLES(UInt32)
 PINDRIVE_NO_VARIABLES(Int64)
 PINDRIVE_NO_VARIABLES(UInt64)
-PINDRIVE_NO_VARIABLES(Boolean)
 PINDRIVE_NO_VARIABLES(String)
 #undef PINDRIVE_NO_VARIABLES
 

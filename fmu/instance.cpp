@@ -15,10 +15,6 @@ namespace {
 
 using pindrive_c::fail;
 
-bool begins(const char* text, const char* with) {
-  return std::strncmp(text, with, std::strlen(with)) == 0;
-}
-
 struct FreeDrive {
   void operator()(pindrive_drive* drive) const { pindrive_drive_free(drive); }
 };
@@ -28,44 +24,9 @@ struct FreeRelease {
 using Drive = std::unique_ptr<pindrive_drive, FreeDrive>;
 using Release = std::unique_ptr<pindrive_release, FreeRelease>;
 
-/// The rows of friction curves by the names of their parameters, "plate.curve.speed[1]".
-struct Curve {
-  const char* contact;
-  std::vector<double> speeds, forces;
-
-  bool take(const char* name, double value) {
-    const std::size_t length = std::strlen(contact);
-    if (!begins(name, contact) || !begins(name + length, ".curve.")) return false;
-    (begins(name + length, ".curve.s") ? speeds : forces).push_back(value);
-    return true;
-  }
-};
-
-/// Gives a drive and a release the values of parameters and inputs; kinetic friction before static friction,
-/// which it sets.
-pindrive_error fill(pindrive_drive* drive, pindrive_release* release,
-                    const std::vector<Variable>& variables, const double* values) {
-  Curve curves[] = {{"plate", {}, {}}, {"finger", {}, {}}};
-  pindrive_error error = PINDRIVE_OK;
-  for (std::size_t i = 0; i < variables.size(); ++i)
-    if (!curves[0].take(variables[i].name, values[i])) curves[1].take(variables[i].name, values[i]);
-  for (const Curve& curve : curves)
-    if (!curve.speeds.empty() && !error)
-      error = pindrive_drive_set_curve(drive, curve.contact, curve.speeds.data(),
-                                       curve.forces.data(), curve.speeds.size());
-  for (std::size_t i = 0; i < variables.size() && !error; ++i) {
-    const auto& [kind, name, start, place] = variables[i];
-    if (kind == Variable::input && place % 2 == 0)
-      error = pindrive_release_set(release, name, values[i]);
-    if (kind != Variable::parameter || std::strstr(name, ".curve.")) continue;
-    if (begins(name, "drive."))
-      error = pindrive_drive_set(drive, name + std::strlen("drive."), values[i]);
-    else if (begins(name, "motion."))
-      error = pindrive_release_set(release, name + std::strlen("motion."), values[i]);
-    else
-      error = pindrive_drive_set(drive, name, values[i]);
-  }
-  return error;
+/// The plate's load is what the magnet makes of it, from now on.
+pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double time) {
+  return pindrive_stepper_set(stepper, "plate_load", magnet.load(time), magnet.load_rate());
 }
 
 }  // namespace
@@ -99,18 +60,25 @@ double Instance::value_of_input(std::size_t place, const double* values) const {
   return 0;
 }
 
-/// A stepper at its start; with seeds its derivatives along them.
-pindrive_error Instance::make(const double* seeds, Stepper& stepper) const {
+/// A stepper at its start, with its magnet; with seeds its derivatives along them.
+pindrive_error Instance::make(const double* seeds, Stepper& stepper, Magnet& magnet) const {
   const Drive drive(pindrive_drive_new());
   const Release release(pindrive_release_new());
   const double* const values = values_.start.data();
+  const Given given(variables_, values, seeds);
   pindrive_stepper* made = nullptr;
-  pindrive_error error = fill(drive.get(), release.get(), variables_, values);
+  pindrive_error error = magnet.begin(given, values_.begin);
+  const Number load = magnet.present() ? Magnet::first_load(given) : Number(1);
+  if (!error) error = fill(drive.get(), release.get(), given, &Number::value);
+  if (!error && magnet.present())
+    error = pindrive_release_set(release.get(), "plate_load", load.value);
   if (error) return error;
   if (seeds) {
     const Drive along(pindrive_drive_rate_new(drive.get()));
     const Release of_release(pindrive_release_rate_new(release.get()));
-    error = fill(along.get(), of_release.get(), variables_, seeds);
+    error = fill(along.get(), of_release.get(), given, &Number::slope);
+    if (!error && magnet.present())
+      error = pindrive_release_set(of_release.get(), "plate_load", load.slope);
     if (!error)
       error = pindrive_stepper_differentiate(drive.get(), release.get(), along.get(),
                                              of_release.get(), values_.begin, &made);
@@ -128,12 +96,20 @@ pindrive_error Instance::make(const double* seeds, Stepper& stepper) const {
                                          value_of_input(place + 1, seeds));
     place += 2;
   }
+  for (std::size_t i = 0; i < variables_.size() && !error; ++i)
+    if (variables_[i].kind == Variable::command && values[i] != 0) {
+      magnet.command(true, values_.begin);
+      error = pulled(made, magnet, values_.begin);
+      if (seeds && !error) error = pindrive_stepper_set_along(made, "plate_load", load.slope, 0);
+    }
   if (error) stepper.reset();
   return error;
 }
 
 /// Before the initialisation has ended the stepper is made where something is asked of it.
-pindrive_error Instance::followed() { return stepper_ ? PINDRIVE_OK : make(nullptr, stepper_); }
+pindrive_error Instance::followed() {
+  return stepper_ ? PINDRIVE_OK : make(nullptr, stepper_, magnet_);
+}
 
 pindrive_error Instance::initialise() {
   const pindrive_error error = followed();
@@ -177,8 +153,17 @@ pindrive_error Instance::now(double& time) {
 pindrive_error Instance::next_event(double& time) {
   pindrive_instant now;
   const pindrive_error error = instant(now);
-  if (!error) time = now.next_event;
-  return error;
+  if (error) return error;
+  time = now.next_event;
+  if (!magnet_.present()) return PINDRIVE_OK;
+  if (magnet_.next() > now.time) {
+    time = std::min(time, magnet_.next());
+  } else {  // a line of the pull ends now: its next one is not the stepper's yet
+    Magnet ahead = magnet_;
+    ahead.pass(now.time);
+    time = std::min(time > now.time ? time : ahead.next(), ahead.next());
+  }
+  return PINDRIVE_OK;
 }
 
 pindrive_error Instance::number(std::size_t reference, double& value) {
@@ -191,19 +176,32 @@ pindrive_error Instance::number(std::size_t reference, double& value) {
     return PINDRIVE_OK;
   }
   pindrive_instant now;
-  const pindrive_error error = instant(now);
+  pindrive_error error = instant(now);
   if (error) return error;
   if (asked->kind == Variable::input) {
     const Input& input = inputs[asked->place / 2];
     value = now.*(asked->place % 2 == 0 ? input.value : input.rate);
     return PINDRIVE_OK;
   }
-  if (asked->place > next_event_time)
-    return fail(PINDRIVE_BAD_VALUE, "%s is a whole number", asked->name);
+  if (asked->kind == Variable::command || asked->place >= plate_state)
+    return fail(PINDRIVE_BAD_VALUE, "%s is no real number", asked->name);
   if (asked->place < next_event_time)
     return pindrive_stepper_evaluate(stepper_.get(), asked->place, &value);
-  value = std::min(now.next_event, std::numeric_limits<double>::max());
-  return PINDRIVE_OK;
+  switch (asked->place) {
+    case magnet_current:
+      value = magnet_.current(now.time);
+      return PINDRIVE_OK;
+    case magnet_pull:
+      value = magnet_.pull(now.time);
+      return PINDRIVE_OK;
+    case magnet_warming:
+      value = magnet_.warming(now.time);
+      return PINDRIVE_OK;
+    default:
+      error = next_event(value);
+      value = std::min(value, std::numeric_limits<double>::max());
+      return error;
+  }
 }
 
 pindrive_error Instance::whole(std::size_t reference, int& value) {
@@ -216,26 +214,64 @@ pindrive_error Instance::whole(std::size_t reference, int& value) {
   return error;
 }
 
-pindrive_error Instance::set(std::size_t reference, double value) {
-  const Variable* const given = variable(reference);
+pindrive_error Instance::flag(std::size_t reference, bool& value) {
+  const Variable* const asked = variable(reference);
+  if (!asked) return PINDRIVE_BAD_VALUE;
+  if (asked->kind != Variable::command)
+    return fail(PINDRIVE_BAD_VALUE, "%s is no Boolean", asked->name);
+  value = values_.initialised ? magnet_.state().command != 0 : values_.start[reference - 1] != 0;
+  return PINDRIVE_OK;
+}
+
+/// What may be set now; before the initialisation has ended all but outputs.
+pindrive_error Instance::settable(std::size_t reference, const Variable*& given) const {
+  given = variable(reference);
   if (!given) return PINDRIVE_BAD_VALUE;
   if (given->kind == Variable::output)
     return fail(PINDRIVE_BAD_VALUE, "%s is an output, which cannot be set", given->name);
+  if (values_.initialised && given->kind == Variable::parameter)
+    return fail(PINDRIVE_BAD_VALUE,
+                "%s is a fixed parameter: it is set before the initialisation ends", given->name);
+  return PINDRIVE_OK;
+}
+
+pindrive_error Instance::set(std::size_t reference, double value) {
+  const Variable* given = nullptr;
+  pindrive_error error = settable(reference, given);
+  if (error) return error;
+  if (given->kind == Variable::command)
+    return fail(PINDRIVE_BAD_VALUE, "%s is a Boolean", given->name);
   if (!values_.initialised) {
     values_.start[reference - 1] = value;
     stepper_.reset();
     return PINDRIVE_OK;
   }
-  if (given->kind == Variable::parameter)
-    return fail(PINDRIVE_BAD_VALUE,
-                "%s is a fixed parameter: it is set before the initialisation ends", given->name);
   pindrive_instant now;
-  const pindrive_error error = instant(now);
+  error = instant(now);
   if (error) return error;
   const Input& input = inputs[given->place / 2];
   const bool rate = given->place % 2 == 1;
   return pindrive_stepper_set(stepper_.get(), input.name, rate ? now.*input.value : value,
                               rate ? value : now.*input.rate);
+}
+
+pindrive_error Instance::set_flag(std::size_t reference, bool value) {
+  const Variable* given = nullptr;
+  pindrive_error error = settable(reference, given);
+  if (error) return error;
+  if (given->kind != Variable::command)
+    return fail(PINDRIVE_BAD_VALUE, "%s is no Boolean", given->name);
+  if (!values_.initialised) {
+    values_.start[reference - 1] = value ? 1 : 0;
+    stepper_.reset();
+    return PINDRIVE_OK;
+  }
+  pindrive_instant now;
+  error = instant(now);
+  if (error || value == (magnet_.state().command != 0)) return error;
+  magnet_.command(value, now.time);
+  magnet_.pass(now.time);
+  return pulled(stepper_.get(), magnet_, now.time);
 }
 
 pindrive_error Instance::set_rate(std::size_t reference, double rate) {
@@ -259,23 +295,31 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
   if (!(size >= 0) || !std::isfinite(size))
     return fail(PINDRIVE_BAD_VALUE, "a step must be finite and at least 0 s long, not %.9g s",
                 size);
-  error = pindrive_stepper_step(stepper_.get(), std::max(from + size, at.time), may_end_early);
-  if (!error) error = instant(at);
-  happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
+  const double until = std::max(from + size, at.time);
+  do {  // what is due at the end of the step waits for the next one: a command may come first
+    if (magnet_.present() && magnet_.next() <= at.time) {
+      magnet_.pass(at.time);
+      error = pulled(stepper_.get(), magnet_, at.time);
+    }
+    const double next = magnet_.present() ? std::min(until, magnet_.next()) : until;
+    if (!error) error = pindrive_stepper_step(stepper_.get(), next, may_end_early);
+    if (!error) error = instant(at);
+    happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
+  } while (!error && at.time < until && !(may_end_early && happens));
   return error;
 }
 
 pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
                                     const double* seeds, std::size_t count, double& value) {
   const int which = place(unknown, Variable::output);
-  if (which < 0 || which >= next_event_time)
+  if (which < 0 || which == next_event_time || which >= plate_state)
     return fail(PINDRIVE_BAD_VALUE,
                 "a derivative is had of outputs that are real, but not of the next event");
   std::vector<double> along(variables_.size(), 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     const Variable* const known = variable(knowns[i]);
     if (!known) return PINDRIVE_BAD_VALUE;
-    if (known->kind == Variable::output ||
+    if (known->kind == Variable::output || known->kind == Variable::command ||
         (known->kind == Variable::parameter && values_.initialised))
       return fail(PINDRIVE_BAD_VALUE,
                   "a derivative is had along inputs and, before the initialisation ends, "
@@ -283,10 +327,18 @@ pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
                   known->name);
     along[knowns[i] - 1] = seeds[i];
   }
+  if (which >
+      next_event_time) {  // of the magnet: no input changes it, and at first its residual pull alone
+    value = which == magnet_pull
+                ? Given(variables_, values_.start.data(), along.data()).of("magnet.residual").slope
+                : 0;
+    return PINDRIVE_OK;
+  }
   Stepper changing;
   pindrive_error error = PINDRIVE_OK;
   if (!values_.initialised) {
-    error = make(along.data(), changing);
+    Magnet magnet;
+    error = make(along.data(), changing, magnet);
   } else {
     pindrive_stepper* made = nullptr;
     error = followed();
@@ -322,6 +374,7 @@ pindrive_error copy(const Stepper& stepper, Stepper& copied) {
 pindrive_error Instance::keep(std::unique_ptr<State>& state) const {
   auto kept = std::make_unique<State>();
   kept->values = values_;
+  kept->coil = magnet_.state();
   const pindrive_error error = copy(stepper_, kept->stepper);
   if (!error) state = std::move(kept);
   return error;
@@ -329,9 +382,14 @@ pindrive_error Instance::keep(std::unique_ptr<State>& state) const {
 
 pindrive_error Instance::go_back(const State& state) {
   Stepper stepper;
-  const pindrive_error error = copy(state.stepper, stepper);
+  Magnet magnet;
+  pindrive_error error = copy(state.stepper, stepper);
+  if (!error && stepper)
+    error = magnet.begin({variables_, state.values.start.data(), nullptr}, state.values.begin);
+  if (!error && magnet.present()) error = magnet.go_back(state.coil);
   if (error) return error;
   values_ = state.values;
+  magnet_ = std::move(magnet);
   stepper_ = std::move(stepper);
   return PINDRIVE_OK;
 }
@@ -346,6 +404,7 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
   for (const double number : state.values.start) add(number);
   add(state.values.begin);
   add(static_cast<unsigned char>(state.values.initialised));
+  add(state.coil);
   if (!state.stepper) return PINDRIVE_OK;
   const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
   bytes.resize(before + size);
@@ -354,7 +413,8 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
 
 pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
                               std::unique_ptr<State>& state) const {
-  const std::size_t numbers = variables_.size() * sizeof(double) + sizeof(double) + 1;
+  const std::size_t before = variables_.size() * sizeof(double) + sizeof(double) + 1;
+  const std::size_t numbers = before + sizeof(CoilState);
   const auto refused = [&] {
     return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit, not %zu",
                 size);
@@ -365,7 +425,8 @@ pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
   values.start.resize(variables_.size());
   std::memcpy(values.start.data(), bytes, variables_.size() * sizeof(double));
   std::memcpy(&values.begin, bytes + variables_.size() * sizeof(double), sizeof(double));
-  values.initialised = bytes[numbers - 1] != 0;
+  values.initialised = bytes[before - 1] != 0;
+  std::memcpy(&found->coil, bytes + before, sizeof(CoilState));
   if (size > numbers) {
     pindrive_stepper* stepper = nullptr;
     if (const pindrive_error error =

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "magnet.hpp"
 #include "pindrive.h"
 #include "variables.hpp"
 
@@ -16,9 +17,9 @@ struct FreeStepper {
 };
 using Stepper = std::unique_ptr<pindrive_stepper, FreeStepper>;
 
-/// What of an instance changes while it lives, but for its stepper.
+/// What of an instance changes while it lives, but for its stepper and its magnet.
 struct Values {
-  std::vector<double> start;  ///< of parameters and inputs, by number
+  std::vector<double> start;  ///< of parameters and inputs, by number; of a command 0 or 1
   double begin{0};            ///< start time, s
   bool initialised{false};
 };
@@ -36,7 +37,9 @@ class Instance {
 
   pindrive_error number(std::size_t reference, double& value);
   pindrive_error whole(std::size_t reference, int& value);  ///< of the states of the contacts
+  pindrive_error flag(std::size_t reference, bool& value);  ///< of a command
   pindrive_error set(std::size_t reference, double value);
+  pindrive_error set_flag(std::size_t reference, bool value);
   pindrive_error set_rate(std::size_t reference, double rate);  ///< of an input
 
   pindrive_error now(double& time);
@@ -49,6 +52,7 @@ class Instance {
 
   struct State {
     Values values;
+    CoilState coil;
     Stepper stepper;
   };
   pindrive_error keep(std::unique_ptr<State>& state) const;
@@ -62,13 +66,15 @@ class Instance {
   int place(std::size_t reference, Variable::Kind kind) const;
   const char* name(std::size_t reference) const;
   double value_of_input(std::size_t place, const double* values) const;
-  pindrive_error make(const double* seeds, Stepper& stepper) const;
+  pindrive_error make(const double* seeds, Stepper& stepper, Magnet& magnet) const;
+  pindrive_error settable(std::size_t reference, const Variable*& given) const;
   pindrive_error followed();
   pindrive_error instant(pindrive_instant& now);
 
   std::vector<char> list_;  ///< holds the names
   std::vector<Variable> variables_;
   Values values_;
+  Magnet magnet_;
   Stepper stepper_;
 };
 

@@ -16,9 +16,10 @@ namespace {
 
 using pindrive_c::fail;
 
-constexpr const char* outputs[] = {"position",     "velocity",    "acceleration", "plate_force",
-                                   "finger_force", "stretch",     "stretch_rate", "next_event_time",
-                                   "plate_state",  "finger_state"};
+constexpr const char* outputs[] = {
+    "position",       "velocity",     "acceleration",    "plate_force",    "finger_force",
+    "stretch",        "stretch_rate", "next_event_time", "magnet_current", "magnet_pull",
+    "magnet_warming", "plate_state",  "finger_state"};
 
 /// Where a name stands among the inputs, each followed by its rate, or among the outputs; −1: nowhere.
 int place_of(Variable::Kind kind, const char* name) {
@@ -82,7 +83,7 @@ pindrive_error read_variables(const char* path, const char* token, std::vector<c
                               std::vector<Variable>& variables) {
   if (const pindrive_error error = content_of(path, list)) return error;
   char* text = list.data();
-  if (std::strcmp(next_word(text), "pindrive-fmu-1") != 0)
+  if (std::strcmp(next_word(text), "pindrive-fmu-2") != 0)
     return fail(PINDRIVE_BAD_VALUE, "the list of variables must be one of this version: %.200s",
                 path);
   const char* const own = next_word(text);
@@ -92,11 +93,13 @@ pindrive_error read_variables(const char* path, const char* token, std::vector<c
     Variable variable{};
     variable.kind = std::strcmp(kind, "parameter") == 0 ? Variable::parameter
                     : std::strcmp(kind, "input") == 0   ? Variable::input
+                    : std::strcmp(kind, "command") == 0 ? Variable::command
                                                         : Variable::output;
     variable.name = next_word(text);
     variable.place = place_of(variable.kind, variable.name);
     const char* const bits = next_word(text);
-    if (std::strlen(bits) != 16 || (variable.kind != Variable::parameter && variable.place < 0))
+    const bool placed = variable.kind == Variable::input || variable.kind == Variable::output;
+    if (std::strlen(bits) != 16 || (placed && variable.place < 0))
       return fail(PINDRIVE_BAD_VALUE, "the line of %.60s cannot be read in %.120s", variable.name,
                   path);
     const std::uint64_t number = std::strtoull(bits, nullptr, 16);

@@ -22,14 +22,25 @@ constexpr Input inputs[] = {
 constexpr const char* rate_ending = "_rate";
 
 /// The places of outputs that are none of pindrive_quantity, which come first.
-enum Output : signed char { next_event_time = PINDRIVE_SKIN_STRETCH_RATE + 1, plate_state };
+enum Output : signed char {
+  next_event_time = PINDRIVE_SKIN_STRETCH_RATE + 1,
+  magnet_current,
+  magnet_pull,
+  magnet_warming,
+  plate_state
+};
 
 /// A variable of the unit; its number is its place in the list, from 1 on. Number 0 is the time.
 struct Variable {
-  enum Kind : signed char { parameter, input, output } kind;
+  enum Kind : signed char {
+    parameter,
+    input,
+    command,
+    output
+  } kind;  ///< a command is a Boolean input
   const char* name;
   double start;
-  int place;  ///< among the inputs, each followed by its rate, or among the outputs; −1: a parameter
+  int place;  ///< among the inputs, each followed by its rate, or among the outputs; −1: of another kind
 };
 
 /// A list of variables as `drive.txt` has it: a head with the token, then a line for each: kind, name and the

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import run
-from wheels.build import contents, faults
+from wheels.build import contents, faults, serves
 
 WORKFLOWS = sorted((run.ROOT / ".github" / "workflows").glob("*.yml"))
 PROJECT = tomllib.loads((run.ROOT / "pyproject.toml").read_text("utf-8"))
@@ -47,6 +47,13 @@ def test_what_is_wrong_with_a_wheel(
 
 def test_without_complete_the_page_and_other_platforms_may_be_missing() -> None:
     assert faults(GOOD, 1.0, [WHOLE[0], LIBRARIES[0]], complete=False) == []
+
+
+def test_a_wheel_of_the_stable_abi_serves_later_pythons() -> None:
+    stable, own = Path(GOOD), Path(GOOD.replace("cp312-abi3", "cp311-cp311"))
+    versions = [(3, 11), (3, 12), (3, 13), (3, 14)]
+    assert [serves(stable, version) for version in versions] == [False, True, True, True]
+    assert [serves(own, version) for version in versions] == [True, False, False, False]
 
 
 @pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
@@ -101,7 +108,7 @@ def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> Non
     assert {"device", "certificate", "command", "version"} <= set(asked)
 
 
-@pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "x"]])
+@pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "no-python"]])
 def test_arguments_of_wheel(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
         run.wheel(arguments)

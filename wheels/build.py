@@ -1,6 +1,6 @@
-"""Builds the sdist and from it the wheel, judges them, and tries the wheel where nothing else is.
+"""Builds the sdist and from it wheels, judges them, and tries them where nothing else is.
 
-Called by `python3 run.py wheel [--complete]`; both are left in build/dist.
+Called by `python3 run.py wheel [--complete] [PYTHON...]`; all are left in build/dist.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import subprocess
 import sys
 import tempfile
 import time
-import venv
 import zipfile
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -92,7 +92,7 @@ def call(what: str, *command: str | Path, **options: object) -> str:
 
 
 def build() -> tuple[Path, Path]:
-    """The sdist and the wheel made from it, which on Linux is given its manylinux tag."""
+    """The sdist and the wheel made from it by this Python."""
     shutil.rmtree(DIST, ignore_errors=True)
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder)
@@ -100,25 +100,67 @@ def build() -> tuple[Path, Path]:
         call("building the sdist, and the wheel from it", *module, ROOT)
         (sdist,) = made.glob("*.tar.gz")
         (wheel,) = made.glob("*.whl")
-        if sys.platform == "linux":
-            audited = made / "audited"
-            repair = (sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", audited, wheel)
-            call("auditing it", *repair)
-            (wheel,) = audited.glob("*.whl")
         DIST.mkdir(parents=True)
-        return Path(shutil.copy2(sdist, DIST)), Path(shutil.copy2(wheel, DIST))
+        return Path(shutil.copy2(sdist, DIST)), kept(wheel)
 
 
-def try_out(wheel: Path) -> tuple[float, float]:
+def build_with(python: str, sdist: Path) -> Path:
+    """The wheel that another Python makes of an sdist, with what it fetches to build it."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        programs = environment(python, place / "venv")
+        making = (programs / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", place)
+        call(f"building the wheel of {name_of(python)}", *making, sdist)
+        (wheel,) = place.glob("*.whl")
+        return kept(wheel)
+
+
+def kept(wheel: Path) -> Path:
+    """The wheel in build/dist: on Linux with its manylinux tag, of the stable ABI as it says."""
+    with tempfile.TemporaryDirectory() as folder:
+        if sys.platform == "linux":
+            repair = (sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", folder, wheel)
+            call("auditing it", *repair)
+            (wheel,) = Path(folder).glob("*.whl")
+        if tags(wheel.name)[1] == "abi3":
+            call("auditing its ABI", sys.executable, "-m", "abi3audit", "--strict", wheel)
+        return Path(shutil.copy2(wheel, DIST))
+
+
+def environment(python: str | Path, place: Path) -> Path:
+    """Makes a new environment of a Python, with pip alone; where its programs are."""
+    call("making an environment", python, "-m", "venv", place)
+    return place / ("Scripts" if os.name == "nt" else "bin")
+
+
+@cache
+def version_of(python: str | Path) -> tuple[int, int]:
+    """Of an interpreter: 3, 12."""
+    asked = "import sys; print(*sys.version_info[:2])"
+    said = call(f"asking {python} for its version", python, "-c", asked).split()
+    return int(said[0]), int(said[1])
+
+
+def name_of(python: str | Path) -> str:
+    """Python 3.12."""
+    return "Python {}.{}".format(*version_of(python))
+
+
+def serves(wheel: Path, version: tuple[int, int]) -> bool:
+    """Whether a wheel is for that version of Python."""
+    python, abi, _ = tags(wheel.name)
+    own = (3, int(python.removeprefix("cp3")))
+    return version >= own if abi == "abi3" else version == own
+
+
+def try_out(wheel: Path, python: str | Path) -> tuple[float, float]:
     """Seconds of the installation of a wheel and of the first command after it.
 
     It goes into a new environment, where no program is found but that environment's, so neither a
     compiler nor CMake, and it runs in an empty folder.
     """
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder, "venv")
-        venv.create(place, with_pip=True)
-        programs = place / ("Scripts" if os.name == "nt" else "bin")
+        programs = environment(python, Path(folder, "venv"))
         kept = ("SYSTEMROOT", "TEMP", "TMP", "HOME", "USERPROFILE", "PIP_INDEX_URL")
         bare = {name: os.environ[name] for name in kept if name in os.environ}
         bare |= {"PATH": str(programs), "PYTHONUTF8": "1"}
@@ -134,6 +176,18 @@ def try_out(wheel: Path) -> tuple[float, float]:
     return between - begin, end - between
 
 
+def judge(wheel: Path, *, complete: bool) -> list[str]:
+    """What is wrong with a wheel; prints what is in it."""
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    page, platforms = contents(names)
+    size = wheel.stat().st_size / 1e6
+    print(f"{wheel.relative_to(ROOT)}: {size:.2f} MB of {LARGEST:g} MB")
+    print(f"  studio page: {'yes' if page else 'no, `python3 run.py studio` builds it'}")
+    print(f"  FMU libraries: {', '.join(platforms) or 'none'}")
+    return faults(wheel.name, size, names, complete=complete)
+
+
 def main() -> int:
     """Builds, judges and tries; the exit status."""
     parser = argparse.ArgumentParser(prog="run.py wheel", description=__doc__)
@@ -142,21 +196,26 @@ def main() -> int:
         action="store_true",
         help="fail where the studio page or the FMU library for a platform is missing",
     )
-    complete = parser.parse_args().complete
-    sdist, wheel = build()
-    with zipfile.ZipFile(wheel) as archive:
-        names = archive.namelist()
-    page, platforms = contents(names)
-    size = wheel.stat().st_size / 1e6
-    wrong = faults(wheel.name, size, names, complete=complete)
-    installing, simulating = try_out(wheel)
-    if simulating > SLOWEST:
-        wrong.append(f"the first command took {simulating:.1f} s of {SLOWEST:g} s")
+    parser.add_argument("pythons", nargs="*", metavar="PYTHON", help="other interpreters")
+    arguments = parser.parse_args()
+    sdist, first = build()
     print(f"{sdist.relative_to(ROOT)}: {sdist.stat().st_size / 1e6:.2f} MB")
-    print(f"{wheel.relative_to(ROOT)}: {size:.2f} MB of {LARGEST:g} MB")
-    print(f"studio page: {'yes' if page else 'no, `python3 run.py studio` builds it'}")
-    print(f"FMU libraries: {', '.join(platforms) or 'none'}")
-    print(f"installed in {installing:.1f} s, first `pindrive simulate` in {simulating:.1f} s")
+    wheels, wrong = [first], judge(first, complete=arguments.complete)
+    for python in (sys.executable, *arguments.pythons):
+        version = version_of(python)
+        wheel = next((each for each in wheels if serves(each, version)), None)
+        if wheel is None:
+            wheel = build_with(python, sdist)
+            wheels.append(wheel)
+            wrong += judge(wheel, complete=arguments.complete)
+        installing, simulating = try_out(wheel, python)
+        if simulating > SLOWEST:
+            wrong.append(f"the first command took {simulating:.1f} s of {SLOWEST:g} s")
+        print(
+            f"{name_of(python)}: {wheel.name} installed in {installing:.1f} s, "
+            f"first `pindrive simulate` in {simulating:.1f} s",
+            flush=True,
+        )
     for line in wrong:
         print(f"wheel: {line}", file=sys.stderr)
     return 1 if wrong else 0

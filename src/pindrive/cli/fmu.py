@@ -30,13 +30,15 @@ def fmu(
     """Write the drive of a device file as a functional mock-up unit (FMU) for co-simulation.
 
     What a release lets change over time is an input, with its rate: mouse velocity, plate load,
-    force, velocity across and, for a rigid finger, its load. All other values of the drive and its
-    release are parameters. It follows the pin exactly, whatever the steps of the importer.
+    force, velocity across and, for a rigid finger, its load. Of a file of the whole device, the
+    unit is one pin with its magnet: an input magnet_on, as the control block has it, takes the
+    place of the plate load. All other values that the motion depends on are parameters. It follows
+    the pin exactly, whatever the steps of the importer.
 
     Rows of an input in the file are not in it: what the importer sets takes their place.
     """
     from pindrive.files.device import load_device
-    from pindrive.files.fmu import inputs_of, variables_of, write_fmu
+    from pindrive.files.fmu import COMMAND, inputs_of, variables_of, write_fmu
     from pindrive.files.output import FMU, Output, naming, writing
     from pindrive.motion.profile import Profile
 
@@ -51,6 +53,10 @@ def fmu(
                 f"warning: {name} is an input and starts at {given(0.0):g}; its rows are left out",
                 err=True,
             )
-    kinds = [variable.kind for variable in variables_of(device)]
+    if device.whole and device.release.plate_load != 1.0:
+        typer.echo(
+            f"warning: plate_load is left out; the input {COMMAND} takes its place", err=True
+        )
+    kinds = [variable.causality for variable in variables_of(device)]
     counts = (f"{kinds.count(kind)} {kind}s" for kind in ("parameter", "input", "output"))
     typer.echo(f"Wrote {output}, FMI {fmi}.0 for co-simulation: {', '.join(counts)}")

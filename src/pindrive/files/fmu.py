@@ -18,10 +18,13 @@ from uuid import UUID
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
+from pindrive.device.electromagnet import DIRECT
 from pindrive.files.device import DeviceFile
-from pindrive.motion.drive import Contact
+from pindrive.files.template import NUMBERS
+from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS
+from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Quantity
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
@@ -37,6 +40,9 @@ _PLATFORMS_2: Final = {
 }
 """What FMI 2 calls the platforms for which it has a name, by their names in FMI 3."""
 
+_TYPES_2: Final = {"Float": "Real", "Int": "Integer", "Boolean": "Boolean"}
+_TYPES_3: Final = {"Float": "Float64", "Int": "Int32", "Boolean": "Boolean"}
+"""What FMI 2 and 3 call the types of variables."""
 _OUTPUTS: Final = (
     *("position", "velocity", "acceleration", "plate_force", "finger_force"),
     *("stretch", "stretch_rate"),
@@ -53,10 +59,34 @@ _BASE: Final = {
     "N/s": {"kg": 1, "m": 1, "s": -3},
     "N/m": {"kg": 1, "s": -2},
     "N*s/m": {"kg": 1, "s": -1},
+    "Hz": {"s": -1},
+    "m^2": {"m": 2},
+    "K": {"K": 1},
+    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
+    "ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
+    "T": {"kg": 1, "s": -2, "A": -1},
+    "K/W": {"K": 1, "kg": -1, "m": -2, "s": 3},
+    "J/K": {"kg": 1, "m": 2, "s": -2, "K": -1},
 }
 """The units of its variables by powers of those of the SI."""
 _RATES: Final = {"m/s": "m/s^2", "1": "1/s", "N": "N/s"}
 """The units of the rates of inputs by those of the inputs."""
+
+
+ELSEWHERE: Final = {
+    "motion.duration": "the stop time of the default experiment",
+    "motion.settling_band": "judges a motion, does not change it",
+    "magnet.outer_diameter": "says whether the device can be built",
+    "magnet.height": "says whether the device can be built",
+    "magnet.temperature_rise": "judges the warming, does not change it",
+    "control": "what commands the magnet is the importer's",
+    "array": "the unit is one pin of it",
+    "scan": "how a hand reads: the importer moves the plate",
+    "judge": "judges what is felt, does not change it",
+}
+"""The keys and tables of a device file that are no variables of its unit, and why."""
+COMMAND: Final = "magnet_on"
+"""The input that commands the magnet of a whole device, in place of the plate's load."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,46 +95,62 @@ class Variable:
 
     name: str
     kind: str
-    """"parameter", "input" or "output"."""
+    """"parameter", "input", "command" (a Boolean input) or "output"."""
     meaning: str
     unit: str
     start: float | None = None
-    """SI; None: an output."""
+    """SI; of a command 0 or 1; None: an output."""
     least: float = -inf
     largest: float = inf
     whole: bool = False
     """Whether it is a whole number, which changes at events only."""
 
+    @property
+    def type(self) -> str:
+        """Float, Int or Boolean."""
+        return "Boolean" if self.kind == "command" else "Int" if self.whole else "Float"
+
+    @property
+    def causality(self) -> str:
+        """As FMI calls it."""
+        return "input" if self.kind == "command" else self.kind
+
 
 def variables_of(device: DeviceFile) -> list[Variable]:
     """The variables of a device's drive, in the order of their numbers, which begin with 1.
 
-    Parameters are the keys that the file gives, or whose values hold where it does not: damping
-    stands for a damping ratio, rows of friction curves are parameters one by one.
+    Parameters are the keys as the file gives them, or whose values hold where it does not; rows
+    are parameters one by one. A file of the whole device has the magnet too, whose command is an
+    input in place of the plate's load.
     """
-    return [*_parameters(device), *_inputs(device), *_outputs()]
+    magnet = _magnet_outputs(device) if device.whole else ()
+    return [*_parameters(device), *_inputs(device), *_outputs(magnet)]
 
 
 def _parameters(device: DeviceFile) -> Iterator[Variable]:
-    drive, release = device.drive, device.release
-    for name in ("mass", "stiffness", "damping"):
-        yield _given(f"drive.{name}", QUANTITIES[name], getattr(drive, name))
-    for place in ("plate", "finger"):
-        contact: Contact = getattr(drive, place)
-        for i, (speed, force) in enumerate(contact.curve or (), 1):
-            for column, value in (("speed", speed), ("force", force)):
-                yield _given(f"{place}.curve.{column}[{i}]", QUANTITIES[f"curve.{column}"], value)
-        if not contact.curve:
-            yield _given(f"{place}.kinetic", QUANTITIES[f"{place}.kinetic"], contact.kinetic)
-        static = contact.static_friction
-        yield _given(f"{place}.static", QUANTITIES[f"{place}.static"], static)
-        if not contact.rigid:
-            row = QUANTITIES["finger.stiffness"]
-            yield _given(f"{place}.stiffness", row, contact.stiffness)
-    for name in ("displacement", "velocity", "skin_stretch", "finger_load"):
-        value = getattr(release, name)
-        if name not in inputs_of(device) and value is not None:
-            yield _given(f"motion.{name}", QUANTITIES[name], value)
+    values = device.values()
+    left_out = {*device.derived, *ELSEWHERE, *(f"motion.{name}" for name in inputs_of(device))}
+    for contact in ("plate", "finger"):
+        for kinetic, static, rows in (tuple(COEFFICIENTS), tuple(COEFFICIENTS.values())):
+            if values[f"{contact}.{rows}"] is not None:  # its first row is the kinetic friction
+                left_out.add(f"{contact}.{kinetic}")
+            if values[f"{contact}.{static}"] is None:
+                values[f"{contact}.{static}"] = values[f"{contact}.{kinetic}"]
+    if device.whole:
+        left_out.add("motion.plate_load")
+    if device.whole and device.whole.magnet().coil:
+        left_out.update(f"magnet.{name}" for name in DIRECT)
+    for key, value in values.items():
+        if value is None or key in left_out or key.partition(".")[0] in ELSEWHERE:
+            continue
+        row = NUMBERS[key]
+        if not isinstance(value, tuple):
+            yield _given(key, row, value)
+            continue
+        across, along = COLUMNS[row.rows_of]
+        for i, (first, second) in enumerate(value, 1):
+            yield _given(f"{key}.{across.rpartition('.')[2]}[{i}]", QUANTITIES[across], first)
+            yield _given(f"{key}.{along.rpartition('.')[2]}[{i}]", row, second)
 
 
 def _given(name: str, row: Quantity, value: float) -> Variable:
@@ -115,10 +161,13 @@ def _given(name: str, row: Quantity, value: float) -> Variable:
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     """The inputs that its unit has, without their rates: those of a release.
 
-    The load of a finger with a stiffness or a curve is a parameter, as it cannot change.
+    The load of a finger with a stiffness or a curve is a parameter, as it cannot change; that of
+    the plate is what the magnet makes of its command, where the file describes the magnet.
     """
     finger = device.drive.finger
-    fixed = () if finger.rigid and not finger.curved else ("finger_load",)
+    fixed = {"finger_load"} if not finger.rigid or finger.curved else set()
+    if device.whole:
+        fixed.add("plate_load")
     return tuple(name for name in INPUTS if name not in fixed)
 
 
@@ -131,18 +180,32 @@ def _inputs(device: DeviceFile) -> Iterator[Variable]:
         yield Variable(name, "input", row.meaning, row.unit, value, limits.lower, limits.upper)
         meaning = f"rate at which {name} continues until it is set again"
         yield Variable(f"{name}_rate", "input", meaning, _RATES[row.unit], 0.0)
+    if device.whole:
+        meaning = "whether the magnet is commanded on, as by the control block"
+        yield Variable(COMMAND, "command", meaning, "", 0.0)
 
 
-def _outputs() -> Iterator[Variable]:
+def _outputs(magnet: Iterable[Variable]) -> Iterator[Variable]:
     for name in _OUTPUTS:
         yield Variable(name, "output", SERIES[name].meaning, SERIES[name].unit)
     meaning = (
         "no contact changes before, if the inputs continue as they do; 1.8e308 if none ever does"
     )
     yield Variable("next_event_time", "output", meaning, "s")
+    yield from magnet
     for contact in ("plate", "finger"):
         meaning = f"what the contact with the {contact} does: {_STATES}"
         yield Variable(f"{contact}_state", "output", meaning, "", None, -1, 3, whole=True)
+
+
+def _magnet_outputs(device: DeviceFile) -> Iterator[Variable]:
+    assert device.whole
+    meaning = "current in the coil, a part of the full one at 20 °C"
+    yield Variable("magnet_current", "output", meaning, "1")
+    yield Variable("magnet_pull", "output", "pull of the magnet on the plate", "N")
+    coil = device.whole.magnet().coil
+    if coil and coil.heat_capacity is not None:
+        yield Variable("magnet_warming", "output", "warming of the coil above 20 °C", "K")
 
 
 # ---- the archive ---------------------------------------------------------------------------------
@@ -152,7 +215,7 @@ def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
     """Write a device's drive as a functional mock-up unit for co-simulation.
 
     Args:
-        device: a device file; of the whole device its drive and its release alone.
+        device: a device file; of the whole device one pin with its magnet.
         path: the archive.
         version: of FMI, one of `VERSIONS`.
 
@@ -198,7 +261,7 @@ def _listed(variables: Iterable[Variable]) -> tuple[str, bytes]:
     ]
     digest = sha256("\n".join(lines).encode()).digest()
     token = f"{{{UUID(bytes=digest[:16], version=4)}}}"
-    return token, "\n".join(["pindrive-fmu-1", token, *lines, ""]).encode()
+    return token, "\n".join(["pindrive-fmu-2", token, *lines, ""]).encode()
 
 
 # ---- the descriptions ----------------------------------------------------------------------------
@@ -239,6 +302,8 @@ def _attributes(variable: Variable) -> dict[str, str]:
     found = {"unit": variable.unit} if variable.unit in _BASE else {}
     if variable.unit in DISPLAY and variable.unit in _BASE:
         found["displayUnit"] = DISPLAY[variable.unit][0]
+    if variable.type == "Boolean":
+        return {"start": "true" if variable.start else "false"}
     write = (lambda value: str(int(value))) if variable.whole else _number
     if isfinite(variable.least):
         found["min"] = write(variable.least)
@@ -252,7 +317,7 @@ def _attributes(variable: Variable) -> dict[str, str]:
 def _variability(variable: Variable) -> str:
     if variable.kind == "parameter":
         return "fixed"
-    discrete = variable.whole or variable.name == "next_event_time"
+    discrete = variable.type != "Float" or variable.name == "next_event_time"
     return "discrete" if discrete else "continuous"
 
 
@@ -262,7 +327,7 @@ def _described(variable: Variable, reference: int) -> dict[str, str]:
         "name": variable.name,
         "valueReference": str(reference),
         "description": variable.meaning,
-        "causality": variable.kind,
+        "causality": variable.causality,
         "variability": _variability(variable),
         **initial.get(variable.kind, {}),
     }
@@ -305,7 +370,7 @@ def _description_2(device: DeviceFile, variables: list[Variable], token: str) ->
         if variable.name.endswith("_rate") and variable.kind == "input":
             described["variability"] = "discrete"  # no rate of a rate is taken
         entry = SubElement(listed, "ScalarVariable", described)
-        SubElement(entry, "Integer" if variable.whole else "Real", _attributes(variable))
+        SubElement(entry, _TYPES_2[variable.type], _attributes(variable))
         if variable.kind == "output":
             for parent in (outputs, unknowns):
                 SubElement(parent, "Unknown", {"index": str(reference)})
@@ -336,7 +401,7 @@ def _description_3(device: DeviceFile, variables: list[Variable], token: str) ->
     references = []
     for reference, variable in enumerate(variables, 1):
         described = _described(variable, reference) | _attributes(variable)
-        SubElement(listed, "Int32" if variable.whole else "Float64", described)
+        SubElement(listed, _TYPES_3[variable.type], described)
         if variable.kind == "output":
             references.append(str(reference))
     for tag in ("Output", "InitialUnknown"):

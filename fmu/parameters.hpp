@@ -1,0 +1,44 @@
+/// The parameters of a unit, by the keys of a device file, and the drive and release that they describe.
+#pragma once
+
+#include <vector>
+
+#include "pindrive.h"
+#include "pindrive/dual.hpp"
+#include "variables.hpp"
+
+namespace pindrive_fmu {
+
+using Number = pindrive::Dual<double>;
+
+/// The values of all variables, with how they change along a direction.
+class Given {
+ public:
+  /// `seeds` may be null: nothing changes then. All are kept by the caller.
+  Given(const std::vector<Variable>& variables, const double* values, const double* seeds)
+      : variables_(variables), values_(values), seeds_(seeds) {}
+
+  const std::vector<Variable>& variables() const { return variables_; }
+  Number at(std::size_t i) const { return {values_[i], seeds_ ? seeds_[i] : 0}; }
+  bool has(const char* name) const { return find(name) < variables_.size(); }
+  /// Where there is none of that name, `otherwise`.
+  Number of(const char* name, Number otherwise = 0) const;
+  /// Those of "name[1]", "name[2]" …
+  std::vector<Number> rows(const char* name) const;
+
+  /// What presses the magnet on the plate while it does not pull, N: weight and preload.
+  Number plate_normal_force() const;
+
+ private:
+  std::size_t find(const char* name) const;
+
+  const std::vector<Variable>& variables_;
+  const double* values_;
+  const double* seeds_;
+};
+
+/// Gives a drive and a release what is given, or, by `part`, how that changes.
+pindrive_error fill(pindrive_drive* drive, pindrive_release* release, const Given& given,
+                    double Number::* part);
+
+}  // namespace pindrive_fmu

@@ -1,0 +1,358 @@
+"""Whole devices as functional mock-up units: the command of the magnet, and every key."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
+
+from command import run
+from fmu_unit import Unit, unpacked
+from pindrive import Page, Profile, Release, Scan, load_device, scan, simulate
+from pindrive.device.current import CoilState, Commands
+from pindrive.files.device import DeviceFile
+from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
+from pindrive.files.template import NUMBERS
+from pindrive.motion.release import INPUTS
+
+READER = Path(__file__).resolve().parents[2] / "examples" / "tactile-reader.toml"
+COIL = """
+turns = 250
+pole_area = "3 mm^2"
+gap = "0.05 mm"
+wire_diameter = "0.1 mm"
+turn_length = "8.5 mm"
+supply_voltage = "1 V"
+release_resistance = "2 ohm"
+saturation_field = "0.5 T"
+"""
+MAGNETS = {
+    "times": 'hold_force = "1 N"\nresidual = "20 mN"\nsaturation = 0.8',
+    "pulses": 'hold_force = "1 N"\npwm_frequency = "400 Hz"\npwm_duty = 0.6',
+    "coil": COIL + 'thermal_resistance = "400 K/W"',
+    "steps": COIL + 'voltage = [["0 ms", "1 V"], ["6 ms", "0.4 V"], ["15 ms", "0.2 V"]]',
+    "warm": COIL + 'heat_capacity = "0.4 mJ/K"\ntemperature_rise = "20 K"',
+    "warm pulses": COIL + 'heat_capacity = "0.4 mJ/K"\npwm_frequency = "300 Hz"\npwm_duty = 0.7',
+}
+DEVICE = """
+[device]
+name = "one pin of a reader"
+
+[drive]
+mass = "1 g"
+stiffness = "250 N/m"
+damping_ratio = 0.5
+
+[plate]
+coefficient = 0.225
+static_coefficient = 0.27
+preload = "5 mN"
+
+[finger]
+coefficient = 0.5
+static_coefficient = 0.6
+touch_force = "30 mN"
+
+[motion]
+displacement = "0 mm"
+velocity = "0 mm/s"
+
+[magnet]
+{magnet}
+
+[array]
+pin_diameter = "1.5 mm"
+"""
+
+
+@cache
+def scanned(magnet: str, folder: Path) -> tuple[DeviceFile, Scan]:
+    """A device with that magnet, and one pin of it over two lines."""
+    path = folder / "device.toml"
+    path.write_text(DEVICE.format(magnet=MAGNETS[magnet]), "utf-8")
+    device = load_device(path, {"scan.hand_speed": "90 mm/s"})
+    return device, scan(device, Page(grating=["5 mm"]))
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("magnet", MAGNETS)
+def test_commands_lead_to_what_a_scan_has(
+    magnet: str, version: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Under the scan's hand and commands, in steps of random length, with states gone back to."""
+    folder = tmp_path_factory.getbasetemp() / magnet.replace(" ", "-")
+    folder.mkdir(exist_ok=True)
+    device, scanned_page = scanned(magnet, folder)
+    (pin,) = scanned_page.pins
+    hand = pin.release.mouse_velocity
+    assert isinstance(hand, Profile) and len(pin.commands.times) >= 4
+    archive = folder / f"fmi{version}.fmu"
+    unit = Unit(*unpacked(device, archive, version)).begin(mouse_velocity=0.0)
+    assert validate_fmu(str(archive)) == []
+    random = np.random.default_rng(3)
+    times = np.array(hand.times)
+    switchings = pin.commands.times - pin.begin
+    stops = np.unique([*times, *switchings, pin.end - pin.begin])
+    looks = np.linspace(pin.begin, pin.end, 500)
+    size, fastest = (np.abs(f(looks)).max() for f in (pin.position, pin.velocity))
+    worst, astray, on = 0.0, 0, False
+    for begin, end in zip([0.0, *stops], stops, strict=False):
+        if end <= begin:
+            continue
+        i = np.searchsorted(times, begin, "right") - 1
+        if i >= 0 and i + 1 < len(times):
+            rate = (hand.values[i + 1] - hand.values[i]) / (times[i + 1] - times[i])
+            unit.set(mouse_velocity=hand(begin), mouse_velocity_rate=rate)
+        if begin in switchings:
+            on = not on
+            unit.command(magnet_on=on)
+        assert unit.commanded("magnet_on") == on
+        unit.step(random.uniform(begin, end))
+        if random.integers(10) == 0:
+            state = unit.slave.getFMUState()
+            kept, at = unit.slave.serializeFMUState(state), unit.time
+            before = unit.get("position", "velocity", "magnet_pull", "magnet_current")
+            unit.command(magnet_on=not on)
+            unit.step(at + 0.004)
+            assert unit.get("magnet_pull") != before[2:3]
+            if random.integers(2):
+                unit.slave.freeFMUState(state)
+                state = unit.slave.deserializeFMUState(kept)
+            unit.slave.setFMUState(state)
+            unit.slave.freeFMUState(state)
+            unit.time, astray = at, astray + 1
+            assert unit.get("position", "velocity", "magnet_pull", "magnet_current") == before
+        unit.step(end)
+        x, v, pull, current = unit.get("position", "velocity", "magnet_pull", "magnet_current")
+        load = pin.release.plate_load
+        assert isinstance(load, Profile)
+        normal_force = device.drive.normal_force
+        assert pull == pytest.approx((load(end) - 1.0) * normal_force, abs=1e-12 * size + 1e-13)
+        assert current == pytest.approx(pin.current(end + pin.begin), rel=1e-12, abs=1e-15)
+        if "warm" in magnet:
+            (warming,) = unit.get("magnet_warming")
+            (expected,) = pin.current.warming([end + pin.begin])
+            assert warming == pytest.approx(expected, rel=1e-11, abs=1e-12)
+        worst = max(
+            worst,
+            abs(x - pin.position(end + pin.begin)) / size,
+            abs(v - pin.velocity(end + pin.begin)) / fastest,
+        )
+    print(f"{magnet}, FMI {version}: within {worst:.1e}, {astray} states gone back to")
+    assert worst < 1e-12 and astray > 5
+
+
+def test_steps_end_early_under_a_command(tmp_path: Path) -> None:
+    """At each event of a contact, and what is said of the next one is never too late."""
+    device, _ = scanned("times", tmp_path)
+    unit = Unit(
+        *unpacked(device, tmp_path / "pin.fmu", 3), eventModeUsed=True, earlyReturnAllowed=True
+    )
+    unit.begin(mouse_velocity=0.05)
+    unit.slave.enterStepMode()
+    unit.command(magnet_on=True)
+    found: list[float] = []
+    while unit.time < 0.05:
+        before = unit.time
+        (known,) = unit.get("next_event_time")
+        assert known > before
+        happens, _, early, time = unit.step(0.05)
+        assert early == (time < 0.05) and time >= min(known, 0.05)
+        if happens:
+            found.append(time)
+            unit.slave.enterEventMode()
+            *_, defined, following = unit.slave.updateDiscreteStates()
+            assert not defined or following > time
+            unit.slave.enterStepMode()
+    magnet = device.device.magnet
+    times, pull = magnet.pull_rows(
+        magnet.current(Commands(np.array([0.0])), CoilState(-1e-9)), 0.06
+    )
+    release = Release(0.05, 0.0, 0.0, Profile(times.tolist(), device.device.load(pull).tolist()))
+    events = simulate(device.drive, release, duration=0.05).events
+    assert found == pytest.approx([e.time for e in events if e.time > 0.0], rel=1e-9)
+
+
+# Between them the files give every key that a motion depends on, each by another way than the rest.
+FORCES = """
+[drive]
+mass = "10 g"
+stiffness = "100 N/m"
+damping = "0.4 N*s/m"
+travel = "5 mm"
+stop_stiffness = "1 kN/m"
+stop_damping = "0.1 N*s/m"
+
+[plate]
+{plate}
+
+[finger]
+{finger}
+
+[motion]
+mouse_velocity = "60 mm/s"
+displacement = "1 mm"
+velocity = "10 mm/s"
+plate_load = 1.5
+force = "1 mN"
+across_velocity = "1 mm/s"
+finger_load = 1.0
+"""
+CURVE, COEFFICIENTS_CURVE = (
+    '[["0 mm/s", "20 mN"], ["50 mm/s", "15 mN"]]',
+    '[["0 mm/s", 0.3], ["50 mm/s", 0.2]]',
+)
+FILES = (
+    FORCES.format(
+        plate='kinetic = "20 mN"\nstatic = "25 mN"',
+        finger='kinetic = "5 mN"\nstatic = "6 mN"\nstiffness = "300 N/m"',
+    )
+    + 'skin_stretch = "0.001 mm"',
+    FORCES.format(
+        plate=f'static = "25 mN"\ncurve = {CURVE}', finger=f'static = "25 mN"\ncurve = {CURVE}'
+    ),
+    FORCES.format(
+        plate=f"static_coefficient = 0.4\ncoefficient_curve = {COEFFICIENTS_CURVE}",
+        finger=f'touch_force = "1 N"\ncoefficient_curve = {COEFFICIENTS_CURVE}',
+    ),
+    DEVICE.format(magnet=MAGNETS["times"] + '\npwm_frequency = "1 kHz"\npwm_duty = 0.5'),
+    DEVICE.format(magnet=MAGNETS["steps"] + '\nheat_capacity = "1 J/K"'),
+)
+
+
+def test_every_key_of_the_table_is_a_variable(tmp_path: Path) -> None:
+    """By its own name and with the file's value in SI, or it stands in the list of reasons."""
+    path, seen = tmp_path / "device.toml", set()
+    for text in FILES:
+        path.write_text(text, "utf-8")
+        device = load_device(path)
+        variables = {v.name: v for v in variables_of(device)}
+        values = device.values()
+        for key in NUMBERS:
+            table, _, name = key.partition(".")
+            value = values.get(key)
+            if table == "motion" and name in inputs_of(device):
+                assert variables[name].kind == "input" and variables[name].start == value
+                assert variables[f"{name}_rate"].kind == "input"
+                seen.add(key)
+            elif key in variables:
+                assert variables[key].kind == "parameter"
+                assert variables[key].start == value or (value is None and "static" in name)
+                seen.add(key)
+            elif isinstance(value, tuple) and key not in device.derived:
+                rows = [v.start for n, v in variables.items() if n.startswith(f"{key}.")]
+                assert rows == [number for row in value for number in row]
+                seen.add(key)
+            else:
+                assert (
+                    value is None
+                    or key in {*device.derived, *ELSEWHERE, "motion.plate_load"}
+                    or table in ELSEWHERE
+                    or (device.whole and table == "magnet" and device.whole.magnet().coil)
+                    or (name in ("kinetic", "coefficient") and f"{table}.curve" in str(variables))
+                    or values.get(f"{table}.coefficient_curve")
+                    or values.get(f"{table}.curve")
+                ), key
+    assert {f"motion.{name}" for name in INPUTS} <= seen
+    left_out = {key for key in NUMBERS if key in ELSEWHERE or key.partition(".")[0] in ELSEWHERE}
+    assert seen == NUMBERS.keys() - left_out
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_parameter_does_what_the_key_does(version: int, tmp_path: Path) -> None:
+    """Set by an importer or in the device file: the same motion."""
+    device, _ = scanned("times", tmp_path)
+    path = tmp_path / "steps.toml"
+    path.write_text(DEVICE.format(magnet=MAGNETS["warm"]), "utf-8")
+    changes: list[tuple[DeviceFile, dict[str, float]]] = [
+        (
+            device,
+            {
+                "drive.mass": 0.0012,
+                "drive.damping_ratio": 0.3,
+                "plate.coefficient": 0.2,
+                "plate.static_coefficient": 0.25,  # the file would keep its ratio
+                "plate.preload": 0.02,
+                "finger.touch_force": 0.01,
+                "motion.displacement": 0.0002,
+                "magnet.hold_force": 0.7,
+                "magnet.rise_time": 0.004,
+                "magnet.fall_time": 0.003,
+                "magnet.saturation": 0.6,
+                "magnet.residual": 0.03,
+                "magnet.deviation": 0.001,
+            },
+        ),
+        (
+            load_device(path),
+            {
+                "magnet.turns": 200.0,
+                "magnet.gap": 4e-5,
+                "magnet.supply_voltage": 1.4,
+                "magnet.saturation_field": 0.4,
+                "magnet.release_resistance": 5.0,
+                "magnet.heat_capacity": 1e-3,
+            },
+        ),
+    ]
+    for of, values in changes:
+        ends: list[float] = []
+        for file, start in ((of, values), (load_device(of.path, values), {})):
+            archive = tmp_path / f"{of.path.stem}-{len(ends)}.fmu"
+            unit = Unit(*unpacked(file, archive, version))
+            started = {key.replace(".", "__"): value for key, value in start.items()}
+            unit.begin(mouse_velocity=0.05, **started)
+            for until in (0.011, 0.023, 0.031, 0.06):
+                unit.command(magnet_on=until < 0.03)
+                unit.step(until)
+                ends += unit.get("position", "velocity", "plate_force", "magnet_pull")
+        first, second = ends[:16], ends[16:]
+        assert first == pytest.approx(second, rel=1e-11, abs=1e-15)
+    unit = Unit(*unpacked(device, tmp_path / "pin.fmu", version))
+    with pytest.raises(FMICallException):
+        unit.begin(magnet__deviation=0.0)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_derivatives_along_what_presses(
+    version: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    device, _ = scanned("times", tmp_path)
+    unit = Unit(*unpacked(device, tmp_path / "pin.fmu", version))
+    if version == 2:
+        unit.slave.setupExperiment(startTime=0.0)
+    unit.slave.enterInitializationMode()
+    unit.set(mouse_velocity=0.05)
+    for name, size in (
+        ("drive.mass", 1e-3),
+        ("plate.preload", 0.01),
+        ("plate.coefficient", 0.2),
+        ("magnet.residual", 0.02),
+    ):
+        (at,) = unit.slave.getReal([unit.numbers[name]]) if version == 2 else unit.get(name)
+        key = name.replace(".", "__")
+        ends: list[float] = []
+        for value in (at - 1e-4 * size, at + 1e-4 * size):
+            unit.set(**{key: value})
+            ends += unit.get("plate_force")
+        unit.set(**{key: at})
+        slope = (ends[1] - ends[0]) / (2e-4 * size)
+        assert slope > 0.01
+        assert unit.derivative("plate_force", **{key: 1.0}) == pytest.approx(slope, rel=1e-6)
+    assert unit.derivative("magnet_pull", magnet__residual=1.0) == 1.0
+    with pytest.raises(FMICallException):
+        unit.set(magnet_on=1.0)
+    assert "magnet_on is a Boolean" in capsys.readouterr().out
+    with pytest.raises(FMICallException):
+        unit.command(position=True)
+    assert "position is an output" in capsys.readouterr().out
+
+
+def test_the_command_says_what_takes_the_place_of_the_load(tmp_path: Path) -> None:
+    done = run("fmu", str(READER), "-o", str(tmp_path / "pin.fmu"), "--set", "plate_load=2")
+    assert "plate_load is left out; the input magnet_on takes its place" in done.stderr
+    assert "parameters, 7 inputs, 12 outputs" in done.stdout
