@@ -111,8 +111,11 @@ class EndStops {
     };
     const int end = side(does);
     if (does == StopState::apart) {
-      beyond(1, -1);
-      beyond(-1, -1);
+      Path<T> position = flow.position;
+      position.start = s.x;
+      const int near = sense(position);
+      beyond(near, -1);
+      beyond(-near, -1);
       return;
     }
     const int sense = touches(does) ? 1 : -1;
