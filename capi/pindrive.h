@@ -211,7 +211,7 @@ enum {
   PINDRIVE_FINGER_FORCE = 4,     /* friction of the finger on the pin, N */
   PINDRIVE_SKIN_STRETCH = 5,     /* of a compliant finger, m */
   PINDRIVE_SKIN_STRETCH_RATE = 6, /* m/s */
-  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N; not of a stepper */
+  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N */
 };
 
 /* Which limit is asked for at an event. */
@@ -377,6 +377,8 @@ typedef struct pindrive_instant {
   double finger_load, finger_load_rate;          /* 1, 1/s */
   pindrive_contact_state plate, finger;          /* from now on */
   pindrive_transition plate_event, finger_event; /* what happens now */
+  int stop;                                      /* as in a segment */
+  pindrive_transition stop_event;                /* what happens now */
 } pindrive_instant;
 
 PINDRIVE_API pindrive_error pindrive_stepper_now(const pindrive_stepper *stepper,
