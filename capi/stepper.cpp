@@ -442,7 +442,7 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
       if (quantity == PINDRIVE_STOP_FORCE)
         return pd::result(
             pd::stop_force_along(along, of.drive(), of.segment(), lines.force, tau));
-      return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
+      return value_along(along, tau, of.drive(), friction, quantity);
     });
   });
   return PINDRIVE_OK;

@@ -91,6 +91,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
   T time{0}, end{0};  // of the last visit; value where the last segment ended
   const auto add = [&](T at, T value) {
     time = at;
+    if (quantity == Quantity::position) value = drive.stops.within(value);
     return more = goes_on(visit, at, value);
   };
   const auto jumps = [&](const Flow<T>& flow, T value) {

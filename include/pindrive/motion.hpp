@@ -114,6 +114,12 @@ class Motion {
     return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
   }
 
+  /// Position, velocity or acceleration, after τ in a segment.
+  T value(const Segment<T>& segment, T tau, Quantity quantity) const {
+    const T found =
+        along(segment, [&](const auto& t) { return t.at(quantity_of(t, quantity), tau); });
+    return quantity == Quantity::position ? drive_.stops.within(found) : found;
+  }
   Friction<T> friction(const Segment<T>& segment, T tau) const {
     return along(segment, [&](const auto& t) {
       const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };

@@ -166,9 +166,12 @@ struct Cut {
       stretch = -motion.friction(*segment, tau).finger / whole.skin;
   }
 
-  /// What follows; moved by a part of the sizes of the motion where it can be.
+  /// What follows; moved by a part of the sizes of the motion where it can be, and damped by as much more
+  /// than it is, as what strikes a stop forgets where it came from.
   Followed follow(const Place& most, double part) const {
-    return {rest, x + part * most[0], held ? v : v + part * most[1], stretch};
+    Case moved = rest;
+    moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
+    return {moved, x + part * most[0], held ? v : v + part * most[1], stretch + part * most[0]};
   }
 
   const pd::Segment<double>* segment{};
