@@ -350,7 +350,7 @@ PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 /* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
  * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
  * fallen to zero stays there. A finger_load that changes needs a rigid finger without a curve. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
- * velocity, to the plate too. Where the velocity across jumps the pin keeps its velocity as well, and the
+ * velocity, to the plate too, unless a rigid end stop takes it along. Where the velocity across jumps the pin keeps its velocity as well, and the
  * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
  * it is a number, which does not change along the direction. */
 PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
@@ -362,7 +362,7 @@ PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper *derivat
                                                        double rate);
 
 /* Goes on to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
- * a contact until then. */
+ * a contact or an end stop until then. */
 PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper *stepper, double until,
                                                   int stop_at_event);
 

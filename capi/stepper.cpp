@@ -24,8 +24,11 @@ class Followed {
 
   static pd::Drive<T> drive(const pd::Numbers& at, const pd::Numbers& along,
                             const Followed& owner) {
-    return {pd::number<T>(at.mass, along.mass), pd::number<T>(at.stiffness, along.stiffness),
-            pd::number<T>(at.damping, along.damping), owner.plate_.contact, owner.finger_.contact,
+    return {pd::number<T>(at.mass, along.mass),
+            pd::number<T>(at.stiffness, along.stiffness),
+            pd::number<T>(at.damping, along.damping),
+            owner.plate_.contact,
+            owner.finger_.contact,
             pd::stops<T>(at.stops, along.stops)};
   }
 
@@ -430,8 +433,8 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
   if (!stepper) return null_pointer("stepper");
   if (!value) return null_pointer("value");
   if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_STOP_FORCE)
-    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d",
-                PINDRIVE_STOP_FORCE, quantity);
+    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d", PINDRIVE_STOP_FORCE,
+                quantity);
   *value = stepper->ask([&](const auto& of) {
     const auto tau = of.tau();
     const auto lines = of.lines();
@@ -440,8 +443,7 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
         return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
       };
       if (quantity == PINDRIVE_STOP_FORCE)
-        return pd::result(
-            pd::stop_force_along(along, of.drive(), of.segment(), lines.force, tau));
+        return pd::result(pd::stop_force_along(along, of.drive(), of.segment(), lines.force, tau));
       return value_along(along, tau, of.drive(), friction, quantity);
     });
   });

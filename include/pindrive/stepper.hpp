@@ -342,9 +342,9 @@ class Stepper {
   T far_{far_for(drive_)};  ///< s
   Inputs<T, Held<T>> inputs_;
   Simulation simulation_;
-  T now_;       ///< s
+  T now_;          ///< s
   Mode before_{};  ///< until the last event
-  State last_;  ///< at the last event, before the mode was selected
+  State last_;     ///< at the last event, before the mode was selected
   Segment<T> segment_;
   T tau_;  ///< its duration if the inputs go on, s
   Event event_{};

@@ -251,12 +251,11 @@ class Measurement {
       if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
       motion_.along(segment, [&](const auto& along) {
-        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin,
-                           [&](T, T x) {
-                             const T position = motion_.drive().stops.within(x);
-                             low = std::min(low, position);
-                             high = std::max(high, position);
-                           });
+        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin, [&](T, T x) {
+          const T position = motion_.drive().stops.within(x);
+          low = std::min(low, position);
+          high = std::max(high, position);
+        });
       });
     }
     result.end_position = (low + high) / 2;

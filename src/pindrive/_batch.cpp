@@ -446,7 +446,8 @@ void bind_batch(nb::module_& m) {
       "status says which, its numbers are NaN. The column of events is there if asked for; "
       "`general` says how many points the general core followed, `extremes` the least and the "
       "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
-      "`width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, infinite: "
+      "`width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, "
+      "infinite: "
       "rigid; damping) the general core follows all points.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,

@@ -191,7 +191,7 @@ def test_a_batch_is_the_motions_of_its_points(stops: Drive) -> None:
         for name, value in motion.numbers().items():
             of_batch = float(found[name.replace(".", "_")][i])
             assert of_batch == value or np.isnan([of_batch, value]).all(), (name, start)
-    assert 0 < met
+    assert met > 0
 
 
 def test_no_number_of_a_motion_is_beyond_a_rigid_stop() -> None:

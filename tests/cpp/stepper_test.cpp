@@ -109,8 +109,7 @@ Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segm
                  const pd::InputLines<double>& lines, double tau) {
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
     const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
-    return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
-                  friction.finger,
+    return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate, friction.finger,
                   pd::stop_force_along(t, drive, segment, lines.force, tau)};
   });
 }
@@ -157,8 +156,8 @@ void compare(const Case& c, Random& random, Worst& worst) {
         stepper.swap(again);
         ++worst.restored;
         const Values back = values_of(*stepper);
-        if (back.x != at.x || back.v != at.v || back.plate != at.plate || back.finger != at.finger ||
-            back.stop != at.stop)
+        if (back.x != at.x || back.v != at.v || back.plate != at.plate ||
+            back.finger != at.finger || back.stop != at.stop)
           ++worst.differing;
       }
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
@@ -250,11 +249,11 @@ void at_the_stops() {
     });
     pd::Stepper<double> stepper(stopped, release);
     while (stepper.next() < infinity && stepper.step(1, true)) found.push_back(stepper.event());
-    const bool same = std::equal(expected.begin(), expected.end(), found.begin(), found.end(),
-                                 [](const auto& a, const auto& b) {
-                                   return a.plate == b.plate && a.finger == b.finger &&
-                                          a.stop == b.stop;
-                                 });
+    const bool same =
+        std::equal(expected.begin(), expected.end(), found.begin(), found.end(),
+                   [](const auto& a, const auto& b) {
+                     return a.plate == b.plate && a.finger == b.finger && a.stop == b.stop;
+                   });
     expect(same && !found.empty() && pd::stops(found[0].stop), "it strikes as in one run");
   }
   pd::Drive<double> stopped = drive;
