@@ -73,10 +73,8 @@ struct Row {
 inline Summary with_end(const pindrive::Summary<double>& numbers, const Motion<double>& motion) {
   const auto [segment, tau] = motion.locate(numbers.duration, Side::left);
   Summary all{numbers, 0, 0};
-  motion.along(*segment, [&, tau = tau](const auto& along) {
-    all.final_position = along.at(along.position(), tau);
-    all.final_velocity = along.at(along.velocity(), tau);
-  });
+  all.final_position = motion.value(*segment, tau, pindrive::Quantity::position);
+  all.final_velocity = motion.value(*segment, tau, pindrive::Quantity::velocity);
   return all;
 }
 

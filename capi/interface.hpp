@@ -97,12 +97,13 @@ void start(pd::Numbers& at, pd::Numbers& along);
 
 /// A quantity at an instant of a trajectory; friction() tells the friction there.
 template <class T, class Trajectory, class Share>
-double value_along(const Trajectory& along, const T& tau, const T& skin, Share&& friction,
-                   pindrive_quantity quantity) {
+double value_along(const Trajectory& along, const T& tau, const pd::Drive<T>& drive,
+                   Share&& friction, pindrive_quantity quantity) {
+  const T& skin = drive.finger.stiffness;
   const auto at = [&](const auto& path) { return along.at(path, tau); };
   switch (quantity) {
     case PINDRIVE_POSITION:
-      return pd::result(at(along.position()));
+      return pd::result(drive.stops.within(at(along.position())));
     case PINDRIVE_VELOCITY:
       return pd::result(at(along.velocity()));
     case PINDRIVE_ACCELERATION:

@@ -41,13 +41,20 @@ struct Numbers {
   double duration;
 };
 
-/// A number of the core from its value and its derivative along a direction.
+/// A number of the core from its value and its derivative along a direction; what is infinite in a direction,
+/// as it is at first, does not change along it.
 template <class T>
 T number(double value, double slope) {
   if constexpr (std::is_same_v<T, Dual<double>>)
-    return {value, slope};
+    return {value, std::isinf(slope) ? 0 : slope};
   else
     return value;
+}
+
+template <class T>
+Stops<T> stops(const StopNumbers& at, const StopNumbers& along) {
+  return {number<T>(at.travel, along.travel), number<T>(at.stiffness, along.stiffness),
+          number<T>(at.damping, along.damping)};
 }
 
 /// What is asked of a motion: a value; of a number with its derivative, the derivative.
@@ -107,9 +114,7 @@ class OwnedMotion {
                number<T>(at.damping, along.damping),
                plate_.contact,
                finger_.contact,
-               {number<T>(at.stops.travel, along.stops.travel),
-                number<T>(at.stops.stiffness, along.stops.stiffness),
-                number<T>(at.stops.damping, along.stops.damping)}},
+               stops<T>(at.stops, along.stops)},
         inputs_{mouse_velocity_.profile(),
                 number<T>(at.displacement, along.displacement),
                 number<T>(at.velocity, along.velocity),

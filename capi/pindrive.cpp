@@ -305,7 +305,7 @@ double value_at(const pd::Motion<T>& motion, const pd::Segment<T>& segment, T ta
   if (quantity == PINDRIVE_STOP_FORCE) return pd::result(motion.stop_force(segment, tau));
   const auto friction = [&] { return motion.friction(segment, tau); };
   return motion.along(segment, [&](const auto& along) {
-    return value_along(along, tau, motion.drive().finger.stiffness, friction, quantity);
+    return value_along(along, tau, motion.drive(), friction, quantity);
   });
 }
 

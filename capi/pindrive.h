@@ -211,7 +211,7 @@ enum {
   PINDRIVE_FINGER_FORCE = 4,     /* friction of the finger on the pin, N */
   PINDRIVE_SKIN_STRETCH = 5,     /* of a compliant finger, m */
   PINDRIVE_SKIN_STRETCH_RATE = 6, /* m/s */
-  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N; not of a stepper */
+  PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N */
 };
 
 /* Which limit is asked for at an event. */
@@ -350,7 +350,7 @@ PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 /* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
  * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
  * fallen to zero stays there. A finger_load that changes needs a rigid finger without a curve. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
- * velocity, to the plate too. Where the velocity across jumps the pin keeps its velocity as well, and the
+ * velocity, to the plate too, unless a rigid end stop takes it along. Where the velocity across jumps the pin keeps its velocity as well, and the
  * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
  * it is a number, which does not change along the direction. */
 PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
@@ -362,7 +362,7 @@ PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper *derivat
                                                        double rate);
 
 /* Goes on to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
- * a contact until then. */
+ * a contact or an end stop until then. */
 PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper *stepper, double until,
                                                   int stop_at_event);
 
@@ -377,6 +377,8 @@ typedef struct pindrive_instant {
   double finger_load, finger_load_rate;          /* 1, 1/s */
   pindrive_contact_state plate, finger;          /* from now on */
   pindrive_transition plate_event, finger_event; /* what happens now */
+  int stop;                                      /* as in a segment */
+  pindrive_transition stop_event;                /* what happens now */
 } pindrive_instant;
 
 PINDRIVE_API pindrive_error pindrive_stepper_now(const pindrive_stepper *stepper,

@@ -24,8 +24,12 @@ class Followed {
 
   static pd::Drive<T> drive(const pd::Numbers& at, const pd::Numbers& along,
                             const Followed& owner) {
-    return {pd::number<T>(at.mass, along.mass), pd::number<T>(at.stiffness, along.stiffness),
-            pd::number<T>(at.damping, along.damping), owner.plate_.contact, owner.finger_.contact};
+    return {pd::number<T>(at.mass, along.mass),
+            pd::number<T>(at.stiffness, along.stiffness),
+            pd::number<T>(at.damping, along.damping),
+            owner.plate_.contact,
+            owner.finger_.contact,
+            pd::stops<T>(at.stops, along.stops)};
   }
 
  public:
@@ -74,6 +78,11 @@ StateOfDual lifted(const State& s) {
           s.at_plate,
           s.at_finger,
           s.limit,
+          s.stop,
+          s.stop_released,
+          s.stop_met,
+          s.struck,
+          s.before,
           line(s.plate_velocity),
           held(s.mouse_velocity),
           held(s.plate_load),
@@ -116,10 +125,7 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 
-pindrive_error check_start(const pindrive_drive& drive, const pindrive_release& release,
-                           double begin) {
-  if (drive.stops.present())
-    return fail(PINDRIVE_UNSUPPORTED, "a stepper follows no end stops: travel must be infinite");
+pindrive_error check_start(const pindrive_release& release, double begin) {
   for (const auto& [name, rows] :
        {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
         std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
@@ -188,7 +194,7 @@ pindrive_error set_input(pd::Stepper<T>& stepper, const char* name, Change&& cha
 
 // ---- bytes -------------------------------------------------------------------------------------
 
-constexpr std::uint32_t magic = 0x70647331;  // "pds1"
+constexpr std::uint32_t magic = 0x70647332;  // "pds2"
 
 /// Goes over everything that bytes hold, in one order for writing and reading.
 template <class Bytes, class Numbers>
@@ -201,7 +207,7 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
     if constexpr (!std::is_const_v<Numbers>) list.resize(static_cast<std::size_t>(count));
     for (auto& [first, second] : list) number(first, second);
   };
-  number(at.mass, at.stiffness, at.damping);
+  number(at.mass, at.stiffness, at.damping, at.stops.travel, at.stops.stiffness, at.stops.damping);
   for (auto* contact : {&at.plate, &at.finger}) {
     number(contact->kinetic, contact->static_limit, contact->stiffness);
     rows(contact->curve);
@@ -215,12 +221,14 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
   number(s.now, s.since, s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff, s.pin.slide);
   option(s.plate);
   option(s.finger);
-  number(s.at_plate, s.at_finger, s.limit);
+  number(s.at_plate, s.at_finger, s.limit, s.stop, s.stop_released, s.stop_met, s.struck);
+  number(s.before.plate, s.before.finger, s.before.plate_branch, s.before.finger_branch,
+         s.before.stop);
   line(s.plate_velocity);
   for (auto* input :
        {&s.mouse_velocity, &s.plate_load, &s.across_velocity, &s.force, &s.finger_load})
     held(*input);
-  number(s.event.plate, s.event.finger);
+  number(s.event.plate, s.event.finger, s.event.stop);
 }
 
 class Counting {
@@ -295,7 +303,7 @@ pindrive_error pindrive_stepper_new(const pindrive_drive* drive, const pindrive_
   if (!drive || !release) return null_pointer("drive and release");
   if (!stepper) return null_pointer("stepper");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*drive, *release, begin);
+  if (!error) error = check_start(*release, begin);
   if (error) return error;
   return made(stepper, [&](pindrive_stepper& s) {
     s.at = s.along = numbers_of(*drive, *release);
@@ -313,7 +321,7 @@ pindrive_error pindrive_stepper_differentiate(const pindrive_drive* drive,
   if (!release || !release_rate) return null_pointer("release and release_rate");
   if (!derivative) return null_pointer("derivative");
   pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*drive, *release, begin);
+  if (!error) error = check_start(*release, begin);
   if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
   if (error) return error;
   return made(derivative, [&](pindrive_stepper& s) {
@@ -414,7 +422,9 @@ pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper, pindrive_in
                             static_cast<pindrive_contact_state>(of.mode().plate),
                             static_cast<pindrive_contact_state>(of.mode().finger),
                             static_cast<pindrive_transition>(of.event().plate),
-                            static_cast<pindrive_transition>(of.event().finger)};
+                            static_cast<pindrive_transition>(of.event().finger),
+                            static_cast<int>(of.mode().stop),
+                            static_cast<pindrive_transition>(of.event().stop)};
   });
   return PINDRIVE_OK;
 }
@@ -423,9 +433,9 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
                                          pindrive_quantity quantity, double* value) {
   if (!stepper) return null_pointer("stepper");
   if (!value) return null_pointer("value");
-  if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_SKIN_STRETCH_RATE)
-    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d",
-                PINDRIVE_SKIN_STRETCH_RATE, quantity);
+  if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_STOP_FORCE)
+    return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d", PINDRIVE_STOP_FORCE,
+                quantity);
   *value = stepper->ask([&](const auto& of) {
     const auto tau = of.tau();
     const auto lines = of.lines();
@@ -433,7 +443,9 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
       const auto friction = [&] {
         return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
       };
-      return value_along(along, tau, of.drive().finger.stiffness, friction, quantity);
+      if (quantity == PINDRIVE_STOP_FORCE)
+        return pd::result(pd::stop_force_along(along, of.drive(), of.segment(), lines.force, tau));
+      return value_along(along, tau, of.drive(), friction, quantity);
     });
   });
   return PINDRIVE_OK;

@@ -494,7 +494,8 @@ class Certifier {
       const int end = side(mode.stop);
       raise(errors.sticking, s.v);
       worst(result_.sticking, end * s.x - drive_.stops.travel, x_scale_);
-      worst(result_.force_bound, std::max(end * stop_force(stage, s), T(0)), force_scale_);
+      const T pull = end * stop_force(stage, s) - unsure(stage, s);
+      worst(result_.force_bound, std::max(pull, T(0)), force_scale_);
     }
     const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
       if (does == ContactState::slip_oblique)

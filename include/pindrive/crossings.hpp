@@ -87,13 +87,15 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
   using std::abs;
   const Drive<T>& drive = motion.drive();
   detail::SignChanges<T> changes;
-  bool began = false, more = true;
+  bool began = false, more = true, struck = false;  // a rigid stop, where the last segment ended
   T time{0}, end{0};  // of the last visit; value where the last segment ended
   const auto add = [&](T at, T value) {
     time = at;
+    if (quantity == Quantity::position) value = drive.stops.within(value);
     return more = goes_on(visit, at, value);
   };
   const auto jumps = [&](const Flow<T>& flow, T value) {
+    if (quantity == Quantity::velocity) return struck && value != end;
     if (quantity != Quantity::acceleration) return false;
     const T forces =
         drive.stiffness * abs(flow.position.start) + drive.damping * abs(flow.velocity.start);
@@ -115,6 +117,7 @@ void extrema(const Motion<T>& motion, Quantity quantity, T until, Visitor&& visi
         changes.follow(along, along.derivative(path), path, begin, span,
                        [&](T at, T value, int) { return add(at, value); });
       end = along.at(path, span);
+      struck = drive.stops.rigid() && stops(segment.event.stop);
       return more;
     });
   });

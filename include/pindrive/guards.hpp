@@ -23,6 +23,15 @@ struct Guard {
   T zero{std::numeric_limits<T>::infinity()};  ///< s
 };
 
+/// The sign of what a quantity begins with. Of two guards that are images of each other, the one that it
+/// approaches is looked at first: a mirrored motion then has the same zeros, to the bit.
+template <class T>
+int sense(const Path<T>& path) {
+  for (const T part : {path.start, path.value, path.slope, path.drift, path.curvature})
+    if (part != 0) return part < 0 ? -1 : 1;
+  return 1;
+}
+
 /// The guards of a mode; at most two of a sliding contact or an elastic stick, of a stick force and of the
 /// end stops.
 template <class T>
@@ -53,7 +62,9 @@ class Guards {
   void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.stick_limit(), T(0)};
-      for (const int to : {1, -1}) add(most + T(to) * segment.finger_force, Bound::none, plate, to);
+      const int near = -sense(segment.finger_force);
+      for (const int to : {near, -near})
+        add(most + T(to) * segment.finger_force, Bound::none, plate, to);
     }
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();

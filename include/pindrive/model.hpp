@@ -112,6 +112,8 @@ struct Stops {
 
   bool present() const { return travel < std::numeric_limits<T>::infinity(); }
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+  /// A position without what its closed form goes beyond a rigid stop by rounding, as the pin strikes that, m.
+  T within(T x) const { return !rigid() ? x : x < -travel ? -travel : travel < x ? travel : x; }
 };
 
 template <class T, class Surface = Contact<T>>

@@ -44,6 +44,21 @@ Friction<T> friction_along(const Trajectory& along, const Drive<T>& drive,
   return {part * found.plate, (1 - part) * found.plate};
 }
 
+/// Force of the end stops on the pin along the quantities of a segment after τ, where a force from outside
+/// goes on from its begin along a line, N: of elastic ones by their law, of rigid ones what keeps it there.
+template <class Trajectory, class T>
+T stop_force_along(const Trajectory& along, const Drive<T>& drive, const Segment<T>& segment,
+                   const Line<T>& force, T tau) {
+  if (!touches(segment.mode.stop)) return T(0);
+  const Stops<T>& stops = drive.stops;
+  const T x = along.at(along.position(), tau);
+  if (stops.rigid())
+    return drive.stiffness * x - drive.mass * segment.plate_velocity.rate - force.at(tau) -
+           along.at(along.plate_force(), tau) - along.at(along.finger_force(), tau);
+  return stops.stiffness * (side(segment.mode.stop) * stops.travel - x) -
+         stops.damping * along.at(along.velocity(), tau);
+}
+
 /// What a simulation was given and what it found. It owns nothing: the segments live elsewhere.
 template <class T>
 class Motion {
@@ -106,6 +121,12 @@ class Motion {
     return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
   }
 
+  /// Position, velocity or acceleration, after τ in a segment.
+  T value(const Segment<T>& segment, T tau, Quantity quantity) const {
+    const T found =
+        along(segment, [&](const auto& t) { return t.at(quantity_of(t, quantity), tau); });
+    return quantity == Quantity::position ? drive_.stops.within(found) : found;
+  }
   Friction<T> friction(const Segment<T>& segment, T tau) const {
     return along(segment, [&](const auto& t) {
       const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };
@@ -113,17 +134,11 @@ class Motion {
     });
   }
 
-  /// Force of the end stops on the pin, N: of elastic ones by their law, of rigid ones what keeps it there.
+  /// Force of the end stops on the pin, N.
   T stop_force(const Segment<T>& segment, T tau) const {
     if (!touches(segment.mode.stop)) return T(0);
-    const Stops<T>& stops = drive_.stops;
-    return along(segment, [&](const auto& t) -> T {
-      const T x = t.at(t.position(), tau), v = t.at(t.velocity(), tau);
-      if (!stops.rigid())
-        return stops.stiffness * (side(segment.mode.stop) * stops.travel - x) - stops.damping * v;
-      return drive_.stiffness * x - drive_.mass * segment.plate_velocity.rate -
-             inputs_.force.from(segment.begin).at(tau) - t.at(t.plate_force(), tau) -
-             t.at(t.finger_force(), tau);
+    return along(segment, [&](const auto& t) {
+      return stop_force_along(t, drive_, segment, inputs_.force.from(segment.begin), tau);
     });
   }
   /// What elastic stops store, J; also while they come back behind a pin.

@@ -50,10 +50,14 @@ class Stepper {
     Option plate, finger;               ///< … this each contact had done, …
     detail::Bound at_plate, at_finger;  ///< … these bounds their speeds had come to, …
     int limit;                          ///< … this side a stick force, …
+    StopState stop;                     ///< … this the end stops had done, …
+    bool stop_released, stop_met;       ///< … their force had come to zero, the pin to them, …
+    bool struck;                        ///< … it had struck a rigid one, …
+    Mode before;                        ///< … the mode had been this, …
     Line<T> plate_velocity;             ///< … and from there on the plate moved like this
     /// The inputs as they were set.
     Held<T> mouse_velocity, plate_load, across_velocity, force, finger_load;
-    Event event;  ///< what happened to the contacts now
+    Event event;  ///< what happened to the contacts and the stops now
   };
 
   /// A release at the time `begin`, s. The duration of its inputs does not matter: it has no end. The drive's
@@ -62,7 +66,8 @@ class Stepper {
       : drive_(drive),
         inputs_(without_end(inputs)),
         simulation_(drive_, inputs_, begin),
-        now_(begin) {
+        now_(begin),
+        before_(simulation_.mode()) {
     select();
   }
   Stepper(const Drive<T>& drive, const State& state)
@@ -98,12 +103,13 @@ class Stepper {
     while (status() == Status::ok && !(next() > until)) {
       const bool together = !(tau_ > 0);
       if (stop_at_event && !together && happens_after(now_)) break;
+      before_ = segment_.mode;
       simulation_.jump(segment_, tau_);
       select();
-      const Event event{change(simulation_.plate_.before, segment_.mode.plate),
-                        change(simulation_.finger_.before, segment_.mode.finger)};
+      const Event event = event_now();
       if (!together || event.plate != Transition::none) event_.plate = event.plate;
       if (!together || event.finger != Transition::none) event_.finger = event.finger;
+      if (!together || event.stop != Transition::none) event_.stop = event.stop;
       standing = together ? standing + 1 : 0;
       if (standing > detail::standstill_limit) standstill_ = true;
     }
@@ -136,15 +142,13 @@ class Stepper {
     if (pushes) force = {now_, given.force};
     if (touches) touch = load_from(now_, given.finger_load.value, given.finger_load.rate);
     restart();
-    const ContactState plate = simulation_.plate_.does.state;
-    const ContactState finger = simulation_.finger_.does.state;
     if (!zero(jump)) {
       velocity.line.value = moved(velocity.line.value, jump, given.plate_velocity.value);
       shift(jump);
     }
     if (across_jumps) turn();
     select();
-    event_ = {change(plate, segment_.mode.plate), change(finger, segment_.mode.finger)};
+    event_ = event_now();
   }
 
   Status status() const { return standstill_ ? Status::standstill : simulation_.outcome_.status; }
@@ -205,8 +209,16 @@ class Stepper {
     return plain(change) == 0 ? from + change : given;
   }
   bool happens_after(const T& time) const {
-    const bool any = event_.plate != Transition::none || event_.finger != Transition::none;
+    const bool any = event_.plate != Transition::none || event_.finger != Transition::none ||
+                     event_.stop != Transition::none;
     return any && simulation_.time_ > time;
+  }
+
+  /// What happens where the segment that goes on begins.
+  Event event_now() const {
+    const Mode& after = segment_.mode;
+    return {change(before_.plate, after.plate), change(before_.finger, after.finger),
+            detail::change(before_.stop, after.stop, simulation_.struck_)};
   }
 
   void restore(const State& state) {
@@ -218,6 +230,11 @@ class Stepper {
     simulation_.finger_.reached = state.at_finger;
     simulation_.plate_.surface = state.plate_velocity;
     simulation_.limit_ = state.limit;
+    simulation_.stop_.does = state.stop;
+    simulation_.stop_.released = state.stop_released;
+    simulation_.stop_.met = state.stop_met;
+    simulation_.struck_ = state.struck;
+    before_ = state.before;
     take_inputs(state.since);
   }
   /// Those but for the plate's velocity, which may be known to be exactly the pin's.
@@ -237,23 +254,29 @@ class Stepper {
       simulation_.plate_.surface.rate = inputs_.mouse_velocity.line.rate;
       take_inputs(now_);
       simulation_.limit_ = 0;
+      if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // its push may jump
     } else {
       simulation_.row_ = now_;
+      before_ = segment_.mode;
       simulation_.jump(segment_, now_ - simulation_.time_);
     }
   }
 
-  /// The mouse velocity jumps: the pin keeps its velocity beside the housing, and so to the plate.
+  /// The mouse velocity jumps: the pin keeps its velocity beside the housing, and so to the plate. Only a
+  /// rigid stop takes it along.
   void shift(const T& jump) {
     using std::abs;
     auto &plate = simulation_.plate_, &finger = simulation_.finger_;
     plate.surface.value = moved(plate.surface.value, jump, inputs_.mouse_velocity.line.value);
+    auto& stop = simulation_.stop_;
     T& v = simulation_.state_.v;
-    if (plate.stuck())
+    if (plate.stuck() && !stop.holds())
       v = plate.surface.value;
-    else if (!finger.stuck() || plain(jump) != 0)
+    else if (!(finger.stuck() || stop.holds()) || plain(jump) != 0)
       v += jump;
     if (plain(jump) == 0) return;
+    simulation_.struck_ = false;
+    if (stop.begin(simulation_.state_)) return simulation_.begin_at_stop();
     finger.reached = detail::Bound::none;
     const T sense = finger.does.sense;
     if (finger.sliding() && finger.contact.branches > 0 && !finger.contact.rigid()) return;
@@ -287,6 +310,11 @@ class Stepper {
              plate.reached,
              finger.reached,
              simulation_.limit_,
+             simulation_.stop_.does,
+             simulation_.stop_.released,
+             simulation_.stop_.met,
+             simulation_.struck_,
+             before_,
              plate.surface,
              {},
              {},
@@ -315,8 +343,9 @@ class Stepper {
   T far_{far_for(drive_)};  ///< s
   Inputs<T, Held<T>> inputs_;
   Simulation simulation_;
-  T now_;       ///< s
-  State last_;  ///< at the last event, before the mode was selected
+  T now_;          ///< s
+  Mode before_{};  ///< until the last event
+  State last_;     ///< at the last event, before the mode was selected
   Segment<T> segment_;
   T tau_;  ///< its duration if the inputs go on, s
   Event event_{};

@@ -19,13 +19,15 @@ class EndStops {
 
   StopState does{StopState::apart};
   bool released{false};  ///< its force has just come to zero, exactly
+  bool met{false};       ///< the pin has just come to an end of its travel
 
-  /// At the start; a rigid stop takes the speed of a pin that is at it.
-  void begin(State<T>& s) {
+  /// At the start, and where the velocity has jumped; whether the pin strikes a rigid one, which takes it.
+  bool begin(State<T>& s) {
+    released = met = false;
     const int end = s.x < 0 ? -1 : 1;
-    if (stops_.rigid() && end * s.x == stops_.travel && end * s.v > 0) s.v = T(0);
-    if (stops_.rigid() || !(end * s.x > stops_.travel)) return;
-    does = at_end(end, push(s, end) > 0);
+    if (stops_.rigid()) return end * s.x == stops_.travel && end * s.v > 0 && meet(s, end);
+    if (end * s.x > stops_.travel) does = at_end(end, push(s, end) > 0);
+    return false;
   }
 
   /// Finds out what they may do.
@@ -37,8 +39,8 @@ class EndStops {
     at_ = Bound::none;
     count_ = 1;
     exactly_ = released;
-    jumped_ = met_ && stops_.damping > 0;
-    met_ = false;
+    jumped_ = met && stops_.damping > 0;
+    met = false;
     options_ = {does, StopState::apart};
     if (edge && s.v == 0) {
       at_ = Bound::edge;
@@ -112,8 +114,11 @@ class EndStops {
     };
     const int end = side(does);
     if (does == StopState::apart) {
-      beyond(1, -1);
-      beyond(-1, -1);
+      Path<T> position = flow.position;
+      position.start = s.x;
+      const int near = sense(position);
+      beyond(near, -1);
+      beyond(-near, -1);
       return;
     }
     const int sense = touches(does) ? 1 : -1;
@@ -127,7 +132,7 @@ class EndStops {
 
   /// The pin has come to an end of its travel; whether it strikes what does not yield.
   bool meet(State<T>& s, int end) {
-    met_ = true;
+    met = true;
     s.x = end * stops_.travel;
     if (!stops_.rigid()) return false;
     s.v = T(0);
@@ -162,7 +167,7 @@ class EndStops {
   std::array<StopState, 2> options_{};
   int count_{1};
   Bound at_{Bound::none};  ///< what is exactly zero: the way to the end of the travel, or the push
-  bool exactly_{false}, met_{false}, jumped_{false};
+  bool exactly_{false}, jumped_{false};
 };
 
 /// A drive that has none.

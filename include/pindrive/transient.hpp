@@ -154,7 +154,8 @@ class Measurement {
       motion_.along(segment, [&](const auto& along) {
         along.each_root(along.velocity(), direction, inside, [&](T tau) {
           direction = -direction;
-          more = visit(segment.begin + tau, along.at(along.position(), tau));
+          const T x = along.at(along.position(), tau);
+          more = visit(segment.begin + tau, motion_.drive().stops.within(x));
           return more;
         });
       });
@@ -250,11 +251,11 @@ class Measurement {
       if (!go_on_()) return;
       if (segment.begin < outcome.cycle_begin) continue;
       motion_.along(segment, [&](const auto& along) {
-        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin,
-                           [&](T, T position) {
-                             low = std::min(low, position);
-                             high = std::max(high, position);
-                           });
+        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin, [&](T, T x) {
+          const T position = motion_.drive().stops.within(x);
+          low = std::min(low, position);
+          high = std::max(high, position);
+        });
       });
     }
     result.end_position = (low + high) / 2;

@@ -3,6 +3,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,8 @@ enum : std::size_t {
   input_count
 };
 static_assert(input_count == Block::inputs, "the kernel takes them all");
+/// Travel, stiffness and damping of the end stops, which all points share.
+using StopNumbers = std::tuple<double, double, double>;
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
@@ -114,12 +118,13 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
 /// quantities/status.py.
 constexpr std::int8_t refused = 15;
 
-pd::Drive<double> drive_of(const Point& p) {
+pd::Drive<double> drive_of(const Point& p, const pd::Stops<double>& stops) {
   return {p[mass],
           p[stiffness],
           p[damping],
           {p[plate_kinetic], p[plate_static]},
-          {p[finger_kinetic], p[finger_static], p[finger_stiffness]}};
+          {p[finger_kinetic], p[finger_static], p[finger_stiffness]},
+          stops};
 }
 
 pd::Inputs<double> inputs_of(const Point& p) {
@@ -132,7 +137,7 @@ class Batch {
  public:
   /// A point that breaks a bound is left out, and marked.
   Batch(const Inputs& inputs, const pe::Bounds& bounds, const std::vector<std::string>& outputs,
-        bool events, const pe::KernelFunctions& kernel)
+        bool events, const pe::KernelFunctions& kernel, const pd::Stops<double>& stops)
       : inputs_(inputs),
         bounds_(bounds),
         size_(size_of(inputs)),
@@ -140,6 +145,7 @@ class Batch {
         rows_(rows_of(outputs)),
         asked_(events ? pd::detail::Asked::numbers : pd::detail::Asked::state),
         kernel_(kernel),
+        stops_(stops),
         numbers_(rows_.size(), size()),
         varies_(with_one_value(inputs)),
         status_(size()),
@@ -257,14 +263,19 @@ class Batch {
       const bool good =
           kernel_.judge(block, static_cast<int>(count), of_share.data(), bounds_, space.broken);
       press(block, count);
-      const bool followed = by_kernel(first, count, space);
+      // The kernel knows no stops, and before it has followed a pin nobody knows whether that meets one.
+      const bool followed = !stops_.present() && by_kernel(first, count, space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (space.broken[i] != 0) {
           leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
-        const Left left = left_by_kernel(block, i);
+        if (stops_.within(block.input[displacement][i]) != block.input[displacement][i]) {
+          leave_out(first + i, static_cast<std::int8_t>(refused + 1 + displacement));
+          continue;
+        }
+        const Left left = stops_.present() ? Left::all : left_by_kernel(block, i);
         if (left == Left::nothing && !energy_) continue;
         if (!go_on(1)) return;
         Point p;
@@ -335,7 +346,7 @@ class Batch {
   template <class GoOn>
   void by_general_core(std::size_t i, const Point& p, Left left,
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
-    const pd::Drive<double> drive = drive_of(p);
+    const pd::Drive<double> drive = drive_of(p, stops_);
     const pd::Inputs<double> inputs = inputs_of(p);
     const pd::Summary<double> summary =
         pd::summarise(drive, inputs, p[settling_band], segments, go_on);
@@ -370,6 +381,7 @@ class Batch {
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
+  const pd::Stops<double> stops_;
   Rows numbers_;
   std::array<bool, input_count> varies_;        ///< which inputs are written for each block
   std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
@@ -387,8 +399,10 @@ const pe::KernelFunctions& kernel_for(int width) {
 }
 
 nb::dict simulate_batch(const Inputs& inputs, const pe::Bounds& bounds, std::size_t threads,
-                        const std::vector<std::string>& outputs, bool events, int width) {
-  Batch batch(inputs, bounds, outputs, events, kernel_for(width));
+                        const std::vector<std::string>& outputs, bool events, int width,
+                        const StopNumbers& stops) {
+  Batch batch(inputs, bounds, outputs, events, kernel_for(width),
+              {std::get<0>(stops), std::get<1>(stops), std::get<2>(stops)});
   Interrupt interrupt;
   {
     const nb::gil_scoped_release unlocked;
@@ -421,9 +435,10 @@ nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, 
 void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
   m.def(
       "simulate_batch", &simulate_batch, "inputs"_a, "bounds"_a, "threads"_a, "outputs"_a,
-      "events"_a, "width"_a = 0,
+      "events"_a, "width"_a = 0, "stops"_a = StopNumbers{infinite, infinite, 0.0},
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
       "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, "
@@ -433,7 +448,9 @@ void bind_batch(nb::module_& m) {
       "status says which, its numbers are NaN. The column of events is there if asked for; "
       "`general` says how many points the general core followed, `extremes` the least and the "
       "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
-      "`width`; 0: the widest.");
+      "`width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, "
+      "infinite: "
+      "rigid; damping) the general core follows all points.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
         "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "

@@ -116,9 +116,7 @@ template <class T, pd::Quantity quantity>
 Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
   const auto view = motion.view();
   return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
-    return view.along(segment, [&](const auto& along) {
-      return along.at(pd::quantity_of(along, quantity), tau);
-    });
+    return view.value(segment, tau, quantity);
   });
 }
 

@@ -373,7 +373,7 @@ static void stepping(void) {
   refuses(pindrive_stepper_set_along(copy, "plate_load", 1, 0), PINDRIVE_DERIVATIVE, "direction");
   refuses(pindrive_stepper_write(along, bytes, size), PINDRIVE_DERIVATIVE, "is written");
   refuses(pindrive_stepper_write(copy, bytes, size - 1), PINDRIVE_BAD_VALUE, "size must be");
-  refuses(pindrive_stepper_evaluate(copy, 7, &x), PINDRIVE_BAD_VALUE, "from 0 to 6, not 7");
+  refuses(pindrive_stepper_evaluate(copy, 8, &x), PINDRIVE_BAD_VALUE, "from 0 to 7, not 8");
   refuses(pindrive_stepper_new(drive, release, NAN, &read), PINDRIVE_BAD_VALUE, "begin must be");
   pindrive_stepper_free(read);
   bytes[size / 2] ^= 1;
@@ -392,6 +392,43 @@ static void stepping(void) {
   pindrive_release_free(still);
 }
 
+/* A force keeps the pin at a rigid stop, then throws it to the other one. */
+static void at_stops(void) {
+  pindrive_drive *drive = the_drive();
+  pindrive_release *release = pindrive_release_new();
+  pindrive_stepper *stepper = NULL, *read = NULL;
+  pindrive_instant now;
+  double push = NAN, x = NAN;
+  pindrive_drive_set(drive, "travel", 1e-3);
+  pindrive_release_set(release, "mouse_velocity", 0);
+  pindrive_release_set(release, "force", 0.5);
+  expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper with stops");
+  do {
+    expect(pindrive_stepper_step(stepper, 1, 1) == PINDRIVE_OK, "to the next event");
+    pindrive_stepper_now(stepper, &now);
+  } while (now.time < 1 && now.stop_event == PINDRIVE_NONE);
+  expect(now.stop == 1 && now.stop_event == PINDRIVE_STICKS && now.time < 0.1, "it strikes");
+  expect(pindrive_stepper_evaluate(stepper, PINDRIVE_STOP_FORCE, &push) == PINDRIVE_OK, "push");
+  expect(push < -0.3, "which the stop takes");
+  {
+    const size_t size = pindrive_stepper_size(stepper);
+    unsigned char *bytes = malloc(size);
+    expect(pindrive_stepper_write(stepper, bytes, size) == PINDRIVE_OK, "written at a stop");
+    expect(pindrive_stepper_read(bytes, size, &read) == PINDRIVE_OK, "read");
+    free(bytes);
+  }
+  pindrive_stepper_now(read, &now);
+  expect(now.stop == 1 && now.stop_event == PINDRIVE_STICKS, "as it was");
+  pindrive_stepper_set(stepper, "force", -0.5, 0);
+  pindrive_stepper_set(read, "force", -0.5, 0);
+  x = position_after(stepper, 0.3, 1e-3);
+  expect(x == -1e-3 && position_after(read, 0.3, 7e-4) == x, "from one stop to the other");
+  pindrive_stepper_free(stepper);
+  pindrive_stepper_free(read);
+  pindrive_drive_free(drive);
+  pindrive_release_free(release);
+}
+
 int main(void) {
   expect(pindrive_interface() == PINDRIVE_INTERFACE, "the header is that of the library");
   a_motion();
@@ -400,6 +437,7 @@ int main(void) {
   stopping();
   a_batch();
   stepping();
+  at_stops();
   pindrive_motion_free(NULL);
   pindrive_drive_free(NULL);
   pindrive_release_free(NULL);

@@ -453,17 +453,21 @@ class Instant(ctypes.Structure):
         *((name, c_double) for name in ("force", "force_rate")),
         *((name, c_double) for name in ("finger_load", "finger_load_rate")),
         *((name, ctypes.c_int) for name in ("plate", "finger", "plate_event", "finger_event")),
+        ("stop", ctypes.c_int),
+        ("stop_event", ctypes.c_int),
     )
 
 
 def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
     """Whatever the steps, and the inputs that change on the way."""
     random = np.random.default_rng(17)
-    worst, steps, kept, oblique = 0.0, 0, 0, 0
+    worst, steps, kept, oblique, at_stops = 0.0, 0, 0, 0, 0
     for number in range(150):
         case = drawn(random)
         case.numbers["velocity"] = case.inputs["mouse_velocity"][0][1]
-        case.numbers["travel"] = inf
+        if number % 3 == 0:
+            case.numbers["travel"] = abs(case.numbers["displacement"]) + random.uniform(0, 3e-4)
+            case.numbers["stop_stiffness"] = random.choice([inf, 1e3])
         rows = case.inputs
         oblique += len(rows["across_velocity"]) > 1
         changes = sorted({t for of_input in rows.values() for t, _ in of_input})
@@ -475,7 +479,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
         c("stepper_new", drive, release, c_double(0), byref(stepper))
         time = 0.0
         scale = {}
-        for quantity, name in enumerate(QUANTITIES[:5]):
+        for quantity, name in enumerate(QUANTITIES):
             at = np.linspace(0, case.numbers["duration"], 200)
             scale[quantity] = np.abs(getattr(core, name)(at, True)).max() + 1e-300
         for begin, end in zip(changes, [*changes[1:], case.numbers["duration"]], strict=True):
@@ -498,12 +502,14 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
                     c("stepper_step", stepper, c_double(time + 0.1), 0)
                     c.free(stepper=stepper)
                     stepper, kept = state, kept + 1
-                for quantity in range(5):
+                at_stops += instant.stop != 0
+                for quantity, name in enumerate(QUANTITIES):
+                    if "stretch" in name:
+                        continue
                     value_now = c_double()
                     c("stepper_evaluate", stepper, quantity, byref(value_now))
-                    name = QUANTITIES[quantity]
-                    near_end = time > end - 1e-9
-                    if quantity > 1 and (near_end or instant.plate_event or instant.finger_event):
+                    event = time > end - 1e-9 or instant.plate_event or instant.finger_event
+                    if instant.stop_event or (quantity > 1 and event):
                         continue  # it jumps there
                     expected = getattr(core, name)(np.array([time]), True)[0]
                     apart = abs(value_now.value - expected) / scale[quantity]
@@ -513,6 +519,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
     print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
     assert kept > 100
     assert oblique > 10
+    assert at_stops > 10
 
 
 class Varied(ctypes.Structure):

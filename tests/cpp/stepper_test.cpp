@@ -2,6 +2,7 @@
 // quantities, also from a state that was kept, through changes of the inputs, and in derivatives.
 #include "pindrive/stepper.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -60,6 +61,12 @@ struct Case {
     }
     displacement = between(random, -3e-3, 3e-3);
     duration = times.back() + 0.1;
+    if (one_of(random, 2)) return;
+    drive.stops.travel = std::abs(displacement) * (one_of(random, 4) ? 1 : between(random, 1, 2));
+    if (one_of(random, 2)) return;
+    drive.stops.stiffness = drive.stiffness * std::pow(10, between(random, 0, 3));
+    if (one_of(random, 2)) return;
+    drive.stops.damping = between(random, 0, 1) * std::sqrt(drive.mass * drive.stops.stiffness);
   }
   Case(const Case&) = delete;
   Case& operator=(const Case&) = delete;
@@ -96,14 +103,14 @@ struct Whole {
 };
 
 struct Values {
-  double x, v, plate, finger;
+  double x, v, plate, finger, stop;
 };
 Values values_in(const pd::Drive<double>& drive, const pd::Segment<double>& segment,
                  const pd::InputLines<double>& lines, double tau) {
   return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) {
     const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
-    return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate,
-                  friction.finger};
+    return Values{t.at(t.position(), tau), t.at(t.velocity(), tau), friction.plate, friction.finger,
+                  pd::stop_force_along(t, drive, segment, lines.force, tau)};
   });
 }
 Values values_of(const pd::Stepper<double>& stepper) {
@@ -121,7 +128,7 @@ pd::Inputs<double, pd::Held<double>> start_of(const Case& c) {
 
 struct Worst {
   double position{0}, velocity{0}, force{0};
-  int given_up{0}, oblique{0}, modes{0}, checked{0}, restored{0}, differing{0};
+  int given_up{0}, oblique{0}, at_stop{0}, modes{0}, checked{0}, restored{0}, differing{0};
 };
 
 /// Random steps against one run; now and then from a state that was kept, after going astray.
@@ -149,7 +156,8 @@ void compare(const Case& c, Random& random, Worst& worst) {
         stepper.swap(again);
         ++worst.restored;
         const Values back = values_of(*stepper);
-        if (back.x != at.x || back.v != at.v || back.plate != at.plate || back.finger != at.finger)
+        if (back.x != at.x || back.v != at.v || back.plate != at.plate ||
+            back.finger != at.finger || back.stop != at.stop)
           ++worst.differing;
       }
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
@@ -157,15 +165,19 @@ void compare(const Case& c, Random& random, Worst& worst) {
       const Values expected =
           values_in(c.drive, *segment, pd::InputLines<double>::of(whole.inputs, *segment), tau);
       worst.position = std::max(worst.position, std::abs(found.x - expected.x) / size);
-      worst.velocity = std::max(worst.velocity, std::abs(found.v - expected.v) / speed);
       ++worst.checked;
+      worst.at_stop += segment->mode.stop != pd::StopState::apart;
       worst.oblique += segment->mode.plate == pd::ContactState::slip_oblique;
       const bool inside = tau > 1e-9 && segment->end - segment->begin - tau > 1e-9;
+      if (inside || !c.drive.stops.present() || !c.drive.stops.rigid())  // it jumps as it strikes
+        worst.velocity = std::max(worst.velocity, std::abs(found.v - expected.v) / speed);
       if (inside)
         worst.force = std::max({worst.force, std::abs(found.plate - expected.plate),
-                                std::abs(found.finger - expected.finger)});
+                                std::abs(found.finger - expected.finger),
+                                std::abs(found.stop - expected.stop)});
       if (inside && (stepper->mode().plate != segment->mode.plate ||
-                     stepper->mode().finger != segment->mode.finger))
+                     stepper->mode().finger != segment->mode.finger ||
+                     stepper->mode().stop != segment->mode.stop))
         ++worst.modes;
     }
     if (row < c.times.size()) stepper->set(c.from(end));
@@ -174,8 +186,17 @@ void compare(const Case& c, Random& random, Worst& worst) {
 
 void the_same_as_in_one_run() {
   Random random(16);
-  Worst worst;
-  for (int i = 0; i < cases(2000); ++i) compare(Case(random), random, worst);
+  Worst worst, stopped;  // against stops a thousand times as stiff as the spring, rounding grows
+  for (int i = 0; i < cases(2000); ++i) {
+    const Case c(random);
+    compare(c, random, c.drive.stops.present() ? stopped : worst);
+  }
+  expect(stopped.position < 1e-12 && stopped.velocity < 1e-11 && stopped.force < 1e-12,
+         "nor where it is stopped");
+  expect(stopped.at_stop > stopped.checked / 100 && stopped.modes == 0 && stopped.differing == 0,
+         "in any mode of the stops, and from each state that is kept");
+  std::printf("stopped: position %.1e, velocity %.1e, force %.1e\n", stopped.position,
+              stopped.velocity, stopped.force);
   std::printf("%d times, %d of them oblique, %d from a kept state; %d given up\n", worst.checked,
               worst.oblique, worst.restored, worst.given_up);
   std::printf("position %.1e, velocity %.1e, force %.1e\n", worst.position, worst.velocity,
@@ -212,6 +233,50 @@ void events() {
   expect(stepper.tau() > 0, "an input that is set as it is changes nothing");
   stepper.set({{0.10 * (1 + 3e-16), 0}});
   expect(stepper.tau() > 0, "nor one that differs by rounding");
+}
+
+/// A pin that strikes stops, rigid or elastic: the events of one run, and where the housing jerks it is thrown
+/// from a rigid stop, or stays at the other.
+void at_the_stops() {
+  for (const double stiffness : {infinity, 2000.0}) {
+    pd::Drive<double> stopped = drive;
+    stopped.stops = {1.6e-3, stiffness, stiffness < infinity ? 0.5 : 0};
+    std::vector<pd::Event> expected, found;
+    pd::simulate(stopped, pd::Inputs<double>{0.10, 1.5e-3, 0.10}, [&](const auto& segment) {
+      const pd::Event& e = segment.event;
+      if (pd::stops(e.finger) || e.finger == pd::Transition::slip || e.stop != pd::Transition::none)
+        expected.push_back(e);
+    });
+    pd::Stepper<double> stepper(stopped, release);
+    while (stepper.next() < infinity && stepper.step(1, true)) found.push_back(stepper.event());
+    const bool same =
+        std::equal(expected.begin(), expected.end(), found.begin(), found.end(),
+                   [](const auto& a, const auto& b) {
+                     return a.plate == b.plate && a.finger == b.finger && a.stop == b.stop;
+                   });
+    expect(same && !found.empty() && pd::stops(found[0].stop), "it strikes as in one run");
+  }
+  pd::Drive<double> stopped = drive;
+  stopped.stops.travel = 1.5e-3;
+  const pd::Inputs<double, pd::Held<double>> held{
+      {0, {0.10, 0}}, 1.5e-3, 0, infinity, {0, {1, 0}}, NAN, {0, {0.3, 0}}};
+  for (const double jump : {0.05, -0.05}) {
+    pd::Stepper<double> stepper(stopped, held);
+    stepper.step(0.01);
+    expect(stepper.mode().stop == pd::StopState::upper, "a force keeps it at a stop");
+    auto inputs = stepper.inputs();
+    inputs.plate_velocity.value += jump;
+    stepper.set(inputs);
+    const Values now = values_of(stepper);
+    if (jump > 0)
+      expect(now.v == 0 && stepper.event().stop == pd::Transition::stick, "it strikes again");
+    else
+      expect(now.v == jump && stepper.event().stop == pd::Transition::slip, "it is thrown off");
+    pd::Stepper<double> kept(stopped, stepper.state());
+    expect(kept.event().stop == stepper.event().stop && values_of(kept).v == now.v &&
+               kept.next() == stepper.next(),
+           "which a kept state says too");
+  }
 }
 
 /// An input that jumps is one that gets there ever faster.
@@ -306,6 +371,7 @@ void derivatives() {
 int main() {
   the_same_as_in_one_run();
   events();
+  at_the_stops();
   a_jump();
   across_and_back();
   derivatives();

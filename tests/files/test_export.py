@@ -125,10 +125,15 @@ def test_commands_take_a_rate() -> None:
 
 def test_columns_are_those_of_the_table_on_every_face() -> None:
     finger = pd.Contact(0.005, stiffness=1000.0)
-    drive = pd.Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=pd.Contact(0.02), finger=finger)
+    stops = {"travel": 1e-3, "stop_stiffness": 1e3}
+    drive = pd.Drive(
+        mass=0.01, stiffness=100.0, damping=0.4, plate=pd.Contact(0.02), finger=finger, **stops
+    )
     brake = pd.Profile([0.0, 0.1], [0.06, 0.0])
     motion = pd.simulate(drive, pd.Release(brake, 1.5e-3))
     data = motion.to_dataset()
+    pushes = np.maximum(np.abs(data.position) - 1e-3, 0.0) * 1e3
+    assert np.abs(np.abs(data.stop_force) - pushes).max() <= 1e-15 < float(pushes.max())
     over_time = {str(name) for name, column in data.variables.items() if column.dims == ("time",)}
     assert over_time == {quantity.name for quantity in MOTION}
     for name in over_time:
@@ -145,7 +150,7 @@ def test_columns_of_a_scan_are_those_of_the_table() -> None:
     rows = table("s.csv")
     data = scan.to_dataset([float(row["time_s"]) for row in rows])
     over_time = {str(name) for name, column in data.variables.items() if "time" in column.dims}
-    assert over_time == {*SERIES} - {"warming"}  # of a coil whose temperature is simulated
+    assert over_time == {*SERIES} - {"warming", "stop_force"}  # of a coil's temperature; of stops
     for name in over_time - {"time"}:
         assert data[name].attrs == SERIES[name].attributes
     for quantity in MOTION:

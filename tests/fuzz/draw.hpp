@@ -30,8 +30,8 @@ class Random {
   std::uint64_t counter_;
 };
 
-/// Of hands that move along the axis, across it too, or one in ten across; or along it, of pins with stops or
-/// of fingers that are compliant and have a curve.
+/// Of hands that move along the axis, across it too, or along it, of pins with stops or of fingers that are
+/// compliant and have a curve; any: one in ten across, and one in ten with stops, whichever the hand.
 enum class Family { any, aligned, oblique, stops, skin };
 
 class Draw {
@@ -80,7 +80,8 @@ class Draw {
     // Last, so that what an aligned hand has does not depend on the family.
     const bool oblique = chance(0.1);
     if (family_ == Family::oblique || (family_ == Family::any && oblique)) c.across = across();
-    if (family_ == Family::stops) stop(c, critical, length);
+    if (family_ == Family::stops || (family_ == Family::any && chance(0.1)))
+      stop(c, critical, length);
     if (family_ == Family::skin) skin(c, critical, length);
     return c;
   }

@@ -36,8 +36,11 @@ struct Options {
 
 // ---- one stretch of cases ------------------------------------------------------------------------
 
+/// One drive in eight is judged thoroughly.
+constexpr long long one_in = 8;
+
 Verdict judged(const Range& range, long long number, std::vector<pd::Segment<double>>& segments) {
-  return judge(range.at(number), number % 64 == 0, segments);
+  return judge(range.at(number), number % one_in == 0, segments);
 }
 
 /// The cases begin … end − 1, taken by the threads a few at a time.

@@ -213,6 +213,26 @@ MUTANTS = (
         "{step_.velocity.c[0], T(0), T(0), rate}",
         "{step_.velocity.c[0], T(0), T(0), 0 * rate}",
     ),
+    # This one is seen by the mirror alone …
+    Mutant(
+        "of the limits of skin, the upper one is looked at first",
+        "guards.hpp",
+        "const int near = -sense(segment.finger_force);",
+        "const int near = 1;",
+    ),
+    # … and these two where a motion is cut in two.
+    Mutant(
+        "skin that is given is a thousandth tighter",
+        "simulation.hpp",
+        "state_.skin = drive.finger.stiffness * inputs.skin_stretch;",
+        "state_.skin = T(1.001) * drive.finger.stiffness * inputs.skin_stretch;",
+    ),
+    Mutant(
+        "a pin beyond an elastic stop at the start is pushed, whether it comes back or not",
+        "stops.hpp",
+        "does = at_end(end, push(s, end) > 0);",
+        "does = at_end(end, true);",
+    ),
 )
 
 

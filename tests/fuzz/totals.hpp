@@ -15,22 +15,24 @@
 
 namespace fuzz {
 
-using Certificate = pd::Certificate<double>;
-
 struct Law {
   const char* name;
-  double Certificate::* residual;
+  double (*residual)(const Verdict&);
 };
-inline constexpr std::array<Law, 10> laws{{{"motion_law", &Certificate::motion_law},
-                                           {"kinematics", &Certificate::kinematics},
-                                           {"friction_law", &Certificate::friction_law},
-                                           {"force_bound", &Certificate::force_bound},
-                                           {"sliding_sign", &Certificate::sliding_sign},
-                                           {"sticking", &Certificate::sticking},
-                                           {"continuity", &Certificate::continuity},
-                                           {"transitions", &Certificate::transitions},
-                                           {"energy", &Certificate::energy},
-                                           {"dissipation", &Certificate::dissipation}}};
+inline constexpr std::array<Law, 12> laws{{
+    {"motion_law", [](const Verdict& v) { return v.certificate.motion_law; }},
+    {"kinematics", [](const Verdict& v) { return v.certificate.kinematics; }},
+    {"friction_law", [](const Verdict& v) { return v.certificate.friction_law; }},
+    {"force_bound", [](const Verdict& v) { return v.certificate.force_bound; }},
+    {"sliding_sign", [](const Verdict& v) { return v.certificate.sliding_sign; }},
+    {"sticking", [](const Verdict& v) { return v.certificate.sticking; }},
+    {"continuity", [](const Verdict& v) { return v.certificate.continuity; }},
+    {"transitions", [](const Verdict& v) { return v.certificate.transitions; }},
+    {"energy", [](const Verdict& v) { return v.certificate.energy; }},
+    {"dissipation", [](const Verdict& v) { return v.certificate.dissipation; }},
+    {"mirror", [](const Verdict& v) { return v.mirror; }},
+    {"cut", [](const Verdict& v) { return v.cut; }},
+}};
 
 /// The largest of a number, and the first case that has it.
 struct Largest {
@@ -60,7 +62,7 @@ struct Totals {
     inconsistent += verdict.status == pd::Status::inconsistent ? 1 : 0;
     most_segments.meet({static_cast<double>(count), number});
     for (std::size_t i = 0; i < laws.size(); ++i)
-      worst[i].meet({verdict.certificate.*laws[i].residual, number});
+      worst[i].meet({laws[i].residual(verdict), number});
     if (!verdict.good()) failed.push_back(number);
   }
 

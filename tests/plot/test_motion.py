@@ -429,6 +429,23 @@ def test_end_stops_are_marked_and_named() -> None:
     legend = panel(figure, "key").get_legend()
     words = {text.get_text() for text in legend.get_texts()} if legend else set()
     assert {"strikes an end stop", "leaves an end stop"} <= words
+    force = panel(figure, "f")
+    (curve,) = [line for line in force.lines if line.get_gid() == "curve"]
+    t, drawn = np.asarray(curve.get_xdata()) / 1e3, np.asarray(curve.get_ydata())
+    inside = ~np.isnan(drawn)
+    inside[[0, *np.flatnonzero(np.diff(inside)), *np.flatnonzero(np.diff(inside)) + 1]] = False
+    assert np.abs(drawn[inside] - motion.force("stop", t[inside])).max() < 1e-12
+    assert np.nanmin(drawn) < -0.1 and np.nanmax(drawn) >= 0.0, "N: it pushes the pin back"
+    assert force.get_ylabel() == "stop force $R_s$ (N)"
+    assert force.get_xlabel().startswith("time after release")
+    assert not panel(figure, "a").get_xlabel()
+
+
+def test_a_drive_without_end_stops_has_no_panel_of_their_force(
+    drawn: dict[str, tuple[Motion, Figure]],
+) -> None:
+    for _, figure in drawn.values():
+        assert "f" not in [axes.get_label() for axes in figure.axes]
 
 
 @pytest.mark.parametrize(("format", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])

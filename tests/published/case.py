@@ -100,8 +100,10 @@ def follow(
     displacement: float = 0.0,
     velocity: float | None = None,
     duration: float | None = None,
+    force: float = 0.0,
 ) -> Motion:
     """The motion of a drive; the cases are larger and faster than any tactile device."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ImplausibleValueWarning)
-        return simulate(drive, Release(mouse_velocity, displacement, velocity), duration=duration)
+        release = Release(mouse_velocity, displacement, velocity, force=force)
+        return simulate(drive, release, duration=duration)

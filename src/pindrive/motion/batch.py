@@ -12,7 +12,7 @@ from pindrive.lazy import xr
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import check_fits
+from pindrive.motion.release import check_fits, stop_numbers
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
@@ -210,11 +210,16 @@ def _followed(
         wanted = [name for name in wanted if name != "duration"]
     computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
-    table = _core.simulate_batch(spread, _BOUNDS, workers, numbers, "events" in wanted)
+    table = _core.simulate_batch(
+        spread, _BOUNDS, workers, numbers, "events" in wanted, 0, stop_numbers(drive)
+    )
     if _SETTLED in wanted:
         settling_time = table[_NUMBERS[_SETTLING_TIME]]
         table[_SETTLED] = settling_time == settling_time  # not NaN
     columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
+    for name in ("travel", "stop_stiffness", "stop_damping"):
+        if (value := getattr(drive, name)) is not None:
+            coordinates[name] = ((), value, QUANTITIES[name].attributes)
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
         name: (tuple(sizes), column.reshape(shape), _attributes(_NUMBERS.get(name, name)))
@@ -234,9 +239,6 @@ def _constants(
         if contact.curved:
             required = "without a friction curve; `simulate` follows one"
             raise ValueError(refusal(name, required, f"{len(contact.curve or ())} rows"))
-    if drive.travel is not None:
-        required = "left out; `simulate` follows end stops"
-        raise ValueError(refusal("travel", required, f"{drive.travel!r} m"))
     if release.skin_stretch is not None:
         given = f"{release.skin_stretch!r} m"
         raise ValueError(refusal("skin_stretch", "left out; `simulate` follows it", given))

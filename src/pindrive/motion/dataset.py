@@ -32,6 +32,8 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.floa
         "plate_force": motion.force("plate", t),
         "finger_force": motion.force("finger", t),
     }
+    if motion.drive.travel is not None:
+        found["stop_force"] = motion.force("stop", t)
     if not motion.drive.finger.rigid:
         found |= {"stretch": motion.stretch(t), "stretch_rate": motion.stretch_rate(t)}
     given = motion.release.mouse_velocity

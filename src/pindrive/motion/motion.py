@@ -114,12 +114,7 @@ class Motion(lazy.NotebookHtml):
         Raises:
             ValueError: a time is negative, NaN, or later than the motion is known.
         """
-        x = self._evaluate(self._core.position, t, side)
-        most = self.drive.rigid_travel
-        if most is None:
-            return x
-        # as it strikes a stop, its closed form goes beyond by rounding
-        return min(max(x, -most), most) if isinstance(x, float) else np.clip(x, -most, most)
+        return self._evaluate(self._core.position, t, side)
 
     @overload
     def velocity(self, t: float, side: Side = ...) -> float: ...

@@ -166,12 +166,17 @@ def core_numbers(drive: Drive, release: Release, duration: float | None) -> Core
         _rows(release.force),
         _rows(release.across_velocity),
         _rows(release.finger_load),
-        (
-            inf if drive.travel is None else drive.travel,
-            inf if drive.stop_stiffness is None else drive.stop_stiffness,
-            drive.stop_damping or 0.0,
-        ),
+        stop_numbers(drive),
         inf if duration is None else duration,
+    )
+
+
+def stop_numbers(drive: Drive) -> tuple[float, float, float]:
+    """Travel (m), stiffness (N/m) and damping (N*s/m) of the end stops as the core has them."""
+    return (
+        inf if drive.travel is None else drive.travel,
+        inf if drive.stop_stiffness is None else drive.stop_stiffness,
+        drive.stop_damping or 0.0,
     )
 
 

@@ -54,7 +54,7 @@ _MOST_MARKERS = 100
 def plot_motion(motion: Motion) -> Figure:
     """Draw a motion: x, v and a over time, and v over x, for a page 180 mm wide.
 
-    With a compliant finger also the stretch of its skin.
+    With a compliant finger also the stretch of its skin, with end stops their force on the pin.
 
     Args:
         motion: any motion; of a very long one the first phases, and the time axis says until when.
@@ -64,24 +64,30 @@ def plot_motion(motion: Motion) -> Figure:
     """
     with matplotlib.style.context(STYLE, after_reset=True):
         trace = Trace.of(motion)
-        skin = not motion.drive.finger.rigid
-        height = 150 if skin else 125
-        figure = new_figure(180, height)
+        skin, stops = not motion.drive.finger.rigid, motion.drive.travel is not None
+        figure = new_figure(180, 125 + 25 * (skin + stops))
         columns = figure.add_gridspec(1, 2, width_ratios=(1.25, 1.0))
-        rows = columns[0].subgridspec(3 + skin, 1)
+        rows = columns[0].subgridspec(3 + skin + stops, 1)
         x = figure.add_subplot(rows[0], label="x")
         v = figure.add_subplot(rows[1], label="v", sharex=x)
         a = figure.add_subplot(rows[2], label="a", sharex=x)
-        s = figure.add_subplot(rows[3], label="s", sharex=x) if skin else None
+        below = [a]
+        if skin:
+            below.append(figure.add_subplot(rows[3], label="s", sharex=x))
+        if stops:
+            below.append(figure.add_subplot(rows[3 + skin], label="f", sharex=x))
         rows = columns[1].subgridspec(2, 1, height_ratios=(2.6, 1.0))
         portrait = figure.add_subplot(rows[0], label="portrait")
         key = figure.add_subplot(rows[1], label="key")
         _draw_over_time(motion, trace, x, v, a)
-        if s:
-            _draw_skin(trace, a, s)
+        if skin:
+            _draw_skin(trace, below[1])
+        if stops:
+            _draw_stop_force(trace, below[-1])
+        _name_time_under(below)
         _draw_portrait(motion, trace, portrait)
         _draw_key(motion, trace, key)
-        figure.align_ylabels((x, v, a, s) if s else (x, v, a))
+        figure.align_ylabels((x, v, *below))
         figure.head(f"{outcome(motion)}\n{parameters(motion)}")
     return figure
 
@@ -120,7 +126,25 @@ def _draw_over_time(motion: Motion, trace: Trace, x: Axes, v: Axes, a: Axes) -> 
     a.set_xlim(0.0, trace.end * trace.scale)
 
 
-def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
+def _name_time_under(panels: list[Axes]) -> None:
+    """Move what names the time from the first of these to the last."""
+    panels[-1].set_xlabel(panels[0].get_xlabel())
+    for axes in panels[:-1]:
+        axes.set_xlabel("")
+        axes.tick_params(labelbottom=False)
+
+
+def _draw_stop_force(trace: Trace, axes: Axes) -> None:
+    """The force of the end stops on the pin. It jumps where the pin meets one that damps."""
+    axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
+    axes.plot(trace.broken(trace.t), trace.broken(trace.f), color=PALETTE["curve"], gid="curve")
+    left, right = trace.f[trace.starts[1:] - 1], trace.f[trace.starts[1:]]
+    axes.vlines(trace.t[trace.starts[1:]], left, right, color=PALETTE["curve"], lw=0.5, gid="jumps")
+    axes.set_ylim(_room(trace.f, 0.0))
+    axes.set_ylabel("stop force $R_s$ (N)")
+
+
+def _draw_skin(trace: Trace, axes: Axes) -> None:
     """The stretch of a compliant finger's skin, and where it grips the pin."""
     axes.axhline(0.0, color="0.8", lw=0.5, zorder=0, gid="zero")
     tint: dict[str, Any] = {"color": PALETTE["gripping"], "alpha": _GRIP_TINT, "zorder": 0.5}
@@ -128,9 +152,6 @@ def _draw_skin(trace: Trace, above: Axes, axes: Axes) -> None:
     axes.plot(trace.t, trace.s, color=PALETTE["curve"], gid="curve")
     axes.set_ylim(_room(trace.s, 0.0))
     axes.set_ylabel("skin stretch $s$ (µm)")
-    axes.set_xlabel(above.get_xlabel())
-    above.set_xlabel("")
-    above.tick_params(labelbottom=False)
 
 
 def _draw_portrait(motion: Motion, trace: Trace, axes: Axes) -> None:

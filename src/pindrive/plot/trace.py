@@ -48,6 +48,8 @@ class Trace:
     a: NDArray[np.float64]
     s: NDArray[np.float64]
     """Stretch of the skin, µm; 0 of a rigid finger."""
+    f: NDArray[np.float64]
+    """Force of the end stops on the pin, N; 0 without them."""
     events: tuple[tuple[Event, float], ...]
     """Events, and their delay."""
     unit: str
@@ -96,6 +98,8 @@ class Trace:
         a[lasts] = motion.acceleration(t[lasts], "left")
         s = motion.stretch(t)
         s[lasts] = motion.stretch(t[lasts], "left")
+        f = motion.force("stop", t)
+        f[lasts] = motion.force("stop", t[lasts], "left")
         delays = np.repeat([delay for _, delay in phases], sizes)
         unit, scale = ("ms", 1e3) if end < 2.0 else ("s", 1.0)
         return cls(
@@ -107,6 +111,7 @@ class Trace:
             v * MM,
             a,
             s * MICRON,
+            f,
             tuple(_events(motion, end)),
             unit,
             scale,

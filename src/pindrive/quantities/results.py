@@ -152,6 +152,7 @@ MOTION: Final[tuple[Quantity, ...]] = (
     Quantity("acceleration", "x''", "m/s^2", "acceleration of the pin in the housing"),
     Quantity("plate_force", "R_p", "N", "friction force of the plate on the pin"),
     Quantity("finger_force", "R_f", "N", "friction force of the finger on the pin"),
+    Quantity("stop_force", "R_s", "N", "force of the end stops on the pin"),
     Quantity("stretch", "s", "m", "stretch of the finger's skin"),
     Quantity("stretch_rate", "s'", "m/s", "stretch rate of the skin"),
     Quantity("plate_velocity", "v_p", "m/s", "velocity of the plate in the housing"),

@@ -1,0 +1,219 @@
+/// Laws that hold between two motions: that of a drive and of its mirror image, and one that is cut in two.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "given.hpp"
+#include "pindrive/motion.hpp"
+
+namespace fuzz {
+
+inline constexpr double largest_residual = 1e-9;
+
+/// A motion with all that it refers to.
+class Followed {
+ public:
+  explicit Followed(Case c) : case_(std::move(c)) { run_on(); }
+  /// From a state: a position, a velocity and the stretch of the skin, NaN where that slides.
+  Followed(Case c, double x, double v, double stretch) : case_(std::move(c)) {
+    given_.inputs.displacement = x;
+    given_.inputs.velocity = v;
+    given_.inputs.skin_stretch = stretch;
+    run_on();
+  }
+
+  Followed(const Followed&) = delete;
+  Followed& operator=(const Followed&) = delete;
+
+  bool ok() const { return outcome_.status == pd::Status::ok; }
+  pd::Motion<double> motion() const {
+    return {given_.drive, given_.inputs, segments_.data(), segments_.size(), outcome_};
+  }
+
+ private:
+  void run_on() { outcome_ = run(given_, segments_); }
+
+  const Case case_;
+  Given given_{case_};
+  std::vector<pd::Segment<double>> segments_;
+  pd::Outcome<double> outcome_;
+};
+
+/// Position and velocity.
+using Place = std::array<double, 2>;
+
+inline Place place(const pd::Motion<double>& motion, const pd::Segment<double>& segment,
+                   double tau) {
+  return motion.along(segment, [&](const auto& along) {
+    return Place{along.at(along.position(), tau), along.at(along.velocity(), tau)};
+  });
+}
+inline Place place(const pd::Motion<double>& motion, double t) {
+  const auto at = motion.locate(t, pd::Side::right);
+  return place(motion, *at.segment, at.tau);
+}
+/// The largest position and velocity as its segments begin, and half through them.
+inline Place size(const pd::Motion<double>& motion, double duration) {
+  Place most{};
+  for (const auto& segment : motion) {
+    const double half = (std::min(segment.end, duration) - segment.begin) / 2;
+    motion.along(segment, [&](const auto& along) {
+      for (const double tau : {0.0, half}) {
+        most[0] = std::max(most[0], std::abs(along.at(along.position(), tau)));
+        most[1] = std::max(most[1], std::abs(along.at(along.velocity(), tau)));
+      }
+    });
+  }
+  return most;
+}
+/// Beside a size; what differs from none at all is far.
+inline double beside(double difference, double size) {
+  return difference == 0 ? 0 : size > 0 ? std::abs(difference) / size : never;
+}
+
+// ---- the mirror ----------------------------------------------------------------------------------
+
+inline Case mirror(Case c) {
+  const auto turn = [](Rows& rows) {
+    for (double& value : rows.value) value = 0 - value;  // a zero stays as it is
+  };
+  turn(c.mouse_velocity);
+  turn(c.force);
+  turn(c.across);
+  c.displacement = 0 - c.displacement;
+  c.velocity = 0 - c.velocity;
+  return c;
+}
+
+inline bool mirrored(pd::ContactState one, pd::ContactState other) {
+  return pd::sign(one) == 0 ? one == other : pd::sign(one) == -pd::sign(other);
+}
+inline bool mirrored(const pd::Segment<double>& one, const pd::Segment<double>& other) {
+  const pd::Mode &a = one.mode, &b = other.mode;
+  return one.begin == other.begin && one.end == other.end && mirrored(a.plate, b.plate) &&
+         mirrored(a.finger, b.finger) && a.plate_branch == b.plate_branch &&
+         a.finger_branch == b.finger_branch &&
+         static_cast<int>(a.stop) == -static_cast<int>(b.stop) &&
+         one.event.plate == other.event.plate && one.event.finger == other.event.finger &&
+         one.event.stop == other.event.stop && one.creeps == other.creeps;
+}
+
+/// How far the motion of the mirror image is from the mirror image of the motion; infinite where an event
+/// differs. To turn a sign is exact, so that it has to be zero.
+inline double mirror_residual(const pd::Motion<double>& motion, const Case& c) {
+  const Followed image(mirror(c));
+  const pd::Motion<double> other = image.motion();
+  if (other.outcome().status != motion.outcome().status ||
+      other.outcome().end != motion.outcome().end ||
+      other.end() - other.begin() != motion.end() - motion.begin())
+    return never;
+  const Place most = size(motion, c.duration);
+  double worst = 0;
+  const pd::Segment<double>* twin = other.begin();
+  for (const auto& segment : motion) {
+    if (!mirrored(segment, *twin)) return never;
+    const Place a = place(motion, segment, 0), b = place(other, *twin, 0);
+    for (std::size_t i = 0; i < 2; ++i) worst = std::max(worst, beside(a[i] + b[i], most[i]));
+    ++twin;
+  }
+  return worst;
+}
+
+// ---- cut in two ----------------------------------------------------------------------------------
+
+/// An input from a time on.
+inline Rows from(const Rows& rows, double t) {
+  if (rows.at.size() == 1) return rows;
+  Rows later{{0}, {Given::profile(rows).from(t).value}};
+  for (std::size_t i = 0; i < rows.at.size(); ++i) {
+    if (!(rows.at[i] > t)) continue;
+    later.at.push_back(rows.at[i] - t);
+    later.value.push_back(rows.value[i]);
+  }
+  return later;
+}
+
+/// Where a motion is cut, and the drive from there on. The same case is always cut at the same time.
+struct Cut {
+  Cut(const pd::Motion<double>& motion, const Case& whole) : rest(whole) {
+    // Far from the rows, inside of a segment that lasts.
+    const auto count = static_cast<std::size_t>(motion.end() - motion.begin());
+    segment = motion.begin() + count * 2 / 5;
+    while (segment != motion.end() && !(segment->end > segment->begin)) ++segment;
+    possible = segment != motion.end();
+    if (!possible) return;
+    tau = 0.61803398874989 * (std::min(segment->end, whole.duration) - segment->begin);
+    time = segment->begin + tau;
+    tau = time - segment->begin;
+    for (Rows* rows :
+         {&rest.mouse_velocity, &rest.plate_load, &rest.force, &rest.across, &rest.finger_load})
+      *rows = from(*rows, time);
+    rest.duration = whole.duration - time;
+    const Place now = place(motion, *segment, tau);
+    const pd::Mode mode = segment->mode;
+    x = now[0];
+    v = mode.plate == pd::ContactState::stick    ? rest.mouse_velocity.value[0]
+        : mode.finger == pd::ContactState::stick ? 0
+                                                 : now[1];
+    held = mode.stuck();
+    if (mode.finger == pd::ContactState::elastic_stick)
+      stretch = -motion.friction(*segment, tau).finger / whole.skin;
+  }
+
+  /// What follows; moved by a part of the sizes of the motion where it can be, and damped by as much more
+  /// than it is, as what strikes a stop forgets where it came from.
+  Followed follow(const Place& most, double part) const {
+    Case moved = rest;
+    moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
+    return {moved, x + part * most[0], held ? v : v + part * most[1], stretch + part * most[0]};
+  }
+
+  const pd::Segment<double>* segment{};
+  bool possible{}, held{};
+  double tau{}, time{}, x{}, v{}, stretch{std::numeric_limits<double>::quiet_NaN()};
+  Case rest;
+};
+
+/// How far what goes on from a state within a motion is from that motion, as a part of its largest position
+/// and velocity, at times ever closer to the cut. Where a start that is moved by a part of 1e-12, either
+/// way, comes elsewhere, the rounding of the state may do so too: of the difference, four times the
+/// distance between those is taken.
+inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
+  const Cut cut(motion, c);
+  if (!cut.possible || !(cut.rest.duration > 0)) return 0;
+  const Place most = size(motion, c.duration);
+  const Followed rest = cut.follow(most, 0);
+  if (!rest.ok()) return never;
+  constexpr int times = 16;
+  std::array<Place, times> apart;
+  std::array<double, times> at;
+  double worst = 0, after = cut.rest.duration;
+  for (std::size_t k = 0; k < times; ++k, after *= 0.6) {
+    const double t = std::min(cut.time + after, c.duration);
+    at[k] = t - cut.time;
+    const Place one = place(motion, t), other = place(rest.motion(), at[k]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      apart[k][i] = beside(other[i] - one[i], most[i]);
+      worst = std::max(worst, apart[k][i]);
+    }
+  }
+  if (worst <= largest_residual) return worst;
+  const Followed up = cut.follow(most, 1e-12), down = cut.follow(most, -1e-12);
+  if (!up.ok() || !down.ok()) return never;
+  worst = 0;
+  for (std::size_t k = 0; k < times; ++k) {
+    const Place a = place(up.motion(), at[k]), b = place(down.motion(), at[k]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      worst = std::max(worst, apart[k][i] - 4 * beside(a[i] - b[i], most[i]));
+    }
+  }
+  return worst;
+}
+
+}  // namespace fuzz
