@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -394,7 +395,19 @@ pindrive_error Instance::go_back(const State& state) {
   return PINDRIVE_OK;
 }
 
-/// The numbers as they stand in memory, whether it is initialised, then the stepper if there is one.
+namespace {
+
+/// FNV-1a: tells bytes that were damaged.
+std::uint64_t checksum(const unsigned char* bytes, std::size_t size) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211U;
+  return hash;
+}
+
+}  // namespace
+
+/// The numbers as they stand in memory, whether it is initialised, the magnet, the stepper if there is one, and a
+/// checksum of all.
 pindrive_error Instance::write(const State& state, std::vector<unsigned char>& bytes) {
   bytes.clear();
   const auto add = [&](const auto& number) {
@@ -405,10 +418,14 @@ pindrive_error Instance::write(const State& state, std::vector<unsigned char>& b
   add(state.values.begin);
   add(static_cast<unsigned char>(state.values.initialised));
   add(state.coil);
-  if (!state.stepper) return PINDRIVE_OK;
-  const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
-  bytes.resize(before + size);
-  return pindrive_stepper_write(state.stepper.get(), &bytes[before], size);
+  pindrive_error error = PINDRIVE_OK;
+  if (state.stepper) {
+    const std::size_t before = bytes.size(), size = pindrive_stepper_size(state.stepper.get());
+    bytes.resize(before + size);
+    error = pindrive_stepper_write(state.stepper.get(), &bytes[before], size);
+  }
+  add(checksum(bytes.data(), bytes.size()));
+  return error;
 }
 
 pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
@@ -419,7 +436,11 @@ pindrive_error Instance::read(const unsigned char* bytes, std::size_t size,
     return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit, not %zu",
                 size);
   };
-  if (size < numbers) return refused();
+  std::uint64_t said = 0;
+  if (size < numbers + sizeof said) return refused();
+  size -= sizeof said;
+  std::memcpy(&said, bytes + size, sizeof said);
+  if (said != checksum(bytes, size)) return refused();
   auto found = std::make_unique<State>();
   Values& values = found->values;
   values.start.resize(variables_.size());

@@ -352,6 +352,22 @@ def test_derivatives_along_what_presses(
     assert "position is an output" in capsys.readouterr().out
 
 
+def test_damaged_states_are_refused(tmp_path: Path) -> None:
+    device, _ = scanned("warm pulses", tmp_path)
+    unit = Unit(*unpacked(device, tmp_path / "pin.fmu", 3)).begin(mouse_velocity=0.05)
+    unit.command(magnet_on=True)
+    unit.step(0.0123)
+    kept = bytes(unit.slave.serializeFMUState(unit.slave.getFMUState()))
+    unit.slave.deserializeFMUState(kept)
+    for i in range(0, len(kept), 7):
+        damaged = bytearray(kept)
+        damaged[i] ^= 1 << i % 8
+        with pytest.raises(FMICallException):
+            unit.slave.deserializeFMUState(bytes(damaged))
+    with pytest.raises(FMICallException):
+        unit.slave.deserializeFMUState(kept[:20])
+
+
 def test_the_command_says_what_takes_the_place_of_the_load(tmp_path: Path) -> None:
     done = run("fmu", str(READER), "-o", str(tmp_path / "pin.fmu"), "--set", "plate_load=2")
     assert "plate_load is left out; the input magnet_on takes its place" in done.stderr
