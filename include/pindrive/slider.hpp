@@ -40,15 +40,16 @@ class Slider {
       const bool last = !(range.to < never);
       if (range.slope > 0) {
         const T most = last ? never : contact_.branch(j + 1).force;
-        if (asked < most) {
-          const T beyond = (asked - range.force) / range.slope;
-          if (beyond > 0) return {j, range.from + beyond, asked};
+        if (!(asked > range.force) || same(asked, range.force))
           return {j, range.from, range.force, Bound::lower};
+        if (same(asked, most)) {
+          if (!(pin_(most) > range.to)) return {j, range.to, most, Bound::upper};
+        } else if (asked < most) {
+          return {j, range.from + (asked - range.force) / range.slope, asked};
         }
-        if (asked == most && !(pin_(asked) > range.to)) return {j, range.to, asked, Bound::upper};
       }
-      if (range.slope != 0 || !(last || range.force >= asked)) continue;
-      const bool drops = range.force < asked;
+      const bool drops = range.force < asked && !same(asked, range.force);
+      if (range.slope != 0 || (drops && !last)) continue;
       const T speed = pin_(range.force);
       if (speed < range.from && drops) {
         Landing<T> back = slower(j, range.force);
@@ -65,16 +66,17 @@ class Slider {
   Landing<T> slower(int branch, T asked) const {
     for (int j = branch - 1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
-      if (range.slope > 0 && asked > range.force) {
-        const bool whole = j + 1 < contact_.branches && asked >= contact_.branch(j + 1).force;
-        if (whole) return {j, range.to, asked, Bound::upper};
+      const bool start = same(asked, range.force);
+      if (range.slope > 0 && asked > range.force && !start) {
+        const T most = j + 1 < contact_.branches ? contact_.branch(j + 1).force : never;
+        if (asked > most || same(asked, most)) return {j, range.to, most, Bound::upper};
         return {j, range.from + (asked - range.force) / range.slope, asked};
       }
       const T speed = pin_(range.force);
       const bool holds = j == 0 && asked < contact_.static_limit;
-      if (range.slope > 0 && asked == range.force && speed > range.from && !holds)
+      if (range.slope > 0 && start && speed > range.from && !holds)
         return {j, range.from, range.force, Bound::lower};
-      if (range.slope != 0 || range.force > asked) continue;
+      if (range.slope != 0 || (range.force > asked && !start)) continue;
       if (!(speed > range.from)) continue;
       if (speed < range.to) return {j, speed, range.force};
       return {j, range.to, range.force, Bound::upper};
@@ -84,6 +86,11 @@ class Slider {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+  /// Whether two frictions differ by rounding only.
+  static bool same(T one, T other) {
+    using std::abs;
+    return one == other || abs(one - other) < rounding<T> * other;
+  }
 
   const Contact<T>& contact_;
   Pin pin_;

@@ -10,7 +10,7 @@ import {
   type Value,
   type Values,
 } from "./friction";
-import { brief, counted, floatRepr, general } from "./python";
+import { brief, floatRepr, general } from "./python";
 import { DRIVE, part, type Quantity, required, TABLES } from "./table";
 
 export const MOUSE = "motion.mouse_velocity";
