@@ -181,7 +181,8 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
     if (oblique()) {
       const ObliqueSlip<T> slip = slides(s.v, surface.rate + first);
       const T closing = slip.closing(), known = slip.rounding_of(surface.value);
-      const T faster = touches(closing, slip.parting(), known) ? slip.parting() : closing;
+      const bool turns = closing == 0 || touches(closing, slip.parting(), known);
+      const T faster = turns ? slip.parting() : closing;
       return (does.at == Bound::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;

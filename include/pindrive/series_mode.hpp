@@ -32,16 +32,19 @@ struct InputLines {
   template <class Input>
   static InputLines of(const Inputs<T, Input>& inputs, const Segment<T>& segment) {
     return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
-            across_from(inputs.across_velocity, segment.begin), inputs.force.from(segment.begin),
-            inputs.finger_load.from(segment.begin)};
+            across_from(inputs.across_velocity, segment.begin, segment.plate_velocity),
+            inputs.force.from(segment.begin), inputs.finger_load.from(segment.begin)};
   }
-  /// A velocity across from a time on; where it comes to zero within some roundings of that, it is zero: the
-  /// nearer to it, the shorter are the steps of a pin that comes to rest on the plate at once.
+  /// A velocity across from a time on, of a plate that moves like this along the axis. Where it is within some
+  /// roundings of both, it is zero: the nearer to it, the shorter are the steps of a pin that comes to rest on
+  /// the plate at once.
   template <class Input>
-  static Line<T> across_from(const Input& across_velocity, T time) {
+  static Line<T> across_from(const Input& across_velocity, T time, const Line<T>& along) {
     using std::abs;
     Line<T> line = across_velocity.from(time);
-    if (abs(line.value) <= 64 * detail::rounding<T> * time * abs(line.rate)) line.value = T(0);
+    const T changes = time * (abs(line.rate) + abs(along.rate));
+    if (abs(line.value) <= 64 * detail::rounding<T> * (changes + abs(along.value)))
+      line.value = T(0);
     return line;
   }
 };

@@ -262,7 +262,7 @@ class Simulation : private Selection<T, Surface> {
       if constexpr (!Surface::plain) {
         finger_.load = inputs_.finger_load.from(time_);
         force_ = inputs_.force.from(time_);
-        plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_);
+        plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_, plate_.surface);
         row_ = std::min({row_, inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
                          inputs_.across_velocity.next_row(time_)});
       }

@@ -240,7 +240,8 @@ class Stepper {
   /// Those but for the plate's velocity, which may be known to be exactly the pin's.
   void take_inputs(const T& time) {
     simulation_.plate_.load = inputs_.plate_load.from(time);
-    simulation_.plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time);
+    simulation_.plate_.across =
+        InputLines<T>::across_from(inputs_.across_velocity, time, simulation_.plate_.surface);
     simulation_.force_ = inputs_.force.from(time);
     simulation_.finger_.load = inputs_.finger_load.from(time);
   }
