@@ -217,8 +217,8 @@ class Pulses:
         edge, q = closing.flux, closing.inductance
 
         def swing(part: float) -> tuple[float, float]:
-            rises = exp(-on / (part * rise_constant))
-            falls = exp(-off / (part * fall_constant))
+            rises = exp(-self.duty / (self.frequency * rise_constant * part))
+            falls = exp(-(1.0 - self.duty) / (self.frequency * fall_constant * part))
             most = part * ((1.0 - rises) / (1.0 - rises * falls))
             return most * falls, most
 
