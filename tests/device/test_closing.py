@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from math import log, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 
 from command import GOOD, refused, run
@@ -293,6 +296,30 @@ def test_check_says_when_the_gap_closes_and_opens() -> None:
     Path("device.toml").write_text(GOOD + MAGNET + 'voltage = [["0 s", "1.2 V"]]\n')
     said = " ".join(run("check", "device.toml").stdout.split())
     assert "With the voltage given, its gap does not stay closed while it is on." in said
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+def test_a_scan_is_written_with_the_lift_and_without_what_is_not_given() -> None:
+    Path("device.toml").write_text(GOOD + MAGNET)
+    done = run("scan", "device.toml", "--grating", "8 mm", "-o", "a.nc")
+    assert done.exit_code == 0, done.output
+    with xr.open_dataset("a.nc") as data:
+        assert data.lift == 9e-5 and data.closing_force == 0.3
+        assert "heat_capacity" not in data.attrs
+        assert float(data.current.max()) > 0.99 and float(data.pull.max()) > 3.8
+
+
+def test_the_example_of_the_page_prints_what_it_says() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "devices.md").read_text("utf-8")
+    code, said = next(
+        part.split("```\n\n```text\n")
+        for part in page.split("```python\n")
+        if "closing_force=" in part
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", check=True
+    )
+    assert done.stdout == said.partition("```")[0]
 
 
 @pytest.mark.parametrize(

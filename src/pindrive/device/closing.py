@@ -1,8 +1,8 @@
 """The gap under the poles of a coil that closes as its pull grows, quasi-statically.
 
 With the flux linkage λ, U = R i + λ' and λ = L i. The gap is closed while the pull is more than a
-given force, else open by the lift; its motion between both takes no time. The flux linkage goes on
-through it, and with it the pull, while the inductance, and so the current, jumps. With c the flux
+given force, else open by the lift; its motion between both takes no time. The flux linkage is
+continuous, and with it the pull, while the inductance, and so the current, jumps. With c the flux
 linkage over that of the full current and the closed gap, it tends exponentially to the voltage's
 part with L/R while the gap is closed, and to q times that with q L/R while it is open, where q is
 the inductance with the open gap over that with the closed one.
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 class Closing:
     """When the gap closes and opens, and what that makes of the inductance."""
 
-    flux: float = 0.0
+    flux: float
     """The flux linkage at which it closes and opens, a part of that of the full current."""
-    inductance: float = 1.0
+    inductance: float
     """q, the inductance while it is open over that while it is closed."""
 
     def piece(
         self, start: float, target: float, constant: float
     ) -> tuple[float, float, float, float]:
-        """How the flux linkage goes on from `start` while the voltage stays.
+        """How the flux linkage continues from `start` while the voltage stays.
 
         Args:
             start: the flux linkage, a part.
@@ -52,7 +52,7 @@ class Closing:
         return target, constant, inductance, lasts
 
 
-CLOSED: Final = Closing()
+CLOSED: Final = Closing(flux=0.0, inductance=1.0)
 """That of a gap that does not open."""
 
 

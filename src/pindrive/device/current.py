@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from pindrive.device.closing import CLOSED
 from pindrive.quantities import budgets
 
 if TYPE_CHECKING:
@@ -82,7 +81,7 @@ class Current:
         before: CoilState,
         circuit: Circuit,
         *,
-        closing: Closing = CLOSED,
+        closing: Closing,
         heat: Heat | None = None,
         levels: NDArray[np.float64] | None = None,
     ) -> Current:
@@ -203,7 +202,7 @@ class Pulses:
         return times[times < end], on[times < end]
 
     def steady(
-        self, rise_constant: float, fall_constant: float, closing: Closing = CLOSED
+        self, rise_constant: float, fall_constant: float, closing: Closing
     ) -> tuple[float, float]:
         """The least and the largest flux linkage in the end, from none at first, parts.
 

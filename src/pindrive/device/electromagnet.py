@@ -305,7 +305,7 @@ class Electromagnet:
             times, switched, levels = self.steps.switchings(commands, before, begin, end)
         elif self.pulses is not None:
             times, switched = self.pulses.switchings(commands, begin, end)
-            if before.on and times[:1] == begin:  # a pulse that goes on is no switching
+            if before.on and times[:1] == begin:  # a pulse that continues is no switching
                 times, switched = times[1:], switched[1:]
         else:
             times = commands.times
