@@ -62,6 +62,11 @@ function checkMagnet(values: Found, given: readonly string[]): void {
     throw new Refusal("voltage", "given with a coil, by turns, gap, wire_diameter and the like", "it alone");
   }
   const hold = made.length ? pullOf(of) : of("hold_force");
+  const closing = ["lift", "closing_force"].filter((name) => of(name) != null);
+  if (closing.length === 1) {
+    const other = closing[0] === "lift" ? "closing_force" : "lift";
+    throw new Refusal(closing[0]!, `given with ${other}`, "it alone");
+  }
   if (made.length && voltage) checkVoltage(voltage, of("supply_voltage"));
   if (of("residual") >= hold) {
     throw new Refusal(
@@ -79,6 +84,23 @@ function checkMagnet(values: Found, given: readonly string[]): void {
   if (voltage && pulses.length) {
     throw new Refusal("voltage", "left out where pwm_frequency gives pulses", "both");
   }
+  if (closing.length) checkClosing(of, hold);
+}
+
+/** A gap that would never close, or never open. */
+function checkClosing(of: (name: string) => number, hold: number): void {
+  const [residual, force] = [of("residual"), of("closing_force")];
+  const open = of("gap") / (of("gap") + of("lift"));
+  const saturation = Math.min(1, of("saturation_field") / fieldOf(of));
+  const most = residual + (hold - residual) * Math.min((open / saturation) ** 2, 1);
+  const given = `${floatRepr(force)} N`;
+  if (force <= residual) {
+    throw new Refusal("closing_force", `more than the residual pull, ${floatRepr(residual)} N`, given);
+  }
+  const flux = saturation * Math.sqrt((force - residual) / (hold - residual));
+  if (force < most && flux < open) return;
+  const words = `less than the pull of full current with the open gap, ${floatRepr(most)} N`;
+  throw new Refusal("closing_force", words, given);
 }
 
 function checkOneWay(made: readonly string[], direct: readonly string[]): void {
@@ -93,12 +115,19 @@ function checkOneWay(made: readonly string[], direct: readonly string[]): void {
   throw new Refusal(label, `given with ${needed}`, `${made.join(", ")} alone`);
 }
 
+/** The field of a coil at full current if its iron did not saturate, T. */
+function fieldOf(of: (name: string) => number): number {
+  const resistance = (COPPER * of("turns") * of("turn_length")) / ((Math.PI / 4) * of("wire_diameter") ** 2);
+  const current = of("supply_voltage") / resistance;
+  return (MAGNETIC * of("turns") * current) / (2 * of("gap"));
+}
+
 /** The pull of a coil at full current or saturation, N; refuses one whose quotients are out of range. */
 function pullOf(of: (name: string) => number): number {
   const [turns, area, gap] = [of("turns"), of("pole_area"), of("gap")];
   const resistance = (COPPER * turns * of("turn_length")) / ((Math.PI / 4) * of("wire_diameter") ** 2);
   const current = of("supply_voltage") / resistance;
-  const field = (MAGNETIC * turns * current) / (2 * gap);
+  const field = fieldOf(of);
   const parts = {
     resistance,
     inductance: (MAGNETIC * turns ** 2 * area) / (2 * gap),

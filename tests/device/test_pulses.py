@@ -22,6 +22,7 @@ from pindrive.device import (
     PinArray,
     scan,
 )
+from pindrive.device.closing import CLOSED
 from pindrive.device.heating import COPPER_RISE, Heat
 from pindrive.device.reading import Reading
 
@@ -59,14 +60,14 @@ def test_in_the_end_the_current_swings_between_the_steady_values() -> None:
     made = magnet(0.3)
     assert made.pulses
     current = made.current(Commands(np.array([0.0])), CoilState(-1.0), 0.0, 0.2)
-    low, high = made.pulses.steady(0.001, 0.004)
+    low, high = made.pulses.steady(0.001, 0.004, CLOSED)
     assert current(0.198) == pytest.approx(low, rel=1e-12)
     assert current(0.1986) == pytest.approx(high, rel=1e-12)
     t = np.linspace(0.196, 0.198, 200_001)
     assert made.heating == pytest.approx(float(np.mean(current(t) ** 2)), rel=1e-4)
     assert made.sustained_pull == pytest.approx(low**2, rel=1e-12)
     fast = magnet(0.3, 20_000.0, rise=0.004).pulses
-    assert fast and fast.steady(0.004, 0.004) == pytest.approx((0.3, 0.3), rel=0.02)
+    assert fast and fast.steady(0.004, 0.004, CLOSED) == pytest.approx((0.3, 0.3), rel=0.02)
 
 
 def test_a_full_duty_is_no_pulse() -> None:

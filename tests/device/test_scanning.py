@@ -128,7 +128,7 @@ def exact_release(device: Device, pin: PinScan, begin: float, end: float) -> flo
     x0 = float(pin.position(begin))
 
     def load(t: float) -> float:
-        return float(device.load(magnet.pull(pin.current(t))))
+        return float(device.load(magnet.pull(pin.current.flux(t))))
 
     def spare(t: float) -> float:
         pull = pin_drive.stiffness * (x0 + speed * (t - begin)) + pin_drive.damping * speed

@@ -112,6 +112,7 @@ def test_the_template_of_a_whole_device_says_what_holds_anyway(write: Write) -> 
     assert told == {"array.columns", "array.rows", "array.spot_scale", *sizes}
 
 
+CLOSING = {"lift": "0.05 mm", "closing_force": "20 mN"}
 PULSES = 'pwm_frequency = "1 kHz"\npwm_duty = 0.4'
 
 
@@ -125,13 +126,15 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
         if name
         in (
             *("release_resistance", "saturation_field", "thermal_resistance", "heat_capacity"),
-            *("temperature_rise", "voltage"),
+            *("temperature_rise", "voltage", *CLOSING),
         )
         or not alone
         else PULSES
         if name in ("pwm_frequency", "pwm_duty")
         else ""
     )
+    if name in CLOSING:
+        coil += "".join(f'{key} = "{value}"\n' for key, value in CLOSING.items())
     coil = "\n".join(line for line in coil.splitlines() if not line.startswith(f"{name} "))
     value = f'"{usual(quantity)}"' if quantity.unit != "1" else usual(quantity)
     if name == "places":

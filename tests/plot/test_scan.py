@@ -97,7 +97,7 @@ def test_the_history_is_that_of_the_pin(judged: Judgement, figure: Figure) -> No
     for name, gid, of, scale in (
         ("x", "curve", pin.position, 1e3),
         ("force", "force", pin.skin_force, 1e3),
-        ("pull", "pull", lambda t: judged.scan.device.magnet.pull(pin.current(t)), 1.0),
+        ("pull", "pull", lambda t: judged.scan.device.magnet.pull(pin.current.flux(t)), 1.0),
     ):
         t, y = data(panel(figure, name), gid)
         assert t[0] == 0.0

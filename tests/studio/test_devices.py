@@ -138,6 +138,9 @@ WRONG_AROUND = [
         'outer_diameter = "2.7 mm"', 'voltage = [["1 ms", "1 V"]]', 'voltage = [["0 s", "99 V"]]',
         'voltage = [["0 s", "1 V"], ["0 s", "2 V"]]', 'saturation_field = "1 mT"\nresidual = "1 N"',
         'voltage = [["0 s", "1 V"]]\npwm_frequency = "1 kHz"\npwm_duty = 0.5',
+        'lift = "0.1 mm"', 'closing_force = "0.1 N"', 'lift = "0.1 mm"\nclosing_force = "3 N"',
+        'lift = "0.1 mm"\nclosing_force = "0.1 N"\nresidual = "0.1 N"',
+        'lift = "0.1 mm"\nclosing_force = "0 N"', 'lift = "-0.1 mm"\nclosing_force = "0.1 N"',
     )),
     ("control", "threshold = 0.9\nhysteresis = 0.3"),
     *(("array", line) for line in (

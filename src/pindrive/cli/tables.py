@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from pindrive.device.device import Device
+    from pindrive.device.electromagnet import Electromagnet
     from pindrive.device.hand import HandPath
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
@@ -249,6 +250,25 @@ def device_words(device: Device) -> list[str]:
             f"Its coil: {', '.join(quantities)}; on for {coil.duty:.0%} of the time at most, to "
             f"warm by {coil.temperature_rise:g} K."
         )
+    words += closing_words(device.magnet)
+    return words
+
+
+def closing_words(magnet: Electromagnet) -> list[str]:
+    """When the gap under the poles closes and opens; nothing where it stays closed."""
+    if magnet.coil is None or magnet.coil.lift is None:
+        return []
+    closes, opens = (
+        QUANTITIES[name].text(getattr(magnet, time))
+        for name, time in (("rise_time", "closing_time"), ("fall_time", "opening_time"))
+    )
+    words = [
+        f"At full voltage its gap closes {closes} after it is switched on, and opens {opens} after "
+        f"it is switched off."
+    ]
+    if magnet.sustained_flux <= magnet.closing.flux:
+        driven = "pulses" if magnet.steps is None else "voltage"
+        words.append(f"With the {driven} given, its gap does not stay closed while it is on.")
     return words
 
 

@@ -33,7 +33,7 @@ class Coil:
     Args:
         turns: N, at least 1.
         pole_area: A of one pole, m², greater than 0.
-        gap: g under each pole, m, greater than 0.
+        gap: g under each pole, closed, m, greater than 0.
         wire_diameter: d of the copper, m, greater than 0.
         turn_length: mean length of a turn, m, greater than 0.
         supply_voltage: U while it is on, V, greater than 0.
@@ -42,9 +42,12 @@ class Coil:
         thermal_resistance: R_th, K/W, greater than 0.
         heat_capacity: C_th, J/K, greater than 0; None: its temperature is not simulated.
         temperature_rise: ΔT allowed, K, greater than 0.
+        lift: by how much wider each gap is while it is open, m, at least 0; None: it stays closed.
+        closing_force: the pull beyond which the gap is closed, N, greater than 0, with `lift`.
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: a value is no number or out of its range, or one of the last two without the
+            other.
 
     The formulas are those of magnetic circuits, as in Fitzgerald, Kingsley and Umans, "Electric
     Machinery", chapters 1 and 3.
@@ -61,11 +64,16 @@ class Coil:
     thermal_resistance: Number = default("thermal_resistance")
     heat_capacity: OptionalNumber = default("heat_capacity")
     temperature_rise: Number = default("temperature_rise")
+    lift: OptionalNumber = default("lift")
+    closing_force: OptionalNumber = default("closing_force")
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
         for name in ("resistance", "inductance", "current", "field", "power"):
             check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
+        if (self.lift is None) != (self.closing_force is None):
+            one, other = ("lift", "closing_force")[:: 1 if self.closing_force is None else -1]
+            raise ValueError(refusal(one, f"given with {other}", "it alone"))
 
     @property
     def resistance(self) -> float:
@@ -74,7 +82,7 @@ class Coil:
 
     @property
     def inductance(self) -> float:
-        """L = N B A / I = μ0 N² A / 2g, H, clamped to the plate."""
+        """L = N B A / I = μ0 N² A / 2g, H, with the closed gap."""
         return MAGNETIC_CONSTANT * self.turns**2 * self.pole_area / (2.0 * self.gap)
 
     @property

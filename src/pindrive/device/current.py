@@ -1,10 +1,14 @@
-"""The current in a coil over time: exponentials between switchings, by commands or by pulses."""
+"""The flux linkage and current of a coil over time: exponentials between switchings.
+
+Both are parts of what they are at full current with the closed gap, so that they are the same
+number while the gap is closed. The flux linkage is continuous; the current jumps as the gap closes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, exp, expm1, floor
+from math import ceil, exp, floor, inf, log, log1p
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -14,21 +18,22 @@ from pindrive.quantities import budgets
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.device.closing import Closing
     from pindrive.device.heating import Heat
 
 
 @dataclass(frozen=True, slots=True)
 class CoilState:
-    """All there is to know of a coil: its last switching."""
+    """All there is to know of a coil: its last switching, or closing or opening of its gap."""
 
     since: float = 0.0
     """When that was, s."""
     on: bool = False
     """Whether it is on since then."""
-    current: float = 0.0
-    """The current then, a part of the full one."""
+    flux: float = 0.0
+    """The flux linkage then, a part of that of the full current."""
     pull: float | None = None
-    """The pull then, as its rows have it, N; None: exactly that of the current."""
+    """The pull then, as its rows have it, N; None: exactly that of the flux."""
     warming: float = 0.0
     """Of the coil above 20 °C then, K."""
     level: float = 1.0
@@ -38,26 +43,32 @@ class CoilState:
 
 
 Circuit = Callable[[bool, float], tuple[float, float]]
-"""Of a coil that is on or off, with its resistance over that at 20 °C: the current to which it
-tends at full voltage, a part of the full one, and its time constant, s."""
+"""Of a coil with a closed gap that is on or off, with its resistance over that at 20 °C: the flux
+linkage to which it tends at full voltage, a part, and its time constant, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Current:
-    """A current over time, a part of the full one, exactly: an exponential after each switching."""
+    """A current over time, a part of the full one, exactly.
+
+    A piece begins at each switching, and where the gap closes or opens; in each the flux linkage is
+    an exponential.
+    """
 
     begins: NDArray[np.float64]
     """When each piece begins, s, shape (n,), n >= 1."""
     starts: NDArray[np.float64]
-    """The current then."""
+    """The flux linkage then, a part of that of the full current."""
     on: NDArray[np.bool_]
     """Whether it is switched on from then on, or off."""
     levels: NDArray[np.float64]
     """The voltage across it while it is on, a part of the full one."""
     targets: NDArray[np.float64]
-    """The current to which it tends."""
+    """The flux linkage to which it tends."""
     constants: NDArray[np.float64]
     """Its time constant, s."""
+    inductances: NDArray[np.float64]
+    """The inductance over that with the closed gap."""
     warmings: NDArray[np.float64]
     """The warming of the coil then, K; 0 where its temperature is not simulated."""
     heat: Heat | None
@@ -69,6 +80,8 @@ class Current:
         on: NDArray[np.bool_],
         before: CoilState,
         circuit: Circuit,
+        *,
+        closing: Closing,
         heat: Heat | None = None,
         levels: NDArray[np.float64] | None = None,
     ) -> Current:
@@ -77,18 +90,28 @@ class Current:
         `levels` are the voltages across it while it is on, parts of the full one: 1 unless given.
         """
         levels = np.ones(len(on)) if levels is None else levels
-        lasts = [*np.diff(begins).tolist(), 0.0]
-        current, warming = float(before.current), before.warming
+        ends = [*begins[1:].tolist(), inf]
+        flux, warming = float(before.flux), before.warming
         pieces = []
-        for rises, level, each in zip(on.tolist(), levels.tolist(), lasts, strict=True):
-            target, constant = circuit(rises, 1.0 if heat is None else heat.resistance(warming))
-            target *= level
-            pieces.append((current, target, constant, warming))
-            if heat is not None:
-                warming = heat.after(warming, current, target, constant, each)
-            current = current_after(current, target, each / constant)
-        starts, targets, constants, warmings = np.array(pieces).T
-        return cls(begins, starts, on, levels, targets, constants, warmings, heat)
+        for begin, end, rises, level in zip(
+            begins.tolist(), ends, on.tolist(), levels.tolist(), strict=True
+        ):
+            while begin < end:
+                target, constant = circuit(rises, 1.0 if heat is None else heat.resistance(warming))
+                target, constant, inductance, lasts = closing.piece(flux, target * level, constant)
+                pieces.append((begin, flux, rises, level, target, constant, inductance, warming))
+                crosses = begin + lasts < end
+                each = lasts if crosses else end - begin
+                if each == inf:
+                    break
+                if heat is not None:
+                    start, final = flux / inductance, target / inductance
+                    warming = heat.after(warming, start, final, constant, each)
+                flux = closing.flux if crosses else current_after(flux, target, each / constant)
+                begin = begin + lasts if crosses else end
+        columns = [np.array(each) for each in zip(*pieces, strict=True)]
+        begins, starts, on, levels, targets, constants, inductances, warmings = columns
+        return cls(begins, starts, on, levels, targets, constants, inductances, warmings, heat)
 
     @overload
     def __call__(self, t: float) -> float: ...
@@ -96,16 +119,28 @@ class Current:
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]: ...
     def __call__(self, t: ArrayLike) -> float | NDArray[np.float64]:
         """The current at time t (s), any shape; before its begin what it begins with."""
+        value = self._flux(t) / self.inductances[self._piece(np.asarray(t, np.float64))]
+        return float(value) if value.ndim == 0 else value
+
+    @overload
+    def flux(self, t: float) -> float: ...
+    @overload
+    def flux(self, t: ArrayLike) -> NDArray[np.float64]: ...
+    def flux(self, t: ArrayLike) -> float | NDArray[np.float64]:
+        """The flux linkage at time t (s), any shape, a part of that of the full current."""
+        value = self._flux(t)
+        return float(value) if value.ndim == 0 else value
+
+    def _flux(self, t: ArrayLike) -> NDArray[np.float64]:
         times = np.asarray(t, np.float64)
         i = self._piece(times)
         left = np.exp(-np.maximum(times - self.begins[i], 0.0) / self.constants[i])
         target = self.targets[i]
-        value = np.where(
+        return np.where(
             target == 1.0,  # to the bit 1 where it is reached
             1.0 - (1.0 - self.starts[i]) * left,
             target + (self.starts[i] - target) * left,
         )
-        return float(value) if value.ndim == 0 else value
 
     def warming(self, t: ArrayLike) -> NDArray[np.float64]:
         """The warming of the coil at times t (s, shape (n,)), K; it is simulated."""
@@ -113,8 +148,21 @@ class Current:
         times = np.asarray(t, np.float64)
         i = self._piece(times)
         since = np.maximum(times - self.begins[i], 0.0)
-        columns = (self.warmings[i], self.starts[i], self.targets[i], self.constants[i], since)
+        starts, targets = (part[i] / self.inductances[i] for part in (self.starts, self.targets))
+        columns = (self.warmings[i], starts, targets, self.constants[i], since)
         return np.array([self.heat.after(*row) for row in zip(*columns, strict=True)])
+
+    def mean_square(self, end: float) -> float:
+        """The mean of the current's square from its begin to `end` (s), a part."""
+        begins = self.begins[self.begins < end]
+        lasts, among = np.diff(np.append(begins, end)), slice(len(begins))
+        constants, inductances = self.constants[among], self.inductances[among]
+        target = self.targets[among] / inductances
+        swing = self.starts[among] / inductances - target  # c = target + swing exp(-t/τ)
+        once = -constants * np.expm1(-lasts / constants)
+        twice = -0.5 * constants * np.expm1(-2.0 * lasts / constants)
+        parts = target**2 * lasts + 2.0 * target * swing * once + swing**2 * twice
+        return float(parts.sum() / (end - begins[0]))
 
     def _piece(self, times: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.maximum(np.searchsorted(self.begins, times, "right") - 1, 0)
@@ -153,23 +201,46 @@ class Pulses:
         on = np.arange(times.size) % 2 == 0
         return times[times < end], on[times < end]
 
-    def steady(self, rise_constant: float, fall_constant: float) -> tuple[float, float]:
-        """The least and the largest current in the end, parts of the full one."""
-        rises = exp(-self.duty / (self.frequency * rise_constant))
-        falls = exp(-(1.0 - self.duty) / (self.frequency * fall_constant))
-        most = (1.0 - rises) / (1.0 - rises * falls)
-        return most * falls, most
+    def steady(
+        self, rise_constant: float, fall_constant: float, closing: Closing
+    ) -> tuple[float, float]:
+        """The least and the largest flux linkage in the end, from none at first, parts.
 
-    def mean_square(self, rise_constant: float, fall_constant: float) -> float:
-        """The mean of the square of the current in the end, of the full one's square."""
-        low, high = self.steady(rise_constant, fall_constant)
+        The flux linkage a period later is a growing function of it, so that from none it comes to
+        the least value that returns. The gap stays open there, or closes and opens in each period,
+        or stays closed, looked for in this order. Where it closes and opens that function is
+        convex, so that Newton's iteration from below comes to its least value without a step
+        beyond.
+        """
         on, off = self.duty / self.frequency, (1.0 - self.duty) / self.frequency
-        gap = 1.0 - low  # c = 1 - gap exp(-t/τ) while it is on
-        part, square = (
-            -constant * expm1(-on / constant) for constant in (rise_constant, 0.5 * rise_constant)
-        )
-        falls = -0.5 * fall_constant * expm1(-2.0 * off / fall_constant)
-        return (on - 2.0 * gap * part + gap**2 * square + high**2 * falls) * self.frequency
+        edge, q = closing.flux, closing.inductance
+
+        def swing(part: float) -> tuple[float, float]:
+            rises = exp(-self.duty / (self.frequency * rise_constant * part))
+            falls = exp(-(1.0 - self.duty) / (self.frequency * fall_constant * part))
+            most = part * ((1.0 - rises) / (1.0 - rises * falls))
+            return most * falls, most
+
+        low, high = swing(q)
+        if high <= edge:
+            return low, high
+        while low < edge:
+            opened = q * rise_constant * log1p((edge - low) / (q - edge))
+            high = 1.0 - (1.0 - edge) * exp(-(on - opened) / rise_constant)
+            closed = fall_constant * log(high / edge)
+            if closed >= off:
+                break
+            ways = (on - opened) / rise_constant + opened / (q * rise_constant)
+            ways += closed / fall_constant + (off - closed) / (q * fall_constant)
+            slope = exp(-ways) * (1.0 - edge) / (q - edge)
+            short = edge * exp(-(off - closed) / (q * fall_constant)) - low
+            if slope >= 1.0 and short > 0.0:
+                break
+            following = low + short / (1.0 - slope)
+            if short <= 0.0 or following <= low:
+                return low, high
+            low = following
+        return swing(1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +282,7 @@ def commanded_spans(
 
 
 def current_after(start: float, target: float, constants: float) -> float:
-    """A current that tends to `target`, so many time constants later."""
+    """A flux linkage that tends to `target`, so many time constants later."""
     left = exp(-constants)
     return 1.0 - (1.0 - start) * left if target == 1.0 else target + (start - target) * left
 

@@ -22,6 +22,7 @@ from pindrive.quantities.table import QUANTITIES
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.device.coil import Coil
     from pindrive.device.hand import HandPath
     from pindrive.device.scanning import PinScan, Scan
 
@@ -127,7 +128,7 @@ def inputs(scan: Scan) -> dict[str, float]:
         "preload": drive.preload,
         **({} if drive.touch_force is None else {"touch_force": drive.touch_force}),
         **asdict(device.control),
-        **({} if magnet.coil is None else asdict(magnet.coil)),
+        **({} if magnet.coil is None else _given(magnet.coil)),
         "axis": device.array.axis,
         "pin_diameter": device.array.pin_diameter,
         **({} if device.array.slot_length is None else {"slot_length": device.array.slot_length}),
@@ -136,6 +137,11 @@ def inputs(scan: Scan) -> dict[str, float]:
     }
     angles = scan.path.angles(device.array.axis)
     return values | dict(zip(("angle.largest", "angle.mean"), angles, strict=True))
+
+
+def _given(coil: Coil) -> dict[str, float]:
+    """Its numbers, without those that are not given."""
+    return {name: value for name, value in asdict(coil).items() if value is not None}
 
 
 def numbers(pin: PinScan) -> dict[str, float]:
@@ -166,7 +172,7 @@ def _columns(scan: Scan, pin: PinScan, t: NDArray[np.float64]) -> dict[str, NDAr
         "luminance": scan.scene.at(*scan.spot(pin.number, t).T),
         "command": pin.commands.on(t),
         "current": pin.current(t),
-        "pull": scan.device.magnet.pull(pin.current(t)),
+        "pull": scan.device.magnet.pull(pin.current.flux(t)),
         **({} if pin.current.heat is None else {"warming": pin.current.warming(t)}),
     }
 

@@ -1,7 +1,8 @@
 """The electromagnet: how it is made; commands to current, current to pull, pull as a load.
 
-The current c, a part of the full one, rises and falls exponentially with L/R. The pull is
-P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the current until the iron saturates,
+The flux linkage c, a part of that of the full current, rises and falls exponentially with L/R; it
+is the current too unless the gap opens (`closing`). The pull is
+P_r + (P_h − P_r) min((c/σ)², 1): it grows with the square of the flux until the iron saturates,
 and a residual pull stays. In time it is smooth piece by piece, so that rows whose distance h obeys
 h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further from it.
 """
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
+from pindrive.device.closing import CLOSED, closing_at
 from pindrive.device.coil import COIL, COIL_NEEDS, Coil, check_poles
 from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
 from pindrive.quantities import budgets
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from pindrive.device.closing import Closing
     from pindrive.device.current import Commands
     from pindrive.motion.drive import Contact
     from pindrive.quantities.part import Number, OptionalNumber
@@ -101,6 +104,7 @@ class Electromagnet:
         if self.steps is not None and self.pwm_frequency is not None:
             required = "left out where pwm_frequency gives pulses"
             raise ValueError(refusal("voltage", required, "both"))
+        _ = self.closing  # each force in range, yet it may never close or open
 
     @classmethod
     def from_times(
@@ -193,23 +197,54 @@ class Electromagnet:
             steps=None if voltage is None else coil.steps(voltage),
         )
 
+    @cached_property
+    def closing(self) -> Closing:
+        """When the gap under its poles closes and opens; without a lift it stays closed."""
+        coil = self.coil
+        if coil is None or coil.lift is None or coil.closing_force is None:
+            return CLOSED
+        inductance = coil.gap / (coil.gap + coil.lift)
+        return closing_at(coil.closing_force, inductance, self.pull, self.saturation)
+
     @property
     def rise_time(self) -> float:
         """From switching on until 90 % of the pull beyond the residual, s."""
-        return -self.rise_constant * log(1.0 - self.saturation * sqrt(0.9))
+        return self._rises(self.saturation * sqrt(0.9))
 
     @property
     def fall_time(self) -> float:
         """From switching off until 10 % of it, s."""
-        return -self.fall_constant * log(self.saturation * sqrt(0.1))
+        return self._falls(self.saturation * sqrt(0.1))
+
+    @property
+    def closing_time(self) -> float:
+        """From switching on at full voltage until its gap closes, s; 0: it is closed before."""
+        return self._rises(self.closing.flux)
+
+    @property
+    def opening_time(self) -> float:
+        """From switching off at full current until its gap opens, s; inf: it does not."""
+        return self._falls(self.closing.flux) if self.closing.flux > 0.0 else inf
+
+    def _rises(self, flux: float) -> float:
+        """From switching on without flux until that linkage, s."""
+        edge, q = self.closing.flux, self.closing.inductance
+        closed = self.rise_constant * log((1.0 - max(flux, edge)) / (1.0 - edge))
+        return 0.0 - closed - q * self.rise_constant * log(1.0 - min(flux, edge) / q)
+
+    def _falls(self, flux: float) -> float:
+        """From switching off at full current until that linkage, s."""
+        closed = max(flux, self.closing.flux)
+        opened = self.closing.inductance * log(flux / closed)
+        return -self.fall_constant * log(closed) - self.fall_constant * opened
 
     @overload
-    def pull(self, current: float) -> float: ...
+    def pull(self, flux: float) -> float: ...
     @overload
-    def pull(self, current: ArrayLike) -> NDArray[np.float64]: ...
-    def pull(self, current: ArrayLike) -> float | NDArray[np.float64]:
-        """The pull (N) at a current, a part of the full one in [0, 1], of any shape."""
-        share = np.minimum((np.asarray(current, np.float64) / self.saturation) ** 2, 1.0)
+    def pull(self, flux: ArrayLike) -> NDArray[np.float64]: ...
+    def pull(self, flux: ArrayLike) -> float | NDArray[np.float64]:
+        """The pull (N) at a flux linkage, a part of that of the full current, of any shape."""
+        share = np.minimum((np.asarray(flux, np.float64) / self.saturation) ** 2, 1.0)
         pull = self.residual + (self.hold_force - self.residual) * share
         return float(pull) if pull.ndim == 0 else pull
 
@@ -221,22 +256,38 @@ class Electromagnet:
         return Pulses(self.pwm_frequency, self.pwm_duty)
 
     @property
-    def sustained_pull(self) -> float:
-        """The pull that it keeps while it is on, N: with pulses the least of each period."""
+    def sustained_flux(self) -> float:
+        """The flux linkage that it keeps while it is on: with pulses the least of each period."""
         if self.steps is not None:
-            return self.pull(self.steps.levels[-1])
-        if self.pulses is None:
-            return self.hold_force
-        return self.pull(self.pulses.steady(self.rise_constant, self.fall_constant)[0])
+            times, levels = np.array(self.steps.times), np.array(self.steps.levels)
+            on = np.ones(len(times), np.bool_)
+            kept = Current.of(
+                times, on, CoilState(), self._circuit, closing=self.closing, levels=levels
+            )
+            return float(kept.targets[-1])
+        return 1.0 if self.pulses is None else self._swing(self.pulses)[0]
+
+    @property
+    def sustained_pull(self) -> float:
+        """The pull then, N."""
+        return self.pull(self.sustained_flux)
 
     @property
     def heating(self) -> float:
-        """Heat while it is on over that of the full current: with pulses the mean of c²."""
+        """Heat while it is on over that of the full current: with pulses the mean of its square."""
         if self.steps is not None:
             return self.steps.levels[-1] ** 2
         if self.pulses is None:
             return 1.0
-        return self.pulses.mean_square(self.rise_constant, self.fall_constant)
+        edges = np.array([0.0, self.pulses.duty / self.pulses.frequency])
+        before = CoilState(0.0, True, self._swing(self.pulses)[0])
+        on = np.array([True, False])
+        period = Current.of(edges, on, before, self._circuit, closing=self.closing)
+        return period.mean_square(1.0 / self.pulses.frequency)
+
+    def _swing(self, pulses: Pulses) -> tuple[float, float]:
+        """The least and the largest flux linkage of a period in the end."""
+        return pulses.steady(self.rise_constant, self.fall_constant, self.closing)
 
     def current(
         self, commands: Commands, before: CoilState, begin: float = 0.0, end: float = 0.0
@@ -254,6 +305,8 @@ class Electromagnet:
             times, switched, levels = self.steps.switchings(commands, before, begin, end)
         elif self.pulses is not None:
             times, switched = self.pulses.switchings(commands, begin, end)
+            if before.on and times[:1] == begin:  # a pulse that continues is no switching
+                times, switched = times[1:], switched[1:]
         else:
             times = commands.times
             switched = commands.on(times)
@@ -262,10 +315,12 @@ class Electromagnet:
         begins = np.concatenate([[before.since], times[new]])
         on = np.concatenate([[before.on], switched[new]])
         heat = None if self.coil is None else self.coil.heat
-        return Current.of(begins, on, before, self._circuit, heat, levels)
+        return Current.of(
+            begins, on, before, self._circuit, closing=self.closing, heat=heat, levels=levels
+        )
 
     def _circuit(self, on: bool, resistance: float) -> tuple[float, float]:
-        """The current (of the full one) to which it tends, and its time constant (s).
+        """To which part of the full flux linkage it tends, its gap closed, and how fast (s).
 
         `resistance` is that of the winding over the one at 20 °C.
         """
@@ -295,17 +350,17 @@ class Electromagnet:
         Raises:
             ValueError: there would be too many rows.
         """
-        rows = 0
+        rows, pieces = 0, max(1, int(np.searchsorted(current.begins, end)))
         times: list[NDArray[np.float64]] = []
         pulls: list[NDArray[np.float64]] = []
-        stops = [*current.begins[1:].tolist(), end]
+        stops = [*current.begins[1:pieces].tolist(), end]
         pull = self.pull(float(current.starts[0])) if first is None else first
         for begin, stop, start, target, constant in zip(
-            current.begins.tolist(),
+            current.begins[:pieces].tolist(),
             stops,
-            current.starts.tolist(),
-            current.targets.tolist(),
-            current.constants.tolist(),
+            current.starts[:pieces].tolist(),
+            current.targets[:pieces].tolist(),
+            current.constants[:pieces].tolist(),
             strict=True,
         ):
             parts, currents = self._rows_after(start, target)

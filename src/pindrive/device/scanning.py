@@ -182,7 +182,8 @@ class PinScan:
         """The largest warming of its coil, K, at a switching or the end; None: not simulated."""
         if self.current.heat is None:
             return None
-        times = self.current.begins[self.current.begins >= self.begin]
+        begins = self.current.begins
+        times = begins[(begins >= self.begin) & (begins < self.end)]
         return float(self.current.warming(np.append(times, self.end)).max())
 
     @property
@@ -511,18 +512,19 @@ def _load(
     device: Device, commands: Commands, current: Current, before: CoilState, path: HandPath
 ) -> tuple[float | Profile, CoilState]:
     """The load on the plate's friction over the time since the path's begin, and how it ends."""
-    if not current.on.any() and before.current == 0.0:
+    if not current.on.any() and before.flux == 0.0:
         return device.load(device.magnet.residual), before
     times, pull = device.magnet.pull_rows(current, path.end, before.pull)
     spans = commanded_spans(commands, before, path.begin, path.end)
-    since = float(current.begins[-1])
+    last = max(0, int(np.searchsorted(current.begins, path.end)) - 1)  # its gap may open later
+    since = float(current.begins[last])
     after = CoilState(
         since,
-        bool(current.on[-1]),
-        float(current.starts[-1]),
+        bool(current.on[last]),
+        float(current.starts[last]),
         float(pull[np.searchsorted(times, since)]),
-        float(current.warmings[-1]),
-        float(current.levels[-1]),
+        float(current.warmings[last]),
+        float(current.levels[last]),
         spans[-1][0] if spans else before.commanded,
     )
     gone = max(0, int(np.searchsorted(times, path.begin, "right")) - 1)

@@ -115,7 +115,7 @@ def draw_history(
         _draw_bands(judgement, chosen, axes)
         axes.tick_params(labelbottom=axes is force)
     _draw_seen(judgement, chosen, seen, t, ms)
-    pull.plot(ms, scan.device.magnet.pull(pin.current(t)), color=PALETTE["curve"], gid="pull")
+    pull.plot(ms, scan.device.magnet.pull(pin.current.flux(t)), color=PALETTE["curve"], gid="pull")
     pull.set_ylabel("pull (N)")
     pull.set_ylim(0.0, 1.15 * scan.device.magnet.hold_force)
     signs = _draw_motion(pin, chosen, x, t, ms)

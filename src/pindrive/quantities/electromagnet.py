@@ -125,7 +125,8 @@ COIL: Final = in_table(
         between(1.0, 1e6),
         source="assumed",
         example=250,
-        remark="with the six that follow in place of hold_force, rise_time, fall_time, saturation",
+        remark="in place of hold_force, rise_time, fall_time, saturation; with pole_area, gap, "
+        "wire_diameter, turn_length, supply_voltage",
     ),
     Quantity(
         "pole_area",
@@ -144,6 +145,26 @@ COIL: Final = in_table(
         between(1e-9, 0.1),
         source="assumed",
         example=5e-5,
+    ),
+    Quantity(
+        "lift",
+        "s",
+        "m",
+        "by how much wider the gap under each pole is while it is open",
+        between(0.0, 0.1),
+        source="assumed: as much again as the gap",
+        example=5e-5,
+        remark="with closing_force; the gap stays closed unless both are given",
+    ),
+    Quantity(
+        "closing_force",
+        "F_c",
+        "N",
+        "pull beyond which the gap is closed, against suspension or pad",
+        between(1e-9, 1e4),
+        source="assumed: twice the weight of 1 g",
+        example=0.02,
+        remark="with lift",
     ),
     Quantity(
         "wire_diameter",

@@ -1,0 +1,81 @@
+"""The gap under the poles of a coil that closes as its pull grows, quasi-statically.
+
+With the flux linkage λ, U = R i + λ' and λ = L i. The gap is closed while the pull is more than a
+given force, else open by the lift; its motion between both takes no time. The flux linkage is
+continuous, and with it the pull, while the inductance, and so the current, jumps. With c the flux
+linkage over that of the full current and the closed gap, it tends exponentially to the voltage's
+part with L/R while the gap is closed, and to q times that with q L/R while it is open, where q is
+the inductance with the open gap over that with the closed one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, log1p, sqrt
+from typing import TYPE_CHECKING, Final
+
+from pindrive.quantities.refusal import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+@dataclass(frozen=True, slots=True)
+class Closing:
+    """When the gap closes and opens, and what that makes of the inductance."""
+
+    flux: float
+    """The flux linkage at which it closes and opens, a part of that of the full current."""
+    inductance: float
+    """q, the inductance while it is open over that while it is closed."""
+
+    def piece(
+        self, start: float, target: float, constant: float
+    ) -> tuple[float, float, float, float]:
+        """How the flux linkage continues from `start` while the voltage stays.
+
+        Args:
+            start: the flux linkage, a part.
+            target: to which it tends while the gap is closed.
+            constant: its time constant then, s.
+
+        Returns:
+            to which it tends, its time constant (s), the inductance over that with the closed gap,
+            and how long until the gap closes or opens (s), inf where it does not.
+        """
+        # Just where it closes or opens, the flux's way tells.
+        closed = start > self.flux or (start == self.flux and target > self.flux)
+        inductance = 1.0 if closed else self.inductance
+        target, constant, lasts = target * inductance, constant * inductance, inf
+        if start > self.flux > target if closed else start < self.flux < target:
+            lasts = constant * log1p((start - self.flux) / (self.flux - target))
+        return target, constant, inductance, lasts
+
+
+CLOSED: Final = Closing(flux=0.0, inductance=1.0)
+"""That of a gap that does not open."""
+
+
+def closing_at(
+    force: float, inductance: float, pull: Callable[[float], float], saturation: float
+) -> Closing:
+    """The closing of a gap that closes against a force (N).
+
+    Args:
+        force: the pull beyond which it is closed, N.
+        inductance: with the open gap over that with the closed one.
+        pull: at a flux linkage, a part of that of the full current, N.
+        saturation: the part at which the pull stops growing.
+
+    Raises:
+        ValueError: it would never close, or never open.
+    """
+    residual, most = pull(0.0), pull(inductance)
+    if force <= residual:
+        required = f"more than the residual pull, {residual!r} N"
+        raise ValueError(refusal("closing_force", required, f"{force!r} N"))
+    flux = saturation * sqrt((force - residual) / (pull(1.0) - residual))
+    if force >= most or flux >= inductance:
+        required = f"less than the pull of full current with the open gap, {most!r} N"
+        raise ValueError(refusal("closing_force", required, f"{force!r} N"))
+    return Closing(flux, inductance)
