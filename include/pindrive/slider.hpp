@@ -114,6 +114,9 @@ struct TouchOption {
 /// What a compliant contact has beside a rigid one: the part of `Touch` that knows its slider.
 template <class Touch, class T, class Surface>
 class SliderOf {
+  friend Touch;
+  SliderOf() = default;
+
  public:
   /// Whether the velocity of its slider is a state of its own, beside that of the pin.
   bool lags() const { return compliant() && self().sliding() && self().branch().slope != 0; }

@@ -307,7 +307,6 @@ def test_rows_are_set_as_toml() -> None:
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ('finger.curve=[["0 m/s", "20 mN"], ["1 m/s", "0 N"]]', "finger.curve must be one row"),
         ("skin_stretch=31 µm", "motion.skin_stretch must be at most static friction over"),
         ('mouse_velocity=[["0 s", "1 V"]]', "motion.mouse_velocity[0] value must be in m/s"),
     ],

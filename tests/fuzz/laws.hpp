@@ -149,8 +149,8 @@ struct Cut {
     possible = segment != motion.end();
     if (!possible) return;
     // A release cannot say how fast skin slips on a curve.
-    possible = std::isinf(whole.skin) || whole.curve[1].at.size() == 1 ||
-               !pd::slips(segment->mode.finger);
+    possible =
+        std::isinf(whole.skin) || whole.curve[1].at.size() == 1 || !pd::slips(segment->mode.finger);
     if (!possible) return;
     tau = 0.61803398874989 * (std::min(segment->end, whole.duration) - segment->begin);
     time = segment->begin + tau;
