@@ -220,6 +220,21 @@ def test_outputs_are_those_of_a_simulation(archive: Archive) -> None:
         assert np.abs(values - expected).max() <= 1e-11 * np.abs(expected).max(), name
 
 
+@pytest.mark.parametrize("stops", ["", 'stop_stiffness = "5 N/mm"\nstop_damping = "0.5 N s/m"\n'])
+def test_a_pin_meets_its_stops(stops: str, tmp_path: Path) -> None:
+    device = tmp_path / "stops.toml"
+    text = MOUSE.read_text(encoding="utf-8")
+    device.write_text(text.replace("[drive]\n", f'[drive]\ntravel = "2.03 mm"\n{stops}'))
+    archive = Archive(tmp_path / "stops.fmu", device, 3)
+    motion = simulate(archive.device.drive, archive.device.release, duration=0.3)
+    assert any(event.contact == "stop" for event in motion.events)
+    unit, random, worst = archive.unit().begin(), np.random.default_rng(4), 0.0
+    while unit.time < 0.29:
+        unit.step(unit.time + random.uniform(1e-4, 4e-3))
+        worst = max(worst, abs(unit.get("position")[0] - motion.position(unit.time)))
+    assert worst < 1e-12 * 2e-3
+
+
 def test_derivatives_are_exact(archive: Archive) -> None:
     unit = archive.unit()
     if unit.version == 2:
