@@ -15,7 +15,7 @@ from fmu_unit import Unit, unpacked
 from pindrive import Page, Profile, Release, Scan, load_device, scan, simulate
 from pindrive.device.current import CoilState, Commands
 from pindrive.files.device import DeviceFile
-from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
+from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of, write_fmu
 from pindrive.files.template import NUMBERS
 from pindrive.motion.release import INPUTS
 
@@ -350,6 +350,17 @@ def test_derivatives_along_what_presses(
     with pytest.raises(FMICallException):
         unit.command(position=True)
     assert "position is an output" in capsys.readouterr().out
+
+
+def test_a_gap_that_opens_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "device.toml"
+    text = next(text for text in FILES if COIL in text)
+    opening = COIL + 'lift = "0.05 mm"\nclosing_force = "20 mN"\n'
+    path.write_text(text.replace(COIL, opening), "utf-8")
+    with pytest.raises(
+        ValueError, match=r"^magnet.lift must be left out for an FMU, which .* 5e-05 m$"
+    ):
+        write_fmu(load_device(path), tmp_path / "unit.fmu")
 
 
 def test_damaged_states_are_refused(tmp_path: Path) -> None:

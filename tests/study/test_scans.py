@@ -222,6 +222,7 @@ BY_COEFFICIENT = DEVICE.replace('kinetic = "22 mN"', "coefficient = 0.2").replac
 STOPPED = DEVICE.replace(
     'mass = "10 g"', 'mass = "10 g"\ntravel = "5 mm"\nstop_stiffness = "100 kN/m"'
 )
+OPENING = 'lift = "0.05 mm"\nclosing_force = "20 mN"\n'
 
 
 @pytest.mark.parametrize("table", ["drive", "plate", "finger", "magnet", *AROUND])
@@ -234,7 +235,9 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
         if key.endswith(".static"):
             base = 0.040
         other = base + 1.0 if key in ("array.columns", "array.rows") else 0.99 * base
-        coiled = quantity.name in MADE_OF
+        coiled = COILED if quantity.name in MADE_OF else ""
+        if quantity.name in ("lift", "closing_force"):
+            coiled += OPENING
         plan = study(
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
             device=(
@@ -242,7 +245,7 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
                 if "coefficient" in key or key == "finger.touch_force"
                 else STOPPED
                 if key.startswith("drive.stop_")
-                else DEVICE + (COILED if coiled else PULSED if "pwm" in key else "")
+                else DEVICE + (coiled or (PULSED if "pwm" in key else ""))
             ),
         )
         found = evaluate(plan, plan.columns(0, 2), 2, SCAN_OUTPUTS)
