@@ -17,7 +17,8 @@ export class MapRunner {
   task: MapTask | null = null;
   private readonly view: MapView;
   private worker: Worker | null = null;
-  private busy = false;
+  /** Whether the thread has not answered yet. */
+  busy = false;
   private next: (() => MapTask) | null = null;
   private state: State | null = null;
 
@@ -35,7 +36,7 @@ export class MapRunner {
     try {
       this.worker = new Worker(URL.createObjectURL(new Blob([MAP_WORKER], { type: "text/javascript" })));
       this.worker.addEventListener("message", ({ data }: MessageEvent<MapResult>) => this.answered(data));
-      this.worker.addEventListener("error", () => (this.worker = null)); // then it is computed here
+      this.worker.addEventListener("error", () => this.failed());
       this.worker.postMessage({ wasm });
     } catch {
       this.worker = null;
@@ -83,6 +84,15 @@ export class MapRunner {
     } else {
       this.answered(computeMap(this.core, task));
     }
+  }
+
+  /** Without its thread, the map is computed here. */
+  private failed(): void {
+    this.worker = null;
+    const unanswered = this.busy ? this.task : null;
+    this.busy = false;
+    this.next ??= unanswered && (() => unanswered);
+    this.send();
   }
 
   private answered(result: MapResult): void {

@@ -9,5 +9,11 @@ addEventListener("message", ({ data }: MessageEvent<{ wasm: ArrayBuffer } | { ta
     core = Core.load(data.wasm);
     return;
   }
-  void core?.then((ready) => postMessage(computeMap(ready, data.task)));
+  core
+    ?.then((ready) => postMessage(computeMap(ready, data.task)))
+    .catch((error: unknown) =>
+      setTimeout(() => {
+        throw error; // outside of the promise, where the page hears of it
+      }),
+    );
 });

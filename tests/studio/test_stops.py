@@ -60,10 +60,14 @@ def test_derivatives_and_maps_of_end_stops_are_those_of_python(page: Any, tmp_pa
         assert shown == pytest.approx((ends[1] - ends[0]) / 2e-5 * 0.01 * 1e3, rel=5e-3), key
     page.select_option("#map-x", "drive.travel")
     page.select_option("#map-y", "drive.stop_stiffness")
-    drawn = "Boolean(pindrive.page.map.last.values && pindrive.page.map.task.varied.travel)"
-    while not page.evaluate(drawn):  # its policy forbids it to wait by itself
+    drawn = (
+        "(() => { const {busy, next, task} = pindrive.page.map;"
+        " return !busy && !next && Boolean(task?.varied.travel && task.varied.stop_stiffness); })()"
+    )
+    for _ in range(1200):  # its policy forbids it to wait by itself
+        if page.evaluate(drawn):
+            break
         page.wait_for_timeout(50)
-    page.wait_for_timeout(300)
     found = page.evaluate(
         "(() => { const r = pindrive.page.map; const {travel, stop_stiffness} = r.task.varied;"
         " return {values: [...r.last.values], x: [...travel.x], y: [...stop_stiffness.y]}; })()"
