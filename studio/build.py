@@ -73,7 +73,8 @@ def core() -> Path:
     target = BUILD / "core.wasm"
     compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
     call(
-        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-mllvm", "-inline-threshold=150", "-DNDEBUG", "-s"),
+        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-DNDEBUG", "-s"),
+        *("-mllvm", "-inline-threshold=150"),  # more makes the page larger than it may be
         *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
         *sorted((ROOT / "capi").glob("*.cpp")),
         *("-o", str(target)),
