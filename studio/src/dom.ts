@@ -30,6 +30,21 @@ export function option(value: string, text: string, selected = false): HTMLOptio
   return h("option", { value, selected }, text);
 }
 
+const typed = new WeakSet<HTMLInputElement>();
+
+/** A field for a text. What is typed there stays until it is given: see `show`. */
+export function textField(properties: Properties): HTMLInputElement {
+  const field = h("input", { type: "text", ...properties });
+  field.addEventListener("input", () => typed.add(field));
+  for (const given of ["change", "blur"]) field.addEventListener(given, () => typed.delete(field));
+  return field;
+}
+
+/** Shows a text in such a field, unless somebody has begun to type another: a page is drawn at any time. */
+export function show(field: HTMLInputElement, text: string): void {
+  if (!typed.has(field) && field.value !== text) field.value = text;
+}
+
 /** A card: a part of the page with its heading. */
 export function card(name: string, title: string, ...children: Node[]): HTMLElement {
   const id = `${name}-title`;

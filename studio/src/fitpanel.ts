@@ -1,7 +1,7 @@
 // A recording beside the curves: its time offset, and which parameters are fitted to it.
 
 import { variedKeys } from "./design";
-import { button, h, refill } from "./dom";
+import { button, h, refill, show, textField } from "./dom";
 import type { FitResult } from "./fit";
 import type { Values } from "./friction";
 import { nameOf } from "./results";
@@ -41,8 +41,7 @@ export class FitPanel {
       this.build(values, overlay);
     }
     const field = this.element.querySelector<HTMLInputElement>("#offset");
-    if (field && overlay && document.activeElement !== field)
-      field.value = String(Number((1e3 * overlay.offset).toPrecision(8)));
+    if (field && overlay) show(field, String(Number((1e3 * overlay.offset).toPrecision(8))));
   }
 
   private build(values: Values, overlay: Overlay | null): void {
@@ -61,7 +60,7 @@ export class FitPanel {
       return;
     }
     const { recording } = overlay;
-    const offset = h("input", { type: "text", id: "offset", inputmode: "decimal" });
+    const offset = textField({ id: "offset", inputmode: "decimal" });
     offset.addEventListener("change", () => {
       const value = Number(offset.value.replace("−", "-"));
       if (Number.isFinite(value)) actions.offset(value / 1e3);

@@ -2,7 +2,7 @@
 import { problemOf } from "./checks";
 import { applies, isRows, valueFor, withValue } from "./design";
 import { readNumber } from "./device";
-import { h, option, symbol } from "./dom";
+import { h, option, show, symbol, textField } from "./dom";
 import type { Value, Values } from "./friction";
 import { byCoefficient, frictionKeys, frictionOf, givenFriction, withKind } from "./friction";
 import { partOf, type Range, rangeOf, valueAt } from "./range";
@@ -83,8 +83,7 @@ export class Panel {
       step: 1,
       "aria-label": `${nameOf(quantity)}, ${quantity.meaning}`,
     });
-    const field = h("input", {
-      type: "text",
+    const field = textField({
       id,
       inputmode: "decimal",
       autocomplete: "off",
@@ -157,12 +156,8 @@ export class Panel {
       range = rangeOf(quantity, value);
       if (document.activeElement !== slider) slider.value = String(Math.round(STEPS * partOf(range, value)));
       slider.setAttribute("aria-valuetext", text(quantity, value));
-      const shown = fieldText(quantity, value);
-      if (
-        field.value !== shown &&
-        (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true")
-      )
-        field.value = shown;
+      if (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true")
+        show(field, fieldText(quantity, value));
       if (!note.textContent || field.getAttribute("aria-invalid") !== "true") {
         note.textContent = plausible(quantity, value)
           ? ""

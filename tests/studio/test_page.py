@@ -244,6 +244,25 @@ def test_a_mistake_is_said_in_the_words_of_the_command(
     assert page.locator("#problem").is_hidden()
 
 
+def test_what_is_being_typed_outlasts_a_drawing_of_the_page(page: Any) -> None:
+    """Which comes after each change, in the next frame, and so while the next number is typed."""
+    page.locator("#drive-stiffness").select_text()
+    page.keyboard.type("15")
+    page.evaluate("pindrive.page.render()")
+    page.keyboard.type("0")
+    page.evaluate("pindrive.page.render()")
+    assert page.input_value("#drive-stiffness") == "150"
+    assert value(page, "drive.stiffness") == 100
+    page.keyboard.press("Enter")
+    settled(page)
+    assert value(page, "drive.stiffness") == 150
+    page.keyboard.type("7")
+    page.locator("#drive-stiffness").blur()
+    page.get_by_role("button", name="Undo").click()
+    settled(page)
+    assert page.input_value("#drive-stiffness") == "150"
+
+
 def test_designs_ghost_and_delete(page: Any) -> None:
     page.get_by_role("button", name="Keep ghost").click()
     page.fill("#drive-stiffness", "150")
