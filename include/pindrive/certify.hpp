@@ -554,17 +554,19 @@ class Certifier {
   // ---- from segment to segment -------------------------------------------------------------------
 
   void junction(const Segment<T>& before, const Numbers& left, const Numbers& right) {
+    using std::abs;
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, x_scale_);
     if (stops(event.stop) && drive_.stops.rigid()) {  // it takes the velocity, which was towards it
       worst(result_.continuity, right.v, v_scale_);
       worst(result_.sliding_sign, std::min(left.v * (left.x < 0 ? -1 : 1), T(0)), v_scale_);
-      worst(result_.continuity, std::abs(left.x) - drive_.stops.travel, x_scale_);
+      worst(result_.continuity, abs(left.x) - drive_.stops.travel, x_scale_);
     } else {
-      worst(result_.continuity, left.v - right.v, v_scale_);
+      // The time at which it is, and so how long the pin is accelerated, is known to its rounding.
+      const T known = detail::rounding<T> * before.end * std::max(abs(left.a), abs(right.a));
+      worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), v_scale_);
     }
     if (!soft()) return;
-    using std::abs;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);

@@ -240,14 +240,17 @@ class CreepFlow : public SeriesStep<T> {
     return abs(plain(start.v - velocity.c[0])) <=
            16 * unit * sums_of(velocity.c)[0] + unsure(e, start);
   }
-  /// What the rounding of the forces makes of that velocity, where friction is steepest.
+  /// What the rounding of the forces, where friction is steepest, and that of the time make of that velocity.
   Real unsure(const SeriesEquation<T>& e, const SeriesState<T>& start) const {
     using std::abs;
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
                        abs(plain(e.skin_factor) * plain(start.skin));
-    return 16 * unit * sizes * plain(e.across.value) / (plain(e.load.value) * plain(e.plate_force));
+    const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
+    return 16 * unit * sizes * plain(e.across.value) /
+               (plain(e.load.value) * plain(e.plate_force)) +
+           4 * unit * plain(start.time) * changes;
   }
 
   T t_{0};                               // at the start

@@ -130,6 +130,13 @@ struct Touch : SlidingSkin<T> {
     const T unsure = range.rounding * load.value * abs(faster);
     return {rate, abs(rate) + unsure / rounding<T>, bend};
   }
+  /// What the rounding of the velocities makes of its force, N: much where it hardly slides across.
+  T unsure(T v) const {
+    using std::abs;
+    if (!oblique()) return T(0);
+    return rounding<T> * (abs(v) + abs(surface.value)) *
+           abs(slides(v, surface.rate).steepness(branch(), load));
+  }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
     using std::abs;
@@ -169,8 +176,9 @@ struct Touch : SlidingSkin<T> {
     if (oblique()) {
       const ObliqueSlip<T> speed = slides(s.v, surface.rate + first);
       const T closing = speed.closing(), known = speed.rounding_of(surface.value);
-      const bool turns = closing == 0 || touches(closing, speed.parting(), known);
-      const T faster = turns ? speed.parting() : closing;
+      const T parting = speed.parting(second);
+      const bool turns = closing == 0 || touches(closing, parting, known);
+      const T faster = !turns ? closing : parting != 0 ? parting : speed.u.value * third;
       return (does.at == Bound::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;

@@ -214,7 +214,8 @@ class Selection {
       if (!side.rests(state_.v)) return acceleration_;
       const T force = own - stick_force(side, of_other);
       const bool releases = side.before == ContactState::stick && continues();
-      if (!tangential_ && (abs(force) <= state_.roundoff || releases)) {
+      if (!tangential_ &&
+          (abs(force) <= state_.roundoff + plate_.unsure(state_.v) || releases)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
@@ -223,7 +224,11 @@ class Selection {
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
     if (stop_.ask_further() && !leaves_stop()) return false;
     const auto leaves = [&](const Side& side, const Side& other, T force) {
-      if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
+      if (side.oblique()) {
+        const auto [rate, size, bend] = force_rate();
+        const T jerk = abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass;
+        return side.goes_inside(state_, acceleration_ - side.surface.rate, jerk, bend);
+      }
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
       if (drive_.mass * abs(apart) > state_.roundoff || !side.rests(state_.v))
@@ -246,10 +251,18 @@ class Selection {
       tangential_ = true;
       acceleration_ = T(0);
     }
-    const T jerk = force_.rate + plate_.force_rate(state_.v, acceleration_).value +
-                   finger_.force_rate(state_.v, acceleration_).value - stiffness() * state_.v -
-                   damping() * acceleration_;
-    return stop_.allows(state_.v, acceleration_, jerk / drive_.mass);
+    return stop_.allows(state_.v, acceleration_, force_rate().value / drive_.mass);
+  }
+
+  /// How the force on a pin that sets out changes: mass times its jerk.
+  typename Side::Rate force_rate() const {
+    using std::abs;
+    const auto plate = plate_.force_rate(state_.v, acceleration_);
+    const auto finger = finger_.force_rate(state_.v, acceleration_);
+    const T spring = stiffness() * state_.v, damper = damping() * acceleration_;
+    return {force_.rate + plate.value + finger.value - spring - damper,
+            abs(force_.rate) + plate.size + finger.size + abs(spring) + abs(damper),
+            plate.bend + finger.bend - stiffness() * acceleration_};
   }
 };
 

@@ -16,6 +16,7 @@ struct SeriesState {
   T skin{0};  ///< N, or m/s
   /// Of a pin that is not held, where it is known, so that a tangential departure is one exactly; m/s².
   T acceleration{std::numeric_limits<T>::quiet_NaN()};
+  T time{0};  ///< s; its rounding is one of the inputs too
 };
 
 /// A mode without a closed form:

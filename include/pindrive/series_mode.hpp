@@ -22,7 +22,11 @@ struct InputLines {
   Line<T> force{};                  ///< on the pin from outside, N
   Line<T> finger_load{T(1), T(0)};  ///< >= 0
 
-  bool oblique() const { return across_velocity.value != 0 || across_velocity.rate != 0; }
+  /// Whether the plate, which carries something, slides across too.
+  bool oblique() const {
+    const bool across = across_velocity.value != 0 || across_velocity.rate != 0;
+    return across && (plate_load.value != 0 || plate_load.rate != 0);
+  }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
     return {later(plate_velocity), later(plate_load), later(across_velocity), later(force),
@@ -226,7 +230,9 @@ class SeriesMode {
     if (stops.damping == 0) return;
     Polynomial<T> push = T(sense * end) * stops.stiffness * step.position;
     push += T(sense * end) * stops.damping * step.velocity;
-    push += Line<T>{-sense * stops.stiffness * stops.travel, T(0)};
+    // Not by the sum, whose rounding may be more.
+    push.c[0] = sense * (stops.stiffness * (end * step.position.c[0] - stops.travel) +
+                         stops.damping * end * step.velocity.c[0]);
     found.add(push, at.push, Bound::push, false, end);
   }
   void within(Guards& found, const Polynomial<T>& force, Line<T> most, int at_limit,

@@ -20,12 +20,17 @@ struct ObliqueSlip {
 
   /// ρ ρ': positive where the plate slides ever faster, …
   T closing() const { return u.value * u.rate + w.value * w.rate; }
-  /// … and its rate, where that is zero to rounding: then the pin has its least speed.
-  T parting() const { return u.rate * u.rate + w.rate * w.rate; }
+  /// … and its rate, where that is zero to rounding, of a pin whose acceleration changes at this rate.
+  T parting(T jerk) const { return u.rate * u.rate + w.rate * w.rate + u.value * jerk; }
   /// What ρ²/2 is known to beside a surface of this velocity.
   T rounding_of(T surface) const {
     using std::abs;
     return rounding<T> * speed() * (speed() + abs(surface));
+  }
+  /// How steeply the force falls with the velocity along the axis, N s/m.
+  T steepness(const Branch<T>& branch, const Line<T>& load) const {
+    const T r = speed(), across = r > 0 ? w.value / r : T(0);
+    return load.value * ((r > 0 ? at_rest(branch) * across * across / r : T(0)) + branch.slope);
   }
   T force_rate(const Branch<T>& branch, const Line<T>& load) const {
     const T strength = at_rest(branch);
@@ -60,14 +65,15 @@ struct ObliqueSlip {
   }
 };
 
-/// Whether a contact of relative velocity u slides across too; then it slips on the branch of its speed, and
-/// `at` is the end of that which it is at, the one it has just come to or none. Where it no longer slides across,
-/// it slips along the axis, or is asked whether it sticks.
+/// Whether a contact of relative velocity u slides across too and carries anything from here on; then it slips on
+/// the branch of its speed, and `at` is the end of that which it is at, the one it has just come to or none. Where
+/// it no longer does, it slips along the axis, or is asked whether it sticks.
 template <class Side, class T>
 bool asks_across(Side& side, T u, Bound& at) {
   using detail::hypot;
   const auto& contact = side.contact;
-  if (side.across.value == 0 && side.across.rate == 0) {
+  const bool across = side.across.value != 0 || side.across.rate != 0;
+  if (!across || (side.load.value == 0 && side.load.rate == 0)) {
     if (!side.oblique()) return false;
     at = Bound::none;  // that of another speed
     side.does = {ContactState::stick, Bound::none, 0, T(0)};

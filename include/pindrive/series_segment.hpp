@@ -35,7 +35,8 @@ class SeriesSegment {
     if (!used_) return false;
     const SeriesEquation<T> equation = mode.equation();
     const bool lags = finger.lags();
-    const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration};
+    const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration,
+                               segment.begin};
     step_ = series_step(equation, start, span);
     segment.creeps = step_.creeps;
     const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit, no_push});

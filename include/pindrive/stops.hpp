@@ -144,7 +144,11 @@ class EndStops {
     const bool apart = does == StopState::apart;
     const int end = !apart ? side(does) : s.x < 0 ? -1 : 1;
     const T depth = end * s.x - stops_.travel;
-    if (apart) return depth >= 0 && end * s.v > 0 && meet(s, end);
+    if (apart) {
+      if (depth < 0) return false;
+      s.x = end * stops_.travel;
+      return end * s.v > 0 && meet(s, end);
+    }
     if (stops_.rigid()) return false;
     if (touches(does) ? stops_.damping == 0 && !(depth > 0) : !(depth > 0))
       s.x = end * stops_.travel;

@@ -175,7 +175,12 @@ struct Cut {
   Followed follow(const Place& most, double part) const {
     Case moved = rest;
     moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
-    return {moved, x + part * most[0], held ? v : v + part * most[1], stretch + part * most[0]};
+    // No farther than a rigid stop, nor than the skin can hold.
+    const double reach = std::isinf(rest.stop_stiffness) ? rest.travel : never;
+    const double grip = rest.limit[1] * rest.finger_load.value[0] / rest.skin;
+    const auto within = [](double value, double most) { return std::clamp(value, -most, most); };
+    return {moved, within(x + part * most[0], reach), held ? v : v + part * most[1],
+            within(stretch + part * most[0], grip)};
   }
 
   const pd::Segment<double>* segment{};
@@ -192,9 +197,14 @@ inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   const Cut cut(motion, c);
   if (!cut.possible || !(cut.rest.duration > 0)) return 0;
   const Place most = size(motion, c.duration);
-  // A release cannot say how skin is stretched where the pin slides by the rounding of its velocity.
-  const double still = std::numeric_limits<double>::epsilon() * 16 * most[1];
-  if (!std::isinf(c.skin) && !cut.held && std::abs(cut.v) <= still) return 0;
+  // A pin that slides by less than the rounding of its velocity may as well be at rest, and on skin a release
+  // cannot say how that is stretched.
+  const double stop = std::isinf(c.stop_stiffness) ? 0 : c.stop_stiffness;
+  const double fastest =
+      (c.damping + c.stop_damping) / c.mass + std::sqrt((c.stiffness + stop) / c.mass);
+  const double still =
+      16 * std::numeric_limits<double>::epsilon() * std::max(most[1], fastest * most[0]);
+  if (!cut.held && std::abs(cut.v) <= still) return 0;
   const Followed rest = cut.follow(most, 0);
   if (!rest.ok()) return never;
   constexpr int times = 16;
