@@ -160,7 +160,11 @@ class Profile {
   bool constant() const { return constant_; }   ///< it is one number, and stays so
   T first() const { return held_.line.value; }  ///< its value until its first row
 
-  Held<T>& held() { return held_; }  ///< of an input without rows
+  /// Of an input without rows, to be set on the way: it is no constant any more.
+  Held<T>& held() {
+    constant_ = false;
+    return held_;
+  }
   const Held<T>& held() const { return held_; }
 
  private:
