@@ -61,18 +61,24 @@ Stops<T> stops(const StopNumbers& at, const StopNumbers& along) {
 inline double result(double value) { return value; }
 inline double result(Dual<double> value) { return value.slope; }
 
+/// An input; a constant is its row alone, without lists.
 template <class T>
 struct OwnedRows {
   std::vector<T> first, second;
+  T constant{};
 
   OwnedRows(const Rows& rows, const Rows& along) {
+    if (rows.size() == 1) constant = number<T>(rows[0].second, along[0].second);
+    if (rows.size() < 2) return;
+    first.reserve(rows.size());
+    second.reserve(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       first.push_back(number<T>(rows[i].first, along[i].first));
       second.push_back(number<T>(rows[i].second, along[i].second));
     }
   }
   Profile<T> profile() const {
-    if (first.size() == 1) return {second[0]};
+    if (first.empty()) return {constant};
     return {first.data(), second.data(), first.size()};
   }
 };
@@ -87,6 +93,7 @@ struct OwnedContact {
                 number<T>(at.static_limit, along.static_limit),
                 number<T>(at.stiffness, along.stiffness)} {
     const OwnedRows<T> rows(at.curve, along.curve);
+    if (rows.first.empty()) return;
     branches.resize(rows.first.size() + 1);
     contact.branches = branches_of(rows.first.data(), rows.second.data(),
                                    static_cast<int>(rows.first.size()), branches.data());

@@ -133,12 +133,13 @@ struct Held {
 template <class T>
 class Profile {
  public:
-  constexpr Profile(T constant) noexcept : held_(constant) {}       // NOLINT: a number is a profile
-  constexpr Profile(const Held<T>& line) noexcept : held_(line) {}  // NOLINT: so is what is held
-  Profile(T since, const Line<T>& from_there) noexcept : held_(since, from_there) {}
+  constexpr Profile(T constant) noexcept : held_(constant) {}  // NOLINT: a number is a profile
+  constexpr Profile(const Held<T>& line) noexcept
+      : held_(line), constant_(false) {}  // NOLINT: so is it
+  Profile(T since, const Line<T>& from_there) noexcept : Profile(Held<T>(since, from_there)) {}
   /// count >= 1 rows, times strictly increasing.
   Profile(const T* times, const T* values, std::size_t count)
-      : held_(values[0]), times_(times), values_(values), count_(count) {}
+      : held_(values[0]), constant_(false), times_(times), values_(values), count_(count) {}
 
   /// Value and rate from time t on, until the next row.
   Line<T> from(T t) const {
@@ -156,10 +157,14 @@ class Profile {
     const std::size_t i = rows_until(t);
     return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
   }
-  bool constant() const { return count_ == 0 && held_.line.rate == 0; }
+  bool constant() const { return constant_; }   ///< it is one number, and stays so
   T first() const { return held_.line.value; }  ///< its value until its first row
 
-  Held<T>& held() { return held_; }  ///< of an input without rows
+  /// Of an input without rows, to be set on the way: it is no constant any more.
+  Held<T>& held() {
+    constant_ = false;
+    return held_;
+  }
   const Held<T>& held() const { return held_; }
 
  private:
@@ -168,6 +173,7 @@ class Profile {
   }
 
   Held<T> held_;  ///< without rows; before the first, a constant
+  bool constant_{true};
   const T* times_{nullptr};
   const T* values_{nullptr};
   std::size_t count_{0};
@@ -187,6 +193,11 @@ struct Inputs {
   Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
   Profile<T> finger_load{T(1)};  ///< factor on the finger's friction; >= 0, constant where that is
                                  ///< compliant or has a curve
+
+  bool constant() const {
+    return mouse_velocity.constant() && plate_load.constant() && force.constant() &&
+           across_velocity.constant() && finger_load.constant();
+  }
 };
 
 /// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is

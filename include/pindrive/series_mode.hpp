@@ -59,15 +59,20 @@ class SeriesMode {
   SeriesMode(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs)
       : drive_(drive), mode_(mode), inputs_(inputs) {}
 
-  /// Whether flow.hpp has it in closed form, so that no series is needed.
+  /// Whether flow.hpp has a mode in closed form, so that no series is needed.
+  static bool closed_form(const Drive<T>& drive, const Mode& mode, const Line<T>& plate_load,
+                          const Line<T>& across_velocity) {
+    if (slips(mode.plate)) {
+      if (across_velocity.value != 0 || across_velocity.rate != 0) return false;
+      if (plate_load.rate != 0 && drive.plate.branch(mode.plate_branch).slope != 0) return false;
+    }
+    return !lags(drive.finger, mode);
+  }
   bool has_closed_form() const {
-    const bool slides = slips(mode_.plate);
-    const bool bilinear = slides && inputs_.plate_load.rate != 0 && plate().slope != 0;
-    return !bilinear && !(slides && inputs_.oblique()) && !lags();
+    return closed_form(drive_, mode_, inputs_.plate_load, inputs_.across_velocity);
   }
 
-  /// Whether the slider of a compliant finger lags behind the pin: it slips on a sloped branch.
-  bool lags() const { return !drive_.finger.rigid() && slips(mode_.finger) && finger().slope != 0; }
+  bool lags() const { return lags(drive_.finger, mode_); }
 
   /// Its equation. The state of the skin is its force, or the sliding velocity where the finger slips on
   /// a sloped branch of its curve.
@@ -197,6 +202,10 @@ class SeriesMode {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
+  /// Whether the slider of a compliant finger lags behind the pin: it slips on a sloped branch.
+  static bool lags(const Contact<T>& finger, const Mode& mode) {
+    return finger.may_lag() && slips(mode.finger) && finger.branch(mode.finger_branch).slope != 0;
+  }
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }

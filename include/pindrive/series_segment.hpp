@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
@@ -17,36 +18,35 @@ namespace pindrive::detail {
 template <class T>
 class SeriesSegment {
  public:
-  bool used() const { return used_; }
+  bool used() const { return step_.has_value(); }
 
-  /// Begins a segment of a mode (that, its begin and its plate velocity are set) if it has no closed form;
-  /// whether it has none. Its flow says how it begins, with its acceleration as a drift of the velocity.
+  void reset() { step_.reset(); }
+
+  /// Begins a segment of a mode without a closed form (that, its begin and its plate velocity are set). Its
+  /// flow says how it begins, with its acceleration as a drift of the velocity.
   /// `at_limit` is the side on which a stick force is at its limit, `no_push` says that a stop's push is
   /// exactly zero, `span` the time until the next row or the end, s. Its guards come with their zeros.
   template <class Side>
-  bool begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
+  void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
              const Side& finger, const Line<T>& force, const State<T>& state, T acceleration,
              int at_limit, bool no_push, T span) {
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
-    segment.creeps = false;
-    used_ = !mode.has_closed_form();
-    if (!used_) return false;
     const SeriesEquation<T> equation = mode.equation();
     const bool lags = finger.lags();
     const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration,
                                segment.begin};
-    step_ = series_step(equation, start, span);
-    segment.creeps = step_.creeps;
-    const auto paths = mode.guards(step_, {plate.does.at, finger.does.at, at_limit, no_push});
+    const SeriesStep<T>& step = step_.emplace(series_step(equation, start, span));
+    segment.creeps = step.creeps;
+    const auto paths = mode.guards(step, {plate.does.at, finger.does.at, at_limit, no_push});
     const bool held = held_by_stop(drive, segment.mode);
     guards.clear();
     for (const auto& guard : paths)
       guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
-    const T row = step_.span() < span ? never : span;
-    first_ = guards.earliest_known(step_.span());
+    const T row = step.span() < span ? never : span;
+    first_ = guards.earliest_known(step.span());
     first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
@@ -55,18 +55,17 @@ class SeriesSegment {
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), roundoff);
     });
-    const T stick = step_.stick_force.c[0];
+    const T stick = step.stick_force.c[0];
     const T of_plate = plate.stuck() && !held ? stick : plate.force(state);
     const T of_finger = !finger.stuck() || held ? finger.force(state)
                         : plate.stuck()         ? T(0)
                                                 : stick;
     const T rate = equation.held ? equation.surface.rate : acceleration;
-    segment.flow = {{}, {state.x, T(0), T(0)}, {step_.velocity.c[0], T(0), T(0), rate}};
+    segment.flow = {{}, {state.x, T(0), T(0)}, {step.velocity.c[0], T(0), T(0), rate}};
     segment.plate_force = {of_plate, T(0), T(0)};
     segment.finger_force = {of_finger, T(0), T(0)};
     // Of skin whose slider lags, with the rate at which it stretches.
     if (lags) segment.finger_force.drift = finger.force_rate(state.v, T(0)).value;
-    return true;
   }
 
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
@@ -80,8 +79,8 @@ class SeriesSegment {
   void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {
     using std::abs;
     using std::sqrt;
-    if (!used_) return;
-    const SeriesState<T> now = step_.at(tau);
+    if (!used()) return;
+    const SeriesState<T> now = step_->at(tau);
     state.x = now.x;
     state.v = now.v;
     state.x_size = std::max(state.x_size, abs(state.x));
@@ -91,7 +90,7 @@ class SeriesSegment {
     // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
     // known no better than by what these still carry.
     const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
-    const T pull = drive.mass * step_.velocity.derivative().at(tau) + drive.damping * state.v +
+    const T pull = drive.mass * step_->velocity.derivative().at(tau) + drive.damping * state.v +
                    finger.branch().slope * finger.load.value * state.slide;
     const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
@@ -103,8 +102,7 @@ class SeriesSegment {
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
 
-  bool used_{false};
-  SeriesStep<T> step_;
+  std::optional<SeriesStep<T>> step_;
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
 

@@ -114,10 +114,14 @@ class Simulation : private Selection<T> {
     segment.event = {};
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
-    if (series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
-                      continues() ? limit_ : 0, stop_.no_push(),
-                      std::min(row_, inputs_.duration) - time_))
+    segment.creeps = false;
+    series_.reset();
+    if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across)) {
+      series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
+                    continues() ? limit_ : 0, stop_.no_push(),
+                    std::min(row_, inputs_.duration) - time_);
       return;
+    }
     segment.flow = flow(plate, finger);
     segment.plate_force = plate.along(segment.flow);
     segment.finger_force = finger.along(segment.flow);
@@ -189,7 +193,10 @@ class Simulation : private Selection<T> {
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
     const T across = plate_.across.at(tau);
-    look_ahead();
+    if (inputs_.constant())
+      plate_.surface = inputs_.mouse_velocity.from(time_);
+    else
+      look_ahead();
     segment.end = time_;
     limit_ = 0;
     struck_ = false;

@@ -58,40 +58,45 @@ using Numbers = std::tuple<double, double, double, ContactNumbers, ContactNumber
 
 /// A tuple of Python's as the struct with the same fields.
 template <class Struct, class Tuple>
-Struct as(const Tuple& tuple) {
-  return std::apply([](const auto&... field) { return Struct{field...}; }, tuple);
+Struct as(Tuple&& tuple) {
+  return std::apply([](auto&&... field) { return Struct{std::forward<decltype(field)>(field)...}; },
+                    std::forward<Tuple>(tuple));
 }
 
-pd::Numbers numbers(const Numbers& given) {
-  return std::apply(
-      [](double mass, double stiffness, double damping, const ContactNumbers& plate,
-         const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
-         double displacement, double velocity, double skin_stretch, const Rows& force,
-         const Rows& across, const Rows& finger_load, const StopNumbers& stops, double duration) {
-        return pd::Numbers{mass,
-                           stiffness,
-                           damping,
-                           as<pd::ContactNumbers>(plate),
-                           as<pd::ContactNumbers>(finger),
-                           mouse_velocity,
-                           plate_load,
-                           displacement,
-                           velocity,
-                           skin_stretch,
-                           force,
-                           across,
-                           finger_load,
-                           as<pd::StopNumbers>(stops),
-                           duration};
-      },
-      given);
+/// What nobody else needs any more becomes the core's.
+pd::Numbers numbers(double mass, double stiffness, double damping, ContactNumbers&& plate,
+                    ContactNumbers&& finger, Rows&& mouse_velocity, Rows&& plate_load,
+                    double displacement, double velocity, double skin_stretch, Rows&& force,
+                    Rows&& across, Rows&& finger_load, const StopNumbers& stops, double duration) {
+  return {mass,
+          stiffness,
+          damping,
+          as<pd::ContactNumbers>(std::move(plate)),
+          as<pd::ContactNumbers>(std::move(finger)),
+          std::move(mouse_velocity),
+          std::move(plate_load),
+          displacement,
+          velocity,
+          skin_stretch,
+          std::move(force),
+          std::move(across),
+          std::move(finger_load),
+          as<pd::StopNumbers>(stops),
+          duration};
 }
 
 template <class T>
-std::unique_ptr<CoreMotion<T>> run(const Numbers& at, const Numbers& along) {
-  return interruptible([&](auto go_on) {
-    return std::make_unique<CoreMotion<T>>(numbers(at), numbers(along), go_on);
-  });
+std::unique_ptr<CoreMotion<T>> run(const pd::Numbers& at, const pd::Numbers& along) {
+  return interruptible(
+      [&](auto go_on) { return std::make_unique<CoreMotion<T>>(at, along, go_on); });
+}
+
+std::unique_ptr<CoreMotion<Dual>> differentiate(Numbers at, Numbers along) {
+  const auto of = [](Numbers&& given) {
+    return std::apply([](auto&&... field) { return numbers(std::move(field)...); },
+                      std::move(given));
+  };
+  return run<Dual>(of(std::move(at)), of(std::move(along)));
 }
 
 // ---- what Python asks for ------------------------------------------------------------------------
@@ -319,15 +324,15 @@ NB_MODULE(_core, m) {
 
   m.def(
       "simulate",
-      [](double mass, double stiffness, double damping, const ContactNumbers& plate,
-         const ContactNumbers& finger, const Rows& mouse_velocity, const Rows& plate_load,
-         double displacement, double velocity, double skin_stretch, const Rows& force,
-         const Rows& across_velocity, const Rows& finger_load, const StopNumbers& stops,
-         double duration) {
-        const Numbers numbers(mass, stiffness, damping, plate, finger, mouse_velocity, plate_load,
-                              displacement, velocity, skin_stretch, force, across_velocity,
-                              finger_load, stops, duration);
-        return run<double>(numbers, numbers);
+      [](double mass, double stiffness, double damping, ContactNumbers plate, ContactNumbers finger,
+         Rows mouse_velocity, Rows plate_load, double displacement, double velocity,
+         double skin_stretch, Rows force, Rows across_velocity, Rows finger_load,
+         const StopNumbers& stops, double duration) {
+        const pd::Numbers at = numbers(
+            mass, stiffness, damping, std::move(plate), std::move(finger),
+            std::move(mouse_velocity), std::move(plate_load), displacement, velocity, skin_stretch,
+            std::move(force), std::move(across_velocity), std::move(finger_load), stops, duration);
+        return run<double>(at, at);
       },
       "mass"_a, "stiffness"_a, "damping"_a, "plate"_a, "finger"_a, "mouse_velocity"_a,
       "plate_load"_a, "displacement"_a, "velocity"_a, "skin_stretch"_a, "force"_a,
@@ -335,7 +340,7 @@ NB_MODULE(_core, m) {
       "Simulates one pin from its release until its ending is known or the duration is over. "
       "Contacts are (kinetic, static, stiffness, rows (speed, force) of the curve), inputs rows "
       "(time, value), one row for a constant.");
-  m.def("differentiate", &run<Dual>, "numbers"_a, "along"_a,
+  m.def("differentiate", &differentiate, "numbers"_a, "along"_a,
         "The derivatives of a motion along a direction; both as the arguments of simulate.");
   bind_batch(m);
   m.attr("settling_band") = pd::settling_band;
