@@ -48,7 +48,7 @@ STUB = ROOT / "src" / "pindrive" / "_core.pyi"
 EXAMPLE = Path("examples", "tactile-mouse.toml")
 PICTURE = Path("tactile-mouse.png")
 ACTIONLINT = "github.com/rhysd/actionlint/cmd/actionlint@v1.7.12"
-FMU_OF_CAPI = ("pindrive.cpp", "stepper.cpp")
+FMU_OF_CAPI = ("drive.cpp", "stepper.cpp")
 SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
 
 # What FMI 3 calls a platform, what the compiler does, and how its libraries end.

@@ -21,6 +21,8 @@ void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept { std::free(memory); }
 
+extern "C" void __cxa_pure_virtual() { std::abort(); }  // NOLINT(bugprone-reserved-identifier)
+
 // NOLINTBEGIN(bugprone-*,cert-*): names of the libraries, which they declare so
 namespace std {
 #if defined(__GLIBCXX__) || defined(_LIBCPP_VERSION)
