@@ -65,6 +65,7 @@ FMU_PLATFORMS = {
 FMU_COMPILE = (
     *("-std=c++17", "-Os", "-Xclang", "-Oz", "-g0", "-DPINDRIVE_WITHIN", "-ffp-contract=off"),
     *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
+    *("-fomit-frame-pointer", "-fno-stack-protector"),
 )
 _WITHOUT_TABLES = (
     "-fno-unwind-tables",
@@ -77,9 +78,15 @@ FMU_COMPILE_FOR = {
 }
 FMU_LINK_FOR = {
     "so": ("-Wl,--gc-sections", "-Wl,--version-script=fmu/exports.map"),
-    "dll": ("-Wl,--gc-sections",),
+    "dll": ("-Os", "-Wl,--gc-sections"),
     "dylib": ("-Wl,-dead_strip", "-Wl,-x"),
 }
+
+# Zig's own runtime would come whole, a quarter of the library: fmu/runtime.cpp has the one function that is called.
+FMU_LINK_WINDOWS = (
+    *("-OReleaseSmall", "-fstrip", "--gc-sections", "--build-id=none"),
+    *("-lc", "-fno-compiler-rt", "-fno-emit-implib"),
+)
 
 # A package manager, and what it installs: Python, its venv module, its headers, a C++ compiler.
 INSTALLERS = {
@@ -470,8 +477,12 @@ def fmu_binary(name: str) -> Path:
             ]
             quietly(f"compiling {source.name} for {name}", compiling)
         part = Path(folder, library.name)
-        linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]
-        quietly(f"linking for {name}", [*linking, *objects, "-o", str(part)])
+        if name == "x86_64-windows":
+            linking = [*zig, "build-lib", "-dynamic", "-target", target, *FMU_LINK_WINDOWS]
+            quietly(f"linking for {name}", [*linking, *objects, f"-femit-bin={part}"])
+        else:
+            linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]
+            quietly(f"linking for {name}", [*linking, *objects, "-o", str(part)])
         beside = library.with_name("part")
         shutil.copyfile(part, beside)
         beside.replace(library)
