@@ -82,7 +82,8 @@ FMU_LINK_FOR = {
     "dylib": ("-Wl,-dead_strip", "-Wl,-x"),
 }
 
-# Zig's own runtime would come whole, a quarter of the library: fmu/runtime.cpp has the one function that is called.
+# Zig's own runtime would come whole, a quarter of the library: what is called of it is in
+# fmu/runtime.cpp.
 FMU_LINK_WINDOWS = (
     *("-OReleaseSmall", "-fstrip", "--gc-sections", "--build-id=none"),
     *("-lc", "-fno-compiler-rt", "-fno-emit-implib"),
