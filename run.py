@@ -48,7 +48,7 @@ STUB = ROOT / "src" / "pindrive" / "_core.pyi"
 EXAMPLE = Path("examples", "tactile-mouse.toml")
 PICTURE = Path("tactile-mouse.png")
 ACTIONLINT = "github.com/rhysd/actionlint/cmd/actionlint@v1.7.12"
-FMU_OF_CAPI = ("pindrive.cpp", "stepper.cpp")
+FMU_OF_CAPI = ("drive.cpp", "stepper.cpp")
 SOURCES = ("pyproject.toml", "CMakeLists.txt", "include", "capi", "fmu", "src")
 
 # What FMI 3 calls a platform, what the compiler does, and how its libraries end.
@@ -65,6 +65,7 @@ FMU_PLATFORMS = {
 FMU_COMPILE = (
     *("-std=c++17", "-Os", "-Xclang", "-Oz", "-g0", "-DPINDRIVE_WITHIN", "-ffp-contract=off"),
     *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
+    *("-fomit-frame-pointer", "-fno-stack-protector"),
 )
 _WITHOUT_TABLES = (
     "-fno-unwind-tables",
@@ -77,9 +78,16 @@ FMU_COMPILE_FOR = {
 }
 FMU_LINK_FOR = {
     "so": ("-Wl,--gc-sections", "-Wl,--version-script=fmu/exports.map"),
-    "dll": ("-Wl,--gc-sections",),
+    "dll": ("-Os", "-Wl,--gc-sections"),
     "dylib": ("-Wl,-dead_strip", "-Wl,-x"),
 }
+
+# Zig's own runtime would come whole, a quarter of the library: what is called of it is in
+# fmu/runtime.cpp.
+FMU_LINK_WINDOWS = (
+    *("-OReleaseSmall", "-fstrip", "--gc-sections", "--build-id=none"),
+    *("-lc", "-fno-compiler-rt", "-fno-emit-implib"),
+)
 
 # A package manager, and what it installs: Python, its venv module, its headers, a C++ compiler.
 INSTALLERS = {
@@ -470,8 +478,12 @@ def fmu_binary(name: str) -> Path:
             ]
             quietly(f"compiling {source.name} for {name}", compiling)
         part = Path(folder, library.name)
-        linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]
-        quietly(f"linking for {name}", [*linking, *objects, "-o", str(part)])
+        if name == "x86_64-windows":
+            linking = [*zig, "build-lib", "-dynamic", "-target", target, *FMU_LINK_WINDOWS]
+            quietly(f"linking for {name}", [*linking, *objects, f"-femit-bin={part}"])
+        else:
+            linking = [*zig, "cc", "-target", target, "-shared", "-s", *FMU_LINK_FOR[suffix]]
+            quietly(f"linking for {name}", [*linking, *objects, "-o", str(part)])
         beside = library.with_name("part")
         shutil.copyfile(part, beside)
         beside.replace(library)

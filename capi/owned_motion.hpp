@@ -41,6 +41,14 @@ struct Numbers {
   double duration;
 };
 
+/// A direction in which the drive does not change.
+inline Numbers without_change(const Numbers& at) {
+  Numbers along{};
+  along.plate.curve.resize(at.plate.curve.size());
+  along.finger.curve.resize(at.finger.curve.size());
+  return along;
+}
+
 /// A number of the core from its value and its derivative along a direction; what is infinite in a direction,
 /// as it is at first, does not change along it.
 template <class T>

@@ -1,5 +1,5 @@
 // The C interface: a pin that is followed step by step.
-#include "pindrive/stepper.hpp"
+#include "stepper.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "interface.hpp"
 #include "owned_motion.hpp"
@@ -15,117 +14,7 @@
 
 using namespace pindrive_c;  // NOLINT(google-build-using-namespace): its own
 
-namespace {
-
-/// A stepper with the friction curves that it refers to.
-template <class T>
-class Followed {
-  pd::OwnedContact<T> plate_, finger_;
-
-  static pd::Drive<T> drive(const pd::Numbers& at, const pd::Numbers& along,
-                            const Followed& owner) {
-    return {pd::number<T>(at.mass, along.mass),
-            pd::number<T>(at.stiffness, along.stiffness),
-            pd::number<T>(at.damping, along.damping),
-            owner.plate_.contact,
-            owner.finger_.contact,
-            pd::stops<T>(at.stops, along.stops)};
-  }
-
- public:
-  template <class Start>
-  Followed(const pd::Numbers& at, const pd::Numbers& along, const Start& start)
-      : plate_(at.plate, along.plate),
-        finger_(at.finger, along.finger),
-        stepper(drive(at, along, *this), start) {}
-  Followed(const pd::Numbers& at, const pd::Numbers& along, const pd::Inputs<T>& inputs,
-           double begin)
-      : plate_(at.plate, along.plate),
-        finger_(at.finger, along.finger),
-        stepper(drive(at, along, *this), inputs, T(begin)) {}
-
-  pd::Stepper<T> stepper;
-};
-
-using State = pd::Stepper<double>::State;
-using StateOfDual = pd::Stepper<Dual>::State;
-
-/// A direction in which the drive does not change.
-pd::Numbers without_change(const pd::Numbers& at) {
-  pd::Numbers along{};
-  along.plate.curve.resize(at.plate.curve.size());
-  along.finger.curve.resize(at.finger.curve.size());
-  return along;
-}
-
-StateOfDual lifted(const State& s) {
-  const auto line = [](const pd::Line<double>& l) { return pd::Line<Dual>{l.value, l.rate}; };
-  const auto held = [&](const pd::Held<double>& h) {
-    pd::Held<Dual> lifted(h.since, line(h.line));
-    lifted.ends = h.ends;
-    return lifted;
-  };
-  const auto option = [](const auto& o) {
-    return decltype(StateOfDual::plate){o.state, o.at, o.branch, o.sense};
-  };
-  const pd::detail::State<Dual> pin{s.pin.x,      s.pin.v,        s.pin.skin,
-                                    s.pin.x_size, s.pin.roundoff, s.pin.slide};
-  return {s.now,
-          s.since,
-          pin,
-          option(s.plate),
-          option(s.finger),
-          s.at_plate,
-          s.at_finger,
-          s.limit,
-          s.stop,
-          s.stop_released,
-          s.stop_met,
-          s.struck,
-          s.before,
-          line(s.plate_velocity),
-          held(s.mouse_velocity),
-          held(s.plate_load),
-          held(s.across_velocity),
-          held(s.force),
-          held(s.finger_load),
-          s.event};
-}
-
-}  // namespace
-
-struct pindrive_stepper {
-  pd::Numbers at, along;
-  std::unique_ptr<Followed<double>> values;
-  std::unique_ptr<Followed<Dual>> derivatives;
-
-  template <class Function>
-  auto ask(Function&& function) const {
-    return values ? function(values->stepper) : function(derivatives->stepper);
-  }
-};
-
-namespace {
-
-template <class T>
-std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& along,
-                                      double begin) {
-  const auto held = [&](const pd::Rows& rows, const pd::Rows& rates) {
-    return pd::Held<T>{T(begin), {pd::number<T>(rows[0].second, rates[0].second), T(0)}};
-  };
-  const pd::Inputs<T> inputs{held(at.mouse_velocity, along.mouse_velocity),
-                             pd::number<T>(at.displacement, along.displacement),
-                             pd::number<T>(at.velocity, along.velocity),
-                             T(infinity),
-                             held(at.plate_load, along.plate_load),
-                             pd::number<T>(at.skin_stretch, along.skin_stretch),
-                             held(at.force, along.force),
-                             held(at.across_velocity, along.across_velocity),
-                             held(at.finger_load, along.finger_load)};
-  return std::make_unique<Followed<T>>(at, along, inputs, begin);
-}
-
-pindrive_error check_start(const pindrive_release& release, double begin) {
+pindrive_error pindrive_c::check_start(const pindrive_release& release, double begin) {
   for (const auto& [name, rows] :
        {std::pair<const char*, const pd::Rows*>{"mouse_velocity", &release.mouse_velocity},
         std::pair<const char*, const pd::Rows*>{"plate_load", &release.plate_load},
@@ -139,58 +28,9 @@ pindrive_error check_start(const pindrive_release& release, double begin) {
   return check("begin", begin, std::isfinite(begin), "finite");
 }
 
-pindrive_error given_up(pd::Status status) {
-  return fail(PINDRIVE_GIVEN_UP, "%s", pindrive_status_text(static_cast<int>(status)));
-}
+namespace {
 
-template <class Make>
-pindrive_error made(pindrive_stepper** stepper, Make&& make) {
-  return guarded([&]() -> pindrive_error {
-    auto handle = std::make_unique<pindrive_stepper>();
-    make(*handle);
-    const pd::Status status = handle->ask([](const auto& of) { return of.status(); });
-    if (status != pd::Status::ok) return given_up(status);
-    *stepper = handle.release();
-    return PINDRIVE_OK;
-  });
-}
-
-/// The input of that name, or null.
-template <class T>
-pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
-  const std::pair<const char*, pd::Line<T>*> lines[] = {
-      {"mouse_velocity", &inputs.plate_velocity},
-      {"plate_load", &inputs.plate_load},
-      {"across_velocity", &inputs.across_velocity},
-      {"force", &inputs.force},
-      {"finger_load", &inputs.finger_load}};
-  for (const auto& [known, line] : lines)
-    if (std::strcmp(known, name) == 0) return line;
-  return nullptr;
-}
-
-/// Sets one of the inputs, which change(line) changes; the others go on.
-template <class T, class Change>
-pindrive_error set_input(pd::Stepper<T>& stepper, const char* name, Change&& change) {
-  pd::InputLines<T> inputs = stepper.inputs();
-  pd::Line<T>* const line = find(inputs, name);
-  if (!line)
-    return fail(
-        PINDRIVE_BAD_NAME,
-        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
-        "finger_load",
-        name);
-  const pd::Line<T> before = *line;
-  change(*line);
-  const auto& finger = stepper.drive().finger;
-  const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
-  if (line == &inputs.finger_load && !same && (!finger.rigid() || finger.branches > 0))
-    return fail(PINDRIVE_UNSUPPORTED,
-                "finger_load must stay %.17g for a finger that is compliant or has a curve",
-                plain(before.value));
-  stepper.set(inputs);
-  return stepper.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper.status());
-}
+using State = pd::Stepper<double>::State;
 
 // ---- bytes -------------------------------------------------------------------------------------
 
@@ -308,41 +148,7 @@ pindrive_error pindrive_stepper_new(const pindrive_drive* drive, const pindrive_
   return made(stepper, [&](pindrive_stepper& s) {
     s.at = s.along = numbers_of(*drive, *release);
     start(s.at, s.along);
-    s.values = followed<double>(s.at, s.along, begin);
-  });
-}
-
-pindrive_error pindrive_stepper_differentiate(const pindrive_drive* drive,
-                                              const pindrive_release* release,
-                                              const pindrive_drive* drive_rate,
-                                              const pindrive_release* release_rate, double begin,
-                                              pindrive_stepper** derivative) {
-  if (!drive || !drive_rate) return null_pointer("drive and drive_rate");
-  if (!release || !release_rate) return null_pointer("release and release_rate");
-  if (!derivative) return null_pointer("derivative");
-  pindrive_error error = check(*drive, *release);
-  if (!error) error = check_start(*release, begin);
-  if (!error) error = check_rates(*drive, *release, *drive_rate, *release_rate);
-  if (error) return error;
-  return made(derivative, [&](pindrive_stepper& s) {
-    s.at = numbers_of(*drive, *release);
-    s.along = numbers_of(*drive_rate, *release_rate);
-    start(s.at, s.along);
-    s.derivatives = followed<Dual>(s.at, s.along, begin);
-  });
-}
-
-pindrive_error pindrive_stepper_derivative(const pindrive_stepper* stepper,
-                                           pindrive_stepper** derivative) {
-  if (!stepper) return null_pointer("stepper");
-  if (!derivative) return null_pointer("derivative");
-  if (!stepper->values)
-    return fail(PINDRIVE_DERIVATIVE, "this is asked of a stepper, not of its derivatives");
-  return made(derivative, [&](pindrive_stepper& s) {
-    s.at = stepper->at;
-    s.along = without_change(s.at);
-    s.derivatives =
-        std::make_unique<Followed<Dual>>(s.at, s.along, lifted(stepper->values->stepper.state()));
+    s.pin = followed<double>(s.at, s.along, begin);
   });
 }
 
@@ -352,12 +158,7 @@ pindrive_error pindrive_stepper_copy(const pindrive_stepper* stepper, pindrive_s
   return made(copy, [&](pindrive_stepper& s) {
     s.at = stepper->at;
     s.along = stepper->along;
-    if (stepper->values)
-      s.values =
-          std::make_unique<Followed<double>>(s.at, s.along, stepper->values->stepper.state());
-    else
-      s.derivatives =
-          std::make_unique<Followed<Dual>>(s.at, s.along, stepper->derivatives->stepper.state());
+    s.pin = stepper->pin->copy(s.at, s.along);
   });
 }
 
@@ -371,61 +172,23 @@ pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input
   if (!std::isfinite(value) || (load && value < 0))
     return check(input, value, false, load ? "at least 0 and finite" : "finite");
   if (!std::isfinite(rate)) return check("rate", rate, false, "finite");
-  const auto set = [&](auto& of) {
-    return set_input(of, input, [&](auto& line) { line = {value, rate}; });
-  };
-  return stepper->values ? set(stepper->values->stepper) : set(stepper->derivatives->stepper);
-}
-
-pindrive_error pindrive_stepper_set_along(pindrive_stepper* derivative, const char* input,
-                                          double value, double rate) {
-  if (!derivative) return null_pointer("derivative");
-  if (!input) return null_pointer("input");
-  if (!derivative->derivatives)
-    return fail(PINDRIVE_DERIVATIVE, "a direction is set of derivatives, not of a stepper");
-  if (!std::isfinite(value) || !std::isfinite(rate))
-    return check("a direction", std::isfinite(value) ? rate : value, false, "finite");
-  return set_input(derivative->derivatives->stepper, input, [&](pd::Line<Dual>& line) {
-    line = {{line.value.value, value}, {line.rate.value, rate}};
-  });
+  return stepper->pin->set(input, value, rate);
 }
 
 pindrive_error pindrive_stepper_step(pindrive_stepper* stepper, double until, int stop_at_event) {
   if (!stepper) return null_pointer("stepper");
-  const auto step = [&](auto& of) -> pindrive_error {
-    const double now = plain(of.now());
-    if (!(until >= now) || !std::isfinite(until))
-      return fail(PINDRIVE_BAD_VALUE, "until must be finite and at least %.17g s, not %.17g", now,
-                  until);
-    return of.step(until, stop_at_event != 0) ? PINDRIVE_OK : given_up(of.status());
-  };
-  return stepper->values ? step(stepper->values->stepper) : step(stepper->derivatives->stepper);
+  const double now = stepper->pin->now().time;
+  if (!(until >= now) || !std::isfinite(until))
+    return fail(PINDRIVE_BAD_VALUE, "until must be finite and at least %.17g s, not %.17g", now,
+                until);
+  const bool came = stepper->pin->step(until, stop_at_event != 0);
+  return came ? PINDRIVE_OK : given_up(stepper->pin->status());
 }
 
 pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper, pindrive_instant* instant) {
   if (!stepper) return null_pointer("stepper");
   if (!instant) return null_pointer("instant");
-  *instant = stepper->ask([](const auto& of) {
-    const auto inputs = of.inputs();
-    return pindrive_instant{plain(of.now()),
-                            plain(of.next()),
-                            plain(inputs.plate_velocity.value),
-                            plain(inputs.plate_velocity.rate),
-                            plain(inputs.plate_load.value),
-                            plain(inputs.plate_load.rate),
-                            plain(inputs.across_velocity.value),
-                            plain(inputs.across_velocity.rate),
-                            plain(inputs.force.value),
-                            plain(inputs.force.rate),
-                            plain(inputs.finger_load.value),
-                            plain(inputs.finger_load.rate),
-                            static_cast<pindrive_contact_state>(of.mode().plate),
-                            static_cast<pindrive_contact_state>(of.mode().finger),
-                            static_cast<pindrive_transition>(of.event().plate),
-                            static_cast<pindrive_transition>(of.event().finger),
-                            static_cast<int>(of.mode().stop),
-                            static_cast<pindrive_transition>(of.event().stop)};
-  });
+  *instant = stepper->pin->now();
   return PINDRIVE_OK;
 }
 
@@ -436,25 +199,14 @@ pindrive_error pindrive_stepper_evaluate(const pindrive_stepper* stepper,
   if (quantity < PINDRIVE_POSITION || quantity > PINDRIVE_STOP_FORCE)
     return fail(PINDRIVE_BAD_VALUE, "a quantity must be from 0 to %d, not %d", PINDRIVE_STOP_FORCE,
                 quantity);
-  *value = stepper->ask([&](const auto& of) {
-    const auto tau = of.tau();
-    const auto lines = of.lines();
-    return pd::visit_trajectory(of.drive(), of.segment(), lines, [&](const auto& along) {
-      const auto friction = [&] {
-        return pd::friction_along(along, of.drive(), of.segment(), [&] { return lines; }, tau);
-      };
-      if (quantity == PINDRIVE_STOP_FORCE)
-        return pd::result(pd::stop_force_along(along, of.drive(), of.segment(), lines.force, tau));
-      return value_along(along, tau, of.drive(), friction, quantity);
-    });
-  });
+  *value = stepper->pin->evaluate(quantity);
   return PINDRIVE_OK;
 }
 
 size_t pindrive_stepper_size(const pindrive_stepper* stepper) {
-  if (!stepper || !stepper->values) return 0;
+  if (!stepper || !stepper->values()) return 0;
   Counting counting;
-  State state = stepper->values->stepper.state();
+  State state = stepper->values()->state();
   exchange(counting, stepper->at, state);
   return sizeof(Head) + counting.size();
 }
@@ -462,7 +214,7 @@ size_t pindrive_stepper_size(const pindrive_stepper* stepper) {
 pindrive_error pindrive_stepper_write(const pindrive_stepper* stepper, void* bytes, size_t size) {
   if (!stepper) return null_pointer("stepper");
   if (!bytes) return null_pointer("bytes");
-  if (!stepper->values)
+  if (!stepper->values())
     return fail(PINDRIVE_DERIVATIVE, "a stepper is written, not its derivatives");
   const std::size_t needed = pindrive_stepper_size(stepper);
   if (size != needed)
@@ -470,7 +222,7 @@ pindrive_error pindrive_stepper_write(const pindrive_stepper* stepper, void* byt
                 needed, size);
   auto* const to = static_cast<unsigned char*>(bytes);
   Writing writing(to + sizeof(Head));
-  State state = stepper->values->stepper.state();
+  State state = stepper->values()->state();
   exchange(writing, stepper->at, state);
   const Head head{magic, PINDRIVE_INTERFACE, checksum(to + sizeof(Head), size - sizeof(Head))};
   std::memcpy(to, &head, sizeof head);
@@ -497,7 +249,7 @@ pindrive_error pindrive_stepper_read(const void* bytes, size_t size, pindrive_st
       return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a stepper, not %zu", size);
     return made(stepper, [&](pindrive_stepper& s) {
       s.at = s.along = at;
-      s.values = std::make_unique<Followed<double>>(s.at, s.along, state);
+      s.pin = std::make_unique<Followed<double>>(s.at, s.along, state);
     });
   });
 }

@@ -16,15 +16,6 @@ namespace {
 
 using pindrive_c::fail;
 
-struct FreeDrive {
-  void operator()(pindrive_drive* drive) const { pindrive_drive_free(drive); }
-};
-struct FreeRelease {
-  void operator()(pindrive_release* release) const { pindrive_release_free(release); }
-};
-using Drive = std::unique_ptr<pindrive_drive, FreeDrive>;
-using Release = std::unique_ptr<pindrive_release, FreeRelease>;
-
 /// The plate's load is what the magnet makes of it, from now on.
 pindrive_error pulled(pindrive_stepper* stepper, const Magnet& magnet, double time) {
   return pindrive_stepper_set(stepper, "plate_load", magnet.load(time), magnet.load_rate());
@@ -61,56 +52,38 @@ double Instance::value_of_input(std::size_t place, const double* values) const {
   return 0;
 }
 
-/// A stepper at its start, with its magnet; with seeds its derivatives along them.
-pindrive_error Instance::make(const double* seeds, Stepper& stepper, Magnet& magnet) const {
+/// A stepper at its start, with its magnet.
+pindrive_error Instance::make(Stepper& stepper, Magnet& magnet) const {
   const Drive drive(pindrive_drive_new());
   const Release release(pindrive_release_new());
   const double* const values = values_.start.data();
-  const Given given(variables_, values, seeds);
+  const Given given(variables_, values, nullptr);
   pindrive_stepper* made = nullptr;
   pindrive_error error = magnet.begin(given, values_.begin);
-  const Number load = magnet.present() ? Magnet::first_load(given) : Number(1);
   if (!error) error = fill(drive.get(), release.get(), given, &Number::value);
   if (!error && magnet.present())
-    error = pindrive_release_set(release.get(), "plate_load", load.value);
+    error = pindrive_release_set(release.get(), "plate_load", Magnet::first_load(given).value);
+  if (!error) error = pindrive_stepper_new(drive.get(), release.get(), values_.begin, &made);
   if (error) return error;
-  if (seeds) {
-    const Drive along(pindrive_drive_rate_new(drive.get()));
-    const Release of_release(pindrive_release_rate_new(release.get()));
-    error = fill(along.get(), of_release.get(), given, &Number::slope);
-    if (!error && magnet.present())
-      error = pindrive_release_set(of_release.get(), "plate_load", load.slope);
-    if (!error)
-      error = pindrive_stepper_differentiate(drive.get(), release.get(), along.get(),
-                                             of_release.get(), values_.begin, &made);
-  } else {
-    error = pindrive_stepper_new(drive.get(), release.get(), values_.begin, &made);
-  }
   stepper.reset(made);
   std::size_t place = 0;
   for (const Input& input : inputs) {
     const double rate = value_of_input(place + 1, values);
     if (rate != 0 && !error)
       error = pindrive_stepper_set(made, input.name, value_of_input(place, values), rate);
-    if (seeds && !error && (rate != 0 || value_of_input(place + 1, seeds) != 0))
-      error = pindrive_stepper_set_along(made, input.name, value_of_input(place, seeds),
-                                         value_of_input(place + 1, seeds));
     place += 2;
   }
   for (std::size_t i = 0; i < variables_.size() && !error; ++i)
     if (variables_[i].kind == Variable::command && values[i] != 0) {
       magnet.command(true, values_.begin);
       error = pulled(made, magnet, values_.begin);
-      if (seeds && !error) error = pindrive_stepper_set_along(made, "plate_load", load.slope, 0);
     }
   if (error) stepper.reset();
   return error;
 }
 
 /// Before the initialisation has ended the stepper is made where something is asked of it.
-pindrive_error Instance::followed() {
-  return stepper_ ? PINDRIVE_OK : make(nullptr, stepper_, magnet_);
-}
+pindrive_error Instance::followed() { return stepper_ ? PINDRIVE_OK : make(stepper_, magnet_); }
 
 pindrive_error Instance::initialise() {
   const pindrive_error error = followed();
@@ -308,53 +281,6 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
     happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
   } while (!error && at.time < until && !(may_end_early && happens));
   return error;
-}
-
-pindrive_error Instance::derivative(std::size_t unknown, const unsigned* knowns,
-                                    const double* seeds, std::size_t count, double& value) {
-  const int which = place(unknown, Variable::output);
-  if (which < 0 || which == next_event_time || which >= plate_state)
-    return fail(PINDRIVE_BAD_VALUE,
-                "a derivative is had of outputs that are real, but not of the next event");
-  std::vector<double> along(variables_.size(), 0.0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Variable* const known = variable(knowns[i]);
-    if (!known) return PINDRIVE_BAD_VALUE;
-    if (known->kind == Variable::output || known->kind == Variable::command ||
-        (known->kind == Variable::parameter && values_.initialised))
-      return fail(PINDRIVE_BAD_VALUE,
-                  "a derivative is had along inputs and, before the initialisation ends, "
-                  "parameters: %s is none",
-                  known->name);
-    along[knowns[i] - 1] = seeds[i];
-  }
-  if (which >
-      next_event_time) {  // of the magnet: no input changes it, and at first its residual pull alone
-    value = which == magnet_pull
-                ? Given(variables_, values_.start.data(), along.data()).of("magnet.residual").slope
-                : 0;
-    return PINDRIVE_OK;
-  }
-  Stepper changing;
-  pindrive_error error = PINDRIVE_OK;
-  if (!values_.initialised) {
-    Magnet magnet;
-    error = make(along.data(), changing, magnet);
-  } else {
-    pindrive_stepper* made = nullptr;
-    error = followed();
-    if (!error) error = pindrive_stepper_derivative(stepper_.get(), &made);
-    changing.reset(made);
-    std::size_t place = 0;
-    for (const Input& input : inputs) {
-      const double value_seed = value_of_input(place, along.data());
-      const double rate_seed = value_of_input(place + 1, along.data());
-      if (!error && (value_seed != 0 || rate_seed != 0))
-        error = pindrive_stepper_set_along(made, input.name, value_seed, rate_seed);
-      place += 2;
-    }
-  }
-  return error ? error : pindrive_stepper_evaluate(changing.get(), which, &value);
 }
 
 // ---- states ------------------------------------------------------------------------------------

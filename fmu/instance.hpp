@@ -66,7 +66,7 @@ class Instance {
   int place(std::size_t reference, Variable::Kind kind) const;
   const char* name(std::size_t reference) const;
   double value_of_input(std::size_t place, const double* values) const;
-  pindrive_error make(const double* seeds, Stepper& stepper, Magnet& magnet) const;
+  pindrive_error make(Stepper& stepper, Magnet& magnet) const;
   pindrive_error settable(std::size_t reference, const Variable*& given) const;
   pindrive_error followed();
   pindrive_error instant(pindrive_instant& now);

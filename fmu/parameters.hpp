@@ -1,6 +1,7 @@
 /// The parameters of a unit, by the keys of a device file, and the drive and release that they describe.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "pindrive.h"
@@ -36,6 +37,15 @@ class Given {
   const double* values_;
   const double* seeds_;
 };
+
+struct FreeDrive {
+  void operator()(pindrive_drive* drive) const { pindrive_drive_free(drive); }
+};
+struct FreeRelease {
+  void operator()(pindrive_release* release) const { pindrive_release_free(release); }
+};
+using Drive = std::unique_ptr<pindrive_drive, FreeDrive>;
+using Release = std::unique_ptr<pindrive_release, FreeRelease>;
 
 /// Gives a drive and a release what is given, or, by `part`, how that changes.
 pindrive_error fill(pindrive_drive* drive, pindrive_release* release, const Given& given,

@@ -21,6 +21,30 @@ void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept { std::free(memory); }
 
+extern "C" void __cxa_pure_virtual() { std::abort(); }  // NOLINT(bugprone-reserved-identifier)
+
+#if defined(__MINGW32__) && defined(__x86_64__) && defined(__clang__)
+/// What compilers for Windows call where a frame, of so many bytes as rax says, is larger than a page: it touches each
+/// page in turn, as Windows makes the stack larger at the page next to it alone. All registers stay as they are.
+extern "C" __attribute__((naked)) void ___chkstk_ms() {  // NOLINT(bugprone-reserved-identifier)
+  __asm__ volatile(
+      "push %rcx\n"
+      "push %rax\n"
+      "lea 24(%rsp), %rcx\n"  // the frame begins below here
+      "1: cmp $4096, %rax\n"
+      "jb 2f\n"
+      "sub $4096, %rcx\n"
+      "test %rcx, (%rcx)\n"
+      "sub $4096, %rax\n"
+      "jmp 1b\n"
+      "2: sub %rax, %rcx\n"
+      "test %rcx, (%rcx)\n"
+      "pop %rax\n"
+      "pop %rcx\n"
+      "ret\n");
+}
+#endif
+
 // NOLINTBEGIN(bugprone-*,cert-*): names of the libraries, which they declare so
 namespace std {
 #if defined(__GLIBCXX__) || defined(_LIBCPP_VERSION)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 from zipfile import ZipFile
 
 import fmpy
+import numpy as np
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
 
@@ -66,6 +69,23 @@ class Unit:
         said = self.slave.doStep(currentCommunicationPoint=self.time, communicationStepSize=size)
         self.time = until if self.version == 2 else said[3]
         return said
+
+    @contextmanager
+    def astray(self, random: np.random.Generator, *names: str) -> Iterator[None]:
+        """Whatever is done with it meanwhile, it goes back to the same numbers of these names.
+
+        Its state is kept, or written to bytes and read again.
+        """
+        state, at, before = self.slave.getFMUState(), self.time, self.get(*names)
+        kept = self.slave.serializeFMUState(state)
+        yield
+        if random.integers(2):
+            self.slave.freeFMUState(state)
+            state = self.slave.deserializeFMUState(kept)
+        self.slave.setFMUState(state)
+        self.slave.freeFMUState(state)
+        self.time = at
+        assert self.get(*names) == before
 
     def derivative(self, unknown: str, **seeds: float) -> float:
         numbers = [self.numbers[name.replace("__", ".")] for name in seeds]

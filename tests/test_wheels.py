@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -114,3 +118,36 @@ def test_arguments_of_wheel(arguments: list[str], capsys: pytest.CaptureFixture[
         run.wheel(arguments)
     assert stopped.value.code == 2
     assert " ".join(arguments) in capsys.readouterr().err
+
+
+def test_a_release_names_the_address_that_its_workflow_runs_in(tmp_path: Path) -> None:
+    """In the metadata that the build backend makes, and where a citation and the recipe have it."""
+    names = ("pyproject.toml", "CMakeLists.txt", "README.md", "LICENSE", "CITATION.cff")
+    for name in (*names, "recipe/recipe.yaml", "wheels/address.py"):
+        target = tmp_path / name
+        target.parent.mkdir(exist_ok=True)
+        shutil.copyfile(run.ROOT / name, target)
+    script = [sys.executable, str(tmp_path / "wheels" / "address.py")]
+    told = {"GITHUB_SERVER_URL": "https://forge.example", "GITHUB_REPOSITORY": "someone/pindrive"}
+    left = {k: v for k, v in os.environ.items() if k not in told}
+    refused = subprocess.run(script, env=left, capture_output=True, text=True, check=False)
+    assert refused.returncode == 2 and len(refused.stderr.splitlines()) == 1
+    for _ in range(2):  # once more changes nothing
+        subprocess.run(script, env=left | told, check=True, capture_output=True)
+    make = "from scikit_build_core.build import prepare_metadata_for_build_wheel as make; make('.')"
+    subprocess.run([sys.executable, "-c", make], cwd=tmp_path, check=True, capture_output=True)
+    (metadata,) = tmp_path.glob("*.dist-info/METADATA")
+    said = re.findall(r"^Project-URL: (.*)$", metadata.read_text("utf-8"), re.M)
+    address = "https://forge.example/someone/pindrive"
+    assert said == [
+        f"Source, {address}",
+        f"Documentation, {address}/tree/HEAD/docs",
+        f"Issues, {address}/issues",
+        f"Changelog, {address}/blob/HEAD/CHANGELOG.md",
+    ]
+    assert f"\nrepository-code: {address}\n" in (tmp_path / "CITATION.cff").read_text("utf-8")
+    recipe = (tmp_path / "recipe" / "recipe.yaml").read_text("utf-8")
+    assert recipe.count(f"  repository: {address}\n") == 1
+    (workflow,) = (path for path in WORKFLOWS if path.name == "wheels.yml")
+    text = workflow.read_text("utf-8")
+    assert text.index("python wheels/address.py") < text.index("python run.py wheel")

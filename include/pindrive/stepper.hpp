@@ -148,6 +148,17 @@ class Stepper {
   /// The segment that goes on from now, how long it has lasted, and its inputs from its begin on.
   const Segment<T>& segment() const { return segment_; }
   T tau() const { return std::min(std::max(now_ - segment_.begin, T(0)), tau_); }
+  /// The pin now; skin that slips is not looked at.
+  detail::State<T> pin() const {
+    detail::State<T> pin = simulation_.state_;
+    if (!(tau() > 0)) return pin;
+    simulation_.series_.move(pin, drive_, simulation_.finger_, tau());
+    if (simulation_.series_.used()) return pin;
+    Segment<T> along = segment_;
+    along.moved = along.flow.after(tau());
+    pin.move(along, simulation_.finger_.elastic());
+    return pin;
+  }
   InputLines<T> lines() const {
     return {segment_.plate_velocity, simulation_.plate_.load, simulation_.plate_.across,
             simulation_.force_, simulation_.finger_.load};

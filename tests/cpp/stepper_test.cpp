@@ -14,6 +14,7 @@
 #include "cases.hpp"
 #include "check.hpp"
 #include "pindrive/dual.hpp"
+#include "pindrive/instant.hpp"
 #include "pindrive/simulate.hpp"
 
 namespace pd = pindrive;
@@ -365,6 +366,191 @@ void derivatives() {
   }
 }
 
+/// What is asked of an instant, in the order of an Instant's functions, but for the skin of a rigid finger.
+std::array<Dual, 7> numbers_of(const pd::Instant<Dual>& now, bool rigid) {
+  return {now.position(),
+          now.velocity(),
+          now.acceleration(),
+          now.friction().plate,
+          now.friction().finger,
+          rigid ? Dual(0) : now.stretch(),
+          rigid ? Dual(0) : now.stretch_rate()};
+}
+std::array<Dual, 7> numbers_of(const pd::Stepper<Dual>& stepper) {
+  const auto& drive = stepper.drive();
+  const auto& segment = stepper.segment();
+  const auto lines = stepper.lines();
+  const Dual tau = stepper.tau();
+  return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) -> std::array<Dual, 7> {
+    const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
+    const bool rigid = drive.finger.rigid();
+    const Dual skin = rigid ? Dual(1) : drive.finger.stiffness;
+    return {drive.stops.within(t.at(t.position(), tau)),
+            t.at(t.velocity(), tau),
+            t.at(t.acceleration(), tau),
+            friction.plate,
+            friction.finger,
+            rigid ? Dual(0) : -t.at(t.finger_force(), tau) / skin,
+            rigid ? Dual(0) : -t.at(t.derivative(t.finger_force()), tau) / skin};
+  });
+}
+
+struct Instants {
+  double worst{0};
+  int held{0}, by_both{0}, at_stop{0}, oblique{0}, setting_out{0}, lagging{0};
+
+  void compare(const pd::Instant<Dual>& now, const pd::Stepper<Dual>& known) {
+    const bool rigid = known.drive().finger.rigid();
+    const auto one = numbers_of(now, rigid), other = numbers_of(known);
+    const pd::Mode mode = known.mode();
+    const auto lines = known.lines();
+    const bool across = pd::slips(mode.plate) && lines.oblique();
+    held += mode.stuck();
+    by_both += mode.both_stuck();
+    at_stop += pd::touches(mode.stop);
+    oblique += across;
+    setting_out +=
+        across && lines.across_velocity.value == 0 && one[1] == lines.plate_velocity.value;
+    lagging += pd::SeriesMode<Dual>(known.drive(), mode, lines).lags();
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      const double value = std::abs(one[i].value - other[i].value);
+      const double slope = std::abs(one[i].slope - other[i].slope);
+      worst = std::max({worst, value / (1 + std::abs(other[i].value)),
+                        slope / (1 + std::abs(other[i].slope) + std::abs(other[2].slope))});
+    }
+  }
+};
+
+constexpr double curve_speeds[]{0, 0.05, 0.3};
+
+/// A drive of dual numbers, which changes along random slopes, or does not change.
+struct Changing {
+  std::vector<pd::Branch<Dual>> plate_curve, finger_curve;
+  pd::Drive<Dual> drive;
+
+  Changing(const pd::Drive<double>& at, Random* random) {
+    const auto number = [&](double value) {
+      const bool fixed = !random || !(value < infinity) || value == 0;
+      return Dual(value, fixed ? 0 : between(*random, -1, 1) * value);
+    };
+    const auto contact = [&](const pd::Contact<double>& of, std::vector<pd::Branch<Dual>>& curve) {
+      pd::Contact<Dual> made{number(of.kinetic), number(of.static_limit), number(of.stiffness)};
+      if (of.branches == 0) return made;
+      Dual speeds[3], forces[3];
+      for (int i = 0; i < 3; ++i) {
+        speeds[i] = curve_speeds[i];
+        forces[i] = number(of.branch(of.branch_of(curve_speeds[i])).at(curve_speeds[i]));
+      }
+      curve.resize(5);
+      made.branches = pd::branches_of(speeds, forces, 3, curve.data());
+      made.curve = curve.data();
+      made.kinetic = forces[0];
+      return made;
+    };
+    drive = {number(at.mass), number(at.stiffness), number(at.damping),
+             contact(at.plate, plate_curve), contact(at.finger, finger_curve)};
+    drive.stops = {at.stops.travel, number(at.stops.stiffness), number(at.stops.damping)};
+  }
+  Changing(const Changing&) = delete;
+  Changing& operator=(const Changing&) = delete;
+};
+
+/// Inputs whose values and rates change along random slopes; none of the finger's load where that may not.
+pd::InputLines<Dual> changing(const pd::InputLines<double>& inputs, bool touch, Random& random) {
+  const auto line = [&](const pd::Line<double>& l, bool changes = true) {
+    const double value = changes ? between(random, -1, 1) : 0;
+    return pd::Line<Dual>{{l.value, value}, {l.rate, changes ? between(random, -1, 1) : 0}};
+  };
+  return {line(inputs.plate_velocity), line(inputs.plate_load), line(inputs.across_velocity),
+          line(inputs.force), line(inputs.finger_load, touch)};
+}
+template <class T>
+pd::Inputs<T> started(const pd::InputLines<T>& l, T x, T v) {
+  const auto held = [](const pd::Line<T>& line) { return pd::Held<T>(T(0), line); };
+  return {held(l.plate_velocity),
+          x,
+          v,
+          T(infinity),
+          held(l.plate_load),
+          std::numeric_limits<T>::quiet_NaN(),
+          held(l.force),
+          held(l.across_velocity),
+          held(l.finger_load)};
+}
+
+/// At the release and on the way an instant has the derivatives of the event loop on dual numbers.
+void at_an_instant() {
+  Random random(29);
+  Instants instants;
+  for (int i = 0; i < 2000; ++i) {
+    Case c(random);
+    std::vector<pd::Branch<double>> curve(5);
+    pd::Contact<double>& finger = c.drive.finger;
+    if (one_of(random, 3)) {
+      const double f = finger.static_limit = finger.kinetic;
+      const double rows[]{f, f * between(random, 0.5, 1.5), f * between(random, 1, 2)};
+      finger.branches = pd::branches_of(curve_speeds, rows, 3, curve.data());
+      finger.curve = curve.data();
+    }
+    pd::InputLines<double> inputs = c.from(0);
+    const bool touch = finger.rigid() && finger.branches == 0;
+    if (!touch) inputs.finger_load = {1, 0};
+    if (one_of(random, 8)) inputs.across_velocity.value = 0;
+    if (one_of(random, 8)) inputs.plate_velocity = {0, 0};
+    const double plate = inputs.plate_velocity.value,
+                 nan = std::numeric_limits<double>::quiet_NaN();
+    const double v = one_of(random, 2) ? plate : between(random, -0.3, 0.3);
+    if (plate == 0 && v == 0) c.displacement *= 0.01;
+    pd::Stepper<double> stepper(c.drive, started(inputs, c.displacement, v));
+    if (stepper.status() != pd::Status::ok) continue;
+
+    const Changing moving(c.drive, &random), still(c.drive, nullptr);
+    pd::InputLines<Dual> first = changing(inputs, touch, random);
+    if (plate == 0) first.plate_velocity.value = 0;  // else it is no rest to the finger
+    const Dual x(c.displacement, between(random, -1e-3, 1e-3));
+    const Dual u = v == plate ? first.plate_velocity.value : Dual(v, between(random, -1, 1));
+    const pd::Stepper<Dual> begun(moving.drive, started(first, x, u));
+    instants.compare(
+        {moving.drive, begun.mode(), first,
+         pd::released(moving.drive, begun.mode(), first, x, u, Dual(nan), stepper.pin())},
+        begun);
+
+    const auto fixed = [](const pd::Line<double>& l) { return pd::Line<Dual>{l.value, l.rate}; };
+    pd::Stepper<Dual> later(still.drive,
+                            started<Dual>({fixed(inputs.plate_velocity), fixed(inputs.plate_load),
+                                           fixed(inputs.across_velocity), fixed(inputs.force),
+                                           fixed(inputs.finger_load)},
+                                          c.displacement, v));
+    const double time = between(random, 0, 0.1);
+    if (!stepper.step(time) || !later.step(time)) continue;
+    const pd::InputLines<double> now = stepper.lines().from(stepper.tau());
+    const pd::InputLines<Dual> next = changing(now, touch, random);
+    later.set(next);
+    // Where a stop takes over from a contact the event loop goes on in another mode; and it has no derivative
+    // along a load of 0.
+    const pd::Mode one = stepper.mode(), other = later.mode();
+    const bool same = one.plate == other.plate && one.finger == other.finger &&
+                      one.plate_branch == other.plate_branch &&
+                      one.finger_branch == other.finger_branch && one.stop == other.stop;
+    if (!same || now.plate_load.value == 0) continue;
+    const pd::detail::State<double> pin = stepper.pin();
+    instants.compare({still.drive,
+                      one,
+                      next,
+                      {pin.x, {pin.v, next.plate_velocity.value.slope}, pin.skin, 0, 0, pin.slide}},
+                     later);
+  }
+  std::printf(
+      "# instants within %.1e: %d held, %d by both, %d at a stop, %d across, %d of them from the "
+      "plate's velocity, %d with a slider that lags\n",
+      instants.worst, instants.held, instants.by_both, instants.at_stop, instants.oblique,
+      instants.setting_out, instants.lagging);
+  expect(instants.worst < 1e-12, "an instant has the derivatives of the event loop");
+  expect(std::min({instants.held, instants.by_both, instants.at_stop, instants.oblique,
+                   instants.setting_out, instants.lagging}) > 10,
+         "in every kind of mode");
+}
+
 }  // namespace
 
 int main() {
@@ -374,5 +560,6 @@ int main() {
   a_jump();
   across_and_back();
   derivatives();
+  at_an_instant();
   return check::status();
 }

@@ -1,0 +1,220 @@
+/// What the sources of the C interface share of a pin that is followed step by step: its handle, which answers by
+/// values or by derivatives.
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "interface.hpp"
+#include "owned_motion.hpp"
+#include "pindrive.h"
+#include "pindrive/stepper.hpp"
+
+namespace pindrive_c {
+
+inline pindrive_error given_up(pd::Status status) {
+  return fail(PINDRIVE_GIVEN_UP, "%s", pindrive_status_text(static_cast<int>(status)));
+}
+
+/// A pin that is followed. What a library does not make is not linked into it, so that one without derivatives
+/// carries the core but once.
+class Following {
+ public:
+  virtual ~Following() = default;
+  virtual std::unique_ptr<Following> copy(const pd::Numbers& at,
+                                          const pd::Numbers& along) const = 0;
+  virtual pd::Status status() const = 0;
+  virtual pindrive_instant now() const = 0;
+  virtual double evaluate(pindrive_quantity quantity) const = 0;
+  virtual bool step(double until, bool stop_at_event) = 0;
+  virtual pindrive_error set(const char* input, double value, double rate) = 0;
+  virtual pindrive_error set_along(const char* input, double value, double rate) = 0;
+  virtual const pd::Stepper<double>* values() const { return nullptr; }  ///< null: derivatives
+};
+
+/// A stepper with the friction curves that it refers to.
+template <class T>
+class Followed final : public Following {
+  pd::OwnedContact<T> plate_, finger_;
+
+  static pd::Drive<T> drive(const pd::Numbers& at, const pd::Numbers& along,
+                            const Followed& owner) {
+    return {pd::number<T>(at.mass, along.mass),
+            pd::number<T>(at.stiffness, along.stiffness),
+            pd::number<T>(at.damping, along.damping),
+            owner.plate_.contact,
+            owner.finger_.contact,
+            pd::stops<T>(at.stops, along.stops)};
+  }
+
+ public:
+  template <class Start>
+  Followed(const pd::Numbers& at, const pd::Numbers& along, const Start& start)
+      : plate_(at.plate, along.plate),
+        finger_(at.finger, along.finger),
+        stepper_(drive(at, along, *this), start) {}
+  Followed(const pd::Numbers& at, const pd::Numbers& along, const pd::Inputs<T>& inputs,
+           double begin)
+      : plate_(at.plate, along.plate),
+        finger_(at.finger, along.finger),
+        stepper_(drive(at, along, *this), inputs, T(begin)) {}
+
+  std::unique_ptr<Following> copy(const pd::Numbers& at, const pd::Numbers& along) const override {
+    return std::make_unique<Followed>(at, along, stepper_.state());
+  }
+  pd::Status status() const override { return stepper_.status(); }
+  pindrive_instant now() const override;
+  double evaluate(pindrive_quantity quantity) const override;
+  bool step(double until, bool stop_at_event) override {
+    return stepper_.step(until, stop_at_event);
+  }
+  pindrive_error set(const char* input, double value, double rate) override {
+    return set_input(input, [&](pd::Line<T>& line) { line = {value, rate}; });
+  }
+  pindrive_error set_along(const char* input, double value, double rate) override {
+    if constexpr (std::is_same_v<T, double>)
+      return fail(PINDRIVE_DERIVATIVE, "a direction is set of derivatives, not of a stepper");
+    else
+      return set_input(input, [&](pd::Line<T>& line) {
+        line = {{line.value.value, value}, {line.rate.value, rate}};
+      });
+  }
+  const pd::Stepper<double>* values() const override {
+    if constexpr (std::is_same_v<T, double>)
+      return &stepper_;
+    else
+      return nullptr;
+  }
+
+ private:
+  /// Sets one of the inputs, which change(line) changes; the others go on.
+  template <class Change>
+  pindrive_error set_input(const char* name, Change&& change);
+
+  pd::Stepper<T> stepper_;
+};
+
+template <class T>
+pindrive_instant Followed<T>::now() const {
+  const auto inputs = stepper_.inputs();
+  return pindrive_instant{plain(stepper_.now()),
+                          plain(stepper_.next()),
+                          plain(inputs.plate_velocity.value),
+                          plain(inputs.plate_velocity.rate),
+                          plain(inputs.plate_load.value),
+                          plain(inputs.plate_load.rate),
+                          plain(inputs.across_velocity.value),
+                          plain(inputs.across_velocity.rate),
+                          plain(inputs.force.value),
+                          plain(inputs.force.rate),
+                          plain(inputs.finger_load.value),
+                          plain(inputs.finger_load.rate),
+                          static_cast<pindrive_contact_state>(stepper_.mode().plate),
+                          static_cast<pindrive_contact_state>(stepper_.mode().finger),
+                          static_cast<pindrive_transition>(stepper_.event().plate),
+                          static_cast<pindrive_transition>(stepper_.event().finger),
+                          static_cast<int>(stepper_.mode().stop),
+                          static_cast<pindrive_transition>(stepper_.event().stop)};
+}
+
+template <class T>
+double Followed<T>::evaluate(pindrive_quantity quantity) const {
+  const auto tau = stepper_.tau();
+  const auto lines = stepper_.lines();
+  return pd::visit_trajectory(stepper_.drive(), stepper_.segment(), lines, [&](const auto& along) {
+    const auto friction = [&] {
+      return pd::friction_along(
+          along, stepper_.drive(), stepper_.segment(), [&] { return lines; }, tau);
+    };
+    if (quantity == PINDRIVE_STOP_FORCE)
+      return pd::result(
+          pd::stop_force_along(along, stepper_.drive(), stepper_.segment(), lines.force, tau));
+    return value_along(along, tau, stepper_.drive(), friction, quantity);
+  });
+}
+
+/// The input of that name, or null.
+template <class T>
+pd::Line<T>* find(pd::InputLines<T>& inputs, const char* name) {
+  const std::pair<const char*, pd::Line<T>*> lines[] = {
+      {"mouse_velocity", &inputs.plate_velocity},
+      {"plate_load", &inputs.plate_load},
+      {"across_velocity", &inputs.across_velocity},
+      {"force", &inputs.force},
+      {"finger_load", &inputs.finger_load}};
+  for (const auto& [known, line] : lines)
+    if (std::strcmp(known, name) == 0) return line;
+  return nullptr;
+}
+
+template <class T>
+template <class Change>
+pindrive_error Followed<T>::set_input(const char* name, Change&& change) {
+  pd::InputLines<T> inputs = stepper_.inputs();
+  pd::Line<T>* const line = find(inputs, name);
+  if (!line)
+    return fail(
+        PINDRIVE_BAD_NAME,
+        "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
+        "finger_load",
+        name);
+  const pd::Line<T> before = *line;
+  change(*line);
+  const auto& finger = stepper_.drive().finger;
+  const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
+  if (line == &inputs.finger_load && !same && (!finger.rigid() || finger.branches > 0))
+    return fail(PINDRIVE_UNSUPPORTED,
+                "finger_load must stay %.17g for a finger that is compliant or has a curve",
+                plain(before.value));
+  stepper_.set(inputs);
+  return stepper_.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper_.status());
+}
+
+// ---- how one is made ---------------------------------------------------------------------------
+
+template <class T>
+std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& along,
+                                      double begin) {
+  const auto held = [&](const pd::Rows& rows, const pd::Rows& rates) {
+    return pd::Held<T>{T(begin), {pd::number<T>(rows[0].second, rates[0].second), T(0)}};
+  };
+  const pd::Inputs<T> inputs{held(at.mouse_velocity, along.mouse_velocity),
+                             pd::number<T>(at.displacement, along.displacement),
+                             pd::number<T>(at.velocity, along.velocity),
+                             T(infinity),
+                             held(at.plate_load, along.plate_load),
+                             pd::number<T>(at.skin_stretch, along.skin_stretch),
+                             held(at.force, along.force),
+                             held(at.across_velocity, along.across_velocity),
+                             held(at.finger_load, along.finger_load)};
+  return std::make_unique<Followed<T>>(at, along, inputs, begin);
+}
+
+/// Of a stepper, which begins at a time.
+pindrive_error check_start(const pindrive_release& release, double begin);
+
+}  // namespace pindrive_c
+
+struct pindrive_stepper {
+  pindrive::Numbers at, along;
+  std::unique_ptr<pindrive_c::Following> pin;
+
+  const pindrive::Stepper<double>* values() const { return pin->values(); }
+};
+
+namespace pindrive_c {
+
+template <class Make>
+pindrive_error made(pindrive_stepper** stepper, Make&& make) {
+  return guarded([&]() -> pindrive_error {
+    auto handle = std::make_unique<pindrive_stepper>();
+    make(*handle);
+    const pd::Status status = handle->pin->status();
+    if (status != pd::Status::ok) return given_up(status);
+    *stepper = handle.release();
+    return PINDRIVE_OK;
+  });
+}
+
+}  // namespace pindrive_c
