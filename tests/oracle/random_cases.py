@@ -73,8 +73,8 @@ def deviation(case: Case, path: Path) -> float:
     if len(told) != len(true) or not all(map(piecewise.alike, told, true)):
         return math.inf
     times = np.linspace(0.0, case["duration"], 41)
-    states = [path.state(float(t)) for t in times]
-    x, v = (np.array([float(state[i]) for state in states]) for i in (0, 1))
+    states = np.array([path.state(float(t)) for t in times], float).T
+    x, v = states[:2]
     frequency = piecewise.natural_frequency(case)
     moves = max(abs(v) for _, v in case["inputs"]["mouse_velocity"])
     speed = max(np.abs(v).max(), moves, frequency * np.abs(x).max())
@@ -84,7 +84,7 @@ def deviation(case: Case, path: Path) -> float:
         *(frequency * abs(a[0][0] - b[0][0]) for a, b in zip(told, true, strict=True)),
     ]
     if isinstance(path, mp_slider.Path):
-        force = np.array([float(state[2]) for state in states])
+        force = states[2]
         late = np.abs(motion.force("finger", times) - force).max()
         off.append(late / max(np.abs(force).max(), case["inputs"]["stiffness"] * np.abs(x).max()))
     return float(max(off))
