@@ -1,7 +1,8 @@
 """Time of a scan: sixteen pins over ten seconds of hand motion along two lines of text.
 
 What is timed is the simulation: reading the scene under each spot, switching the coils, and each
-pin's whole motion. Making the page and measuring what the pins did are timed apart.
+pin's whole motion. Making the page and measuring what the pins did are timed apart. `--angle 10`
+turns the drive in the housing, so that the hand moves across it too.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+from dataclasses import replace
+from math import radians
 from statistics import median
 from time import perf_counter, process_time
 
@@ -24,6 +27,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--threads", type=int, default=None)
+    parser.add_argument("--angle", type=float, default=0.0, help="of the drive, degrees")
     arguments = parser.parse_args()
 
     drive = Drive.with_damping_ratio(
@@ -34,7 +38,8 @@ def main() -> None:
         finger=Contact(0.005, 0.0075),
     )
     magnet = Electromagnet(hold_force=3.0)
-    device = Device(drive=drive, magnet=magnet, array=PinArray.grid(4, 4, 0.0025))
+    array = replace(PinArray.grid(4, 4, 0.0025), axis=radians(arguments.angle))
+    device = Device(drive=drive, magnet=magnet, array=array)
     reading = Reading()
     begin = perf_counter()
     scene = reading.text(TEXT, device.array)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import exp
 from pathlib import Path
 
@@ -122,6 +123,27 @@ def test_a_driven_and_warm_scan_in_two_halves_is_the_scan_in_one(part: float, he
     warm = whole.current.warming(t)
     np.testing.assert_allclose(second.current.warming(t), warm, rtol=1e-9, atol=1e-12)
     assert warm[-1] > 0.1
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_a_scan_cut_exactly_at_a_switching_off_is_the_scan_in_one(held: bool) -> None:
+    """The first half ends before that instant, the second begins with it."""
+    device, reading = reader(HELD if held else PULSED), Reading()
+    device = replace(device, control=ControlBlock(latency=0.016))  # commanded off within a pulse
+    scene = reading.grating([0.004], device.array)
+    path = reading.strokes(scene, device.array)
+    (whole,) = scan(device, scene, path).pins
+    switched_off = whole.current.begins[~whole.current.on][1:].tolist()
+    commanded_off = float(whole.commands.times[1])
+    assert commanded_off in switched_off
+    pulsed_off = [t for t in switched_off if t not in whole.commands.times][:3]
+    assert held or len(pulsed_off) == 3
+    for cut in (commanded_off, *pulsed_off):
+        first = scan(device, scene, path.between(0.0, cut))
+        (second,) = scan(device, scene, path.between(cut, path.end), start=first.state).pins
+        t = np.linspace(cut, path.end, 400)
+        np.testing.assert_allclose(second.current(t), whole.current(t), rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(second.position(t), whole.position(t), rtol=0.0, atol=1e-12)
 
 
 # ---- a given voltage -----------------------------------------------------------------------------

@@ -4,7 +4,7 @@ The plate's friction opposes the whole sliding velocity (u, w), and the finger i
 absent. Where u and w are not both zero the equation of motion is integrated by its Taylor
 series. Where both come to zero at once, the pin creeps: with u = |w| q there is one power
 series of q on either side of that instant, and the motion before it is joined to it where the
-two agree to 28 digits.
+two agree to 28 digits, at that instant at the latest.
 
 Inputs are a mapping of SI values as in `mp_piecewise`, with rows of `across`.
 """
@@ -264,6 +264,10 @@ class _Oblique:
             self.take(self.t, end, x)
             if met < 1:
                 self.event(kind)
+            elif end == knot and self.across(knot) == 0 and not self.rests:
+                off = self.v - self.mouse(knot)
+                sets_out = abs(off) <= JOINED * self.speed  # it has crept all the way
+                self.path.met += sets_out
         raise DoubtError("too many steps")
 
     def event(self, kind: str) -> None:

@@ -1,165 +1,280 @@
 """Motions on a compliant finger with a friction curve, in forty digits.
 
-The pin slides on the plate, with constant friction; the slider of the finger's skin grips, or
-slides at the speed at which its curve carries what the skin asks. Each mode is followed by the
-Taylor series of its own linear equations, and its end is found by bisection.
+The slider of the finger's skin grips, or slides at the speed at which its curve carries what the
+skin asks; the plate has Coulomb friction, whose load and velocity are piecewise linear. Each mode
+is followed by the Taylor series of its own linear equations, and its end is the earliest zero of
+its guards.
+
+Inputs are a mapping of SI values as in `mp_piecewise`. The finger's curve has no plateau but beyond
+its last row but one, and does not fall there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from mpmath import mp, mpf
+from mpmath import inf, mpf, sign, sqrt
 
-mp.dps = 40
+from oracle.mp_modes import DoubtError
+from oracle.mp_oracle import DOUBT, Event, horner
+from oracle.mp_series import TINY, Guard, Poly, Profile, earliest_zero, plus, times
+
 ORDER = 40
-TINY = mpf("1e-36")
-State = tuple[mpf, mpf, mpf]  # position, velocity, force on the skin
+MOST_STEPS = 2000
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Friction base + slope |u| from one speed to another."""
+
+    low: mpf
+    high: mpf
+    base: mpf
+    slope: mpf
+
+    def at(self, speed: mpf) -> mpf:
+        return self.base + self.slope * speed
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Position, velocity and the skin's force: polynomials in (t - begin) / width."""
+
+    begin: mpf
+    width: mpf
+    terms: tuple[Poly, Poly, Poly]
 
 
 @dataclass
-class Slider:
-    """A pin that slides past the plate on one side, and its skin."""
+class Path:
+    pieces: list[Piece] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
 
-    mass: mpf
-    stiffness: mpf
-    damping: mpf
-    plate: mpf  # force of the plate on the pin, while it slides on this side
-    skin: mpf
-    static: mpf
-    rows: Sequence[tuple[mpf, mpf]]
-    events: list[tuple[mpf, str]] = field(default_factory=list)
-
-    def friction(self, speed: mpf) -> mpf:
-        """The curve, whose last slope goes on."""
-        at = max(i for i, (u, _) in enumerate(self.rows) if u <= speed)
-        i = min(at, len(self.rows) - 2)
-        (u, f), (w, g) = self.rows[i], self.rows[i + 1]
-        return f + (g - f) / (w - u) * (speed - u)
-
-    def piece(self, speed: mpf) -> tuple[mpf, mpf]:
-        """Friction continued to no speed, and its slope, on the piece of a speed."""
-        i = min(max(j for j, (u, _) in enumerate(self.rows) if u <= speed), len(self.rows) - 2)
-        (u, f), (w, g) = self.rows[i], self.rows[i + 1]
-        slope = (g - f) / (w - u)
-        return f - slope * u, slope
-
-    def terms(self, state: State, side: int, piece: tuple[mpf, mpf]) -> list[State]:
-        """The Taylor terms of the mode: gripped (side 0), or sliding to a side on a piece."""
-        base, slope = piece
-        terms = [state]
-        for n in range(ORDER):
-            x, v, q = terms[-1]
-            constant = self.plate if n == 0 else mpf(0)
-            a = (constant - self.stiffness * x - self.damping * v - q) / self.mass
-            speed = mpf(0)
-            if side:  # q = side (base + slope |u|)
-                speed = (q - (side * base if n == 0 else 0)) / slope
-            terms.append((v / (n + 1), a / (n + 1), self.skin * (v - speed) / (n + 1)))
-        return terms
-
-    def speed(self, state: State, side: int, piece: tuple[mpf, mpf]) -> mpf:
-        base, slope = piece
-        return (side * state[2] - base) / slope
+    def state(self, time: float | mpf) -> tuple[mpf, mpf, mpf]:
+        """Position, velocity, and force of the finger on the pin."""
+        piece = next(p for p in reversed(self.pieces) if p.begin <= time)
+        s = (time - piece.begin) / piece.width
+        x, v, q = (horner(poly, s) for poly in piece.terms)
+        return x, v, -q
 
 
-def value(terms: Sequence[State], time: mpf) -> State:
-    x = v = q = mpf(0)
-    for a, b, c in reversed(terms):
-        x, v, q = x * time + a, v * time + b, q * time + c
-    return x, v, q
-
-
-def landing(of: Slider, asked: mpf, speeds: Sequence[mpf], up: bool) -> mpf | None:
-    """The next speed at which a rising piece carries what is asked, going up or down."""
+def branches(curve: list[list[float]]) -> list[Branch]:
+    """Of a curve, whose last slope goes on."""
     found = []
-    for i, (u, f) in enumerate(of.rows[:-1]):
-        w, g = of.rows[i + 1]
-        last = i == len(of.rows) - 2
-        if g <= f:
-            continue
-        at = u + (asked - f) * (w - u) / (g - f)
-        if at >= u and (last or at <= w):
-            found.append(at)
-    now = speeds[0]
-    if up:
-        return min((s for s in found if s >= now), default=None)
-    return max((s for s in found if s <= now), default=None)
+    for (u, f), (w, g) in pairwise([(mpf(u), mpf(f)) for u, f in curve]):
+        slope = (g - f) / (w - u)
+        found.append(Branch(u, w, f - slope * u, slope))
+    last = found[-1]
+    found[-1] = Branch(last.low, inf, last.base, last.slope)
+    return found
 
 
-def solve(inputs: dict[str, Any], times: Sequence[float]) -> tuple[list[State], Slider]:
-    """States at times, which increase, and the events at the finger."""
-    rows = [(mpf(u), mpf(f)) for u, f in inputs["rows"]]
-    numbers = {n: mpf(inputs[n]) for n in ("mass", "stiffness", "damping", "plate", "skin")}
-    of = Slider(**numbers, static=mpf(inputs["static"]), rows=rows)
-    state: State = (mpf(inputs["displacement"]), mpf(inputs["velocity"]), mpf(0))
-    side, piece = 0, (mpf(0), mpf(1))
-    now, found = mpf(0), []
-    rate = of.skin / min(abs(g - f) / (w - u) for (u, f), (w, g) in pairwise(rows))
-    step = 1 / (rate + (of.stiffness + of.skin) ** mpf("0.5") / of.mass ** mpf("0.5"))
-    for time in map(mpf, times):
-        while now < time:
-            terms = of.terms(state, side, piece)
-            end = min(step, time - now)
-            guards = _guards(of, side, piece)
-            met = None
-            for name, guard in guards.items():
-                if guard(value(terms, end)) < 0 < guard(value(terms, end / 1024)):
-                    early, late = end / 1024, end
-                    while late - early > TINY * end:
-                        middle = (early + late) / 2
-                        if guard(value(terms, middle)) < 0:
-                            late = middle
-                        else:
-                            early = middle
-                    if met is None or early < met[0]:
-                        met = (early, name)
-            after = met[0] if met else end
-            state = value(terms, after)
-            now += after
-            if not met:
-                continue
-            asked = abs(state[2])
-            if side == 0:
-                side = int(met[1])
-                at = landing(of, of.static, [mpf(0)], up=True)
-                assert at is not None
-                of.events.append((now, "slip"))
-                piece = of.piece(at + TINY)
-                continue
-            low, high = _ends(of, piece)
-            if met[1] == "high":
-                assert high is not None
-                at = landing(of, asked, [high + TINY], up=True)
-                assert at is not None
-                piece = of.piece(at + TINY)
+class _Skin:
+    def __init__(self, inputs: Mapping[str, Any], duration: float) -> None:
+        self.m, self.k, self.b = (mpf(inputs[n]) for n in ("mass", "stiffness", "damping"))
+        self.skin, self.static = (mpf(inputs["finger"][n]) for n in ("stiffness", "static"))
+        self.curve = branches(inputs["finger"]["curve"])
+        self.kinetic = mpf(inputs["plate"]["curve"][0][1])
+        self.limit = mpf(inputs["plate"]["static"])
+        self.mouse, self.load = Profile(inputs["mouse_velocity"]), Profile(inputs["load"])
+        knots = {t for p in (self.mouse, self.load) for t, _ in p.rows} | {mpf(duration)}
+        self.knots = sorted(t for t in knots if 0 < t <= duration)
+        self.t, self.x, self.v = mpf(0), mpf(inputs["displacement"]), mpf(inputs["velocity"])
+        self.q = self.skin * mpf(inputs["skin_stretch"])
+        self.plate = int(sign(self.v - self.mouse(self.t)))
+        self.side, self.branch = 0, self.curve[0]
+        self.frequency = sqrt((self.k + self.skin) / self.m)
+        moves = [abs(v) for _, v in self.mouse.rows]
+        self.speed = max(*moves, abs(self.v), sqrt(self.k / self.m) * abs(self.x))
+        self.force = max(self.static, self.limit)
+        self.path = Path()
+
+    # -- a step --------------------------------------------------------------------------------
+
+    def series(self, h: mpf) -> tuple[Poly, Poly, Poly, Poly]:
+        """Position, velocity, the skin's force, and the speed of the slider, over a step."""
+        v_p, load = self.over(self.mouse, h), self.over(self.load, h)
+        inertia = self.m * self.mouse.slope(self.t)
+        x, v, q = [self.x], [self.v], [self.q]
+        speed: Poly = []
+        for n in range(ORDER):
+            push = inertia if n == 0 else mpf(0)
+            if n < 2:
+                push -= self.plate * self.kinetic * load[n]
+            forces = push - self.k * x[n] - self.b * v[n] - q[n]
+            if self.side == 0:
+                slides = mpf(0)
+            elif self.branch.slope == 0:
+                slides = v[n]
             else:
-                at = landing(of, asked, [low - TINY], up=False) if low > 0 else None
-                if at is None:
-                    side = 0
-                    of.events.append((now, "stick"))
+                base = self.branch.base if n == 0 else 0
+                slides = self.side * (self.side * q[n] - base) / self.branch.slope
+            speed.append(self.side * slides)
+            x.append(h * v[n] / (n + 1))
+            rate = h * forces / (self.m * (n + 1))
+            v.append(rate if self.plate else v_p[n + 1] if n == 0 else mpf(0))
+            q.append(h * self.skin * (v[n] - slides) / (n + 1))
+        return x, v, q, speed
+
+    def over(self, profile: Profile, h: mpf) -> Poly:
+        return [profile(self.t), profile.slope(self.t) * h]
+
+    def guards(self, series: tuple[Poly, Poly, Poly, Poly], h: mpf) -> list[Guard]:
+        x, v, q, speed = series
+        found = []
+        if self.plate:
+            u = plus(v, times(mpf(-1), self.over(self.mouse, h)))
+            found.append(Guard("plate", "level", times(mpf(self.plate), u), self.speed))
+        else:
+            most = times(self.limit, self.over(self.load, h))
+            needed = plus(times(self.k, x), times(self.b, v), q)
+            found += [
+                Guard("plate", f"{-way:+d}", plus(most, times(mpf(-way), needed)), self.force)
+                for way in (1, -1)
+            ]
+        if self.side:
+            low, high = self.branch.low, self.branch.high
+            found.append(Guard("finger", "low", plus(speed, [-low]), self.speed))
+            if high < inf:
+                above = plus([high], times(mpf(-1), speed))
+                found.append(Guard("finger", "high", above, self.speed))
+        else:
+            found += [
+                Guard("finger", f"{way:+d}", plus([self.static], times(mpf(-way), q)), self.force)
+                for way in (1, -1)
+            ]
+        return [guard for guard in found if not guard.idle]
+
+    def solve(self) -> Path:
+        rates = [self.skin / b.slope for b in self.curve if b.slope]
+        longest = 1 / (max(map(abs, rates)) + self.frequency + self.b / self.m)
+        for _ in range(MOST_STEPS):
+            if self.t == self.knots[-1]:
+                return self.path
+            knot = next(t for t in self.knots if t > self.t)
+            h = min(longest, knot - self.t)
+            series = self.series(h)
+            met = sorted(
+                ((earliest_zero(guard, h / longest, doubt), guard)
+                 for guard in self.guards(series, h)),
+                key=lambda one: one[0],
+            )  # fmt: skip
+            s, guard = met[0]
+            if len(met) > 1 and s < 1 and met[1][0] - s < DOUBT:
+                raise DoubtError("two at once")
+            if s > 0:
+                x, v, q, _ = series
+                self.path.pieces.append(Piece(self.t, h, (x, v, q)))
+                self.x, self.v, self.q = (horner(p, s) for p in (x, v, q))
+            self.t = knot if s == 1 and h == knot - self.t else self.t + s * h
+            if s < 1 and guard.contact == "plate":
+                self.at_plate(guard.kind)
+            elif s < 1:
+                self.at_finger(guard.kind)
+        raise DoubtError("too many steps")
+
+    # -- what follows --------------------------------------------------------------------------
+
+    def event(self, contact: str, kind: str) -> None:
+        self.path.events.append(Event(self.t, contact, kind, self.x, self.v))
+
+    def at_plate(self, kind: str) -> None:
+        if kind != "level":
+            self.plate = int(kind)
+            self.event("plate", "slip")
+            return
+        self.v = self.mouse(self.t)
+        needed = self.k * self.x + self.b * self.v + self.q
+        if not apart(abs(needed), self.limit * self.load(self.t)):
+            raise DoubtError("at its limit")
+        if abs(needed) < self.limit * self.load(self.t):
+            self.plate = 0
+            self.event("plate", "stick")
+        else:
+            self.plate = -int(sign(needed))
+            self.event("plate", "cross")
+
+    def at_finger(self, kind: str) -> None:
+        """A skin that becomes shorter at once slips, also where it grips again at that instant."""
+        was, drops = self.side, False
+        if was == 0:
+            self.side = int(kind)
+            self.q = self.side * self.static
+            drops = self.faster(0)
+        else:
+            end = self.branch.low if kind == "low" else self.branch.high
+            self.q = self.side * self.branch.at(end)
+            number = self.curve.index(self.branch)
+            if kind == "high":
+                drops = self.faster(number + 1)
+            else:
+                self.slower(number)
+        if drops or self.side != was:
+            self.event("finger", "slip" if drops or self.side else "stick")
+
+    def faster(self, first: int) -> bool:
+        """To the first speed from a branch on that carries what the skin asks.
+
+        Without one the skin becomes shorter at once, until the last plateau carries it; whether it
+        did.
+        """
+        asked = abs(self.q)
+        for branch in self.curve[first:]:
+            begin = branch.at(branch.low)
+            if branch.slope > 0 and reaches(asked, begin) and below(asked, branch.at(branch.high)):
+                self.branch = branch
+                return False
+            if branch.slope == 0:
+                if not reaches(asked, begin):
+                    raise DoubtError("below its plateau")
+                if not apart(self.side * self.v, branch.low):
+                    raise DoubtError("as fast as a row")
+                self.q = self.side * branch.base
+                if self.side * self.v > branch.low:
+                    self.branch = branch
                 else:
-                    piece = of.piece(at - TINY)
-        found.append(state)
-    return found, of
+                    self.slower(len(self.curve) - 1)
+                return not same(asked, begin)
+        raise DoubtError("no speed carries it")
+
+    def slower(self, number: int) -> None:
+        """To the first speed below a branch that carries what the skin asks; else it grips."""
+        asked = abs(self.q)
+        for branch in reversed(self.curve[:number]):
+            if branch.slope > 0 and reaches(asked, branch.at(branch.low)):
+                self.branch = branch
+                return
+        self.side = 0
 
 
-def _guards(of: Slider, side: int, piece: tuple[mpf, mpf]) -> dict[str, Callable[[State], mpf]]:
-    """What stays positive in a mode."""
-    if side == 0:
-        return {"1": lambda s: of.static - s[2], "-1": lambda s: of.static + s[2]}
-    low, high = _ends(of, piece)
-    guards: dict[str, Callable[[State], mpf]] = {"low": lambda s: of.speed(s, side, piece) - low}
-    if high is not None:
-        guards["high"] = lambda s: high - of.speed(s, side, piece)
-    return guards
+def apart(one: mpf, other: mpf) -> bool:
+    return bool(abs(one - other) > DOUBT * max(abs(one), abs(other)))
 
 
-def _ends(of: Slider, piece: tuple[mpf, mpf]) -> tuple[mpf, mpf | None]:
-    for i, (u, _) in enumerate(of.rows[:-1]):
-        if of.piece(u) == piece:
-            return u, of.rows[i + 1][0] if i < len(of.rows) - 2 else None
-    raise AssertionError
+def same(one: mpf, other: mpf) -> bool:
+    """Whether two numbers are one, found in two ways; a doubt is one case in between."""
+    if abs(one - other) <= TINY * max(abs(one), abs(other)):
+        return True
+    if not apart(one, other):
+        raise DoubtError("at the end of a branch")
+    return False
+
+
+def reaches(asked: mpf, force: mpf) -> bool:
+    return same(asked, force) or bool(asked > force)
+
+
+def below(asked: mpf, force: mpf) -> bool:
+    return force == inf or (not same(asked, force) and bool(asked < force))
+
+
+def doubt(reason: str, _: mpf) -> None:
+    raise DoubtError(reason)
+
+
+def solve(inputs: Mapping[str, Any], duration: float) -> Path:
+    """The motion from release to `duration` (s)."""
+    return _Skin(inputs, duration).solve()

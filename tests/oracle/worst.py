@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 
-from core import test_oracle
+from core import test_oracle, test_series_motion
 from core import test_oracle_piecewise as piecewise
 from pindrive import ImplausibleValueWarning
 
@@ -32,9 +32,9 @@ def constant() -> str:
     )
 
 
-def changing() -> str:
+def changing(cases: list[piecewise.Case], what: str) -> str:
     count, late, displaced = 0, [], []
-    for case in piecewise.CASES:
+    for case in cases:
         motion = piecewise.release(case)
         told = piecewise.instants(piecewise.told_events(motion))
         stored = piecewise.instants(case["events"])
@@ -44,11 +44,15 @@ def changing() -> str:
         off = np.abs(motion.position(np.array(case["times"])) - case["x"])
         displaced.append(float(off.max()) / piecewise.scales(case)["x"])
     return (
-        f"{len(piecewise.CASES)} cases with inputs that change, friction curves and skin, {count} "
-        f"instants with events, the same: times within {max(late):.1e} s, positions within "
-        f"{max(displaced):.1e} of the largest"
+        f"{len(cases)} cases with {what}, {count} instants with events, the same: times within "
+        f"{max(late):.1e} s, positions within {max(displaced):.1e} of the largest"
     )
 
 
 if __name__ == "__main__":
-    print(constant(), changing(), sep="\n")
+    print(
+        constant(),
+        changing(piecewise.CASES, "inputs that change, friction curves and skin"),
+        changing(test_series_motion.CASES, "a curve at the plate under a load that changes"),
+        sep="\n",
+    )

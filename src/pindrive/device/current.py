@@ -181,7 +181,7 @@ class Pulses:
     """The part, above 0 and below 1."""
 
     def switchings(
-        self, commands: Commands, begin: float, end: float
+        self, commands: Commands, before: CoilState, begin: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """When a coil is switched from `begin` until before `end` (s), and whether on.
 
@@ -199,7 +199,12 @@ class Pulses:
             edges.append(np.stack([rises, falls], axis=1)[falls > rises])
         times = np.concatenate(edges).ravel()
         on = np.arange(times.size) % 2 == 0
-        return times[times < end], on[times < end]
+        times, on = times[times < end], on[times < end]
+        if not before.on:
+            return times, on
+        if times[:1] == begin:  # a pulse that continues is no switching
+            return times[1:], on[1:]
+        return np.concatenate([[begin], times]), np.concatenate([[False], on])  # it ends there
 
     def steady(
         self, rise_constant: float, fall_constant: float, closing: Closing
@@ -258,6 +263,8 @@ class VoltageSteps:
         """When a coil is switched until before `end` (s), whether on, and to which level."""
         spans = commanded_spans(commands, before, begin, end)
         rows: list[tuple[float, bool, float]] = []
+        if before.on and not commands.on(begin):  # switched off right there
+            rows.append((begin, False, 1.0))
         for first, last in spans:
             rows += [
                 (first + t, True, level)

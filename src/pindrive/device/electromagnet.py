@@ -304,9 +304,7 @@ class Electromagnet:
         if self.steps is not None:
             times, switched, levels = self.steps.switchings(commands, before, begin, end)
         elif self.pulses is not None:
-            times, switched = self.pulses.switchings(commands, begin, end)
-            if before.on and times[:1] == begin:  # a pulse that continues is no switching
-                times, switched = times[1:], switched[1:]
+            times, switched = self.pulses.switchings(commands, before, begin, end)
         else:
             times = commands.times
             switched = commands.on(times)
