@@ -17,7 +17,7 @@ import pint
 from pindrive import __version__
 from pindrive.device.coil import COIL, COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
-from pindrive.files.template import (
+from pindrive.files.keys import (
     ALONE,
     AROUND,
     DRIVE,

@@ -14,7 +14,7 @@ import numpy as np
 
 from pindrive.device.coil import COIL, COIL_NEEDS
 from pindrive.device.electromagnet import DIRECT
-from pindrive.files.template import DRIVE, NUMBERS
+from pindrive.files.keys import DRIVE, NUMBERS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.table import QUANTITIES

@@ -3,10 +3,10 @@
     python3 tests/mutants.py [--changed] [NAME...]
 
 A mutant is one text of one file replaced by another (tests/mutations/*.toml). Its tests run on a
-copy of the installed package with that text replaced; they must fail. Before that the same tests
-run on a copy as it is, and must pass. Without a NAME (a part of a mutant's name or of its file)
-all run; `--changed` takes those whose file or tests the last commit or the working tree changed,
-20 at most, and says which it left out.
+copy of the installed package with that text replaced, in a fork of a process that has loaded the
+libraries; they must fail. Before that the same tests run on a copy as it is, and must pass. Without
+a NAME (a part of a mutant's name or of its file) all run; `--changed` takes those whose file or
+tests the last commit or the working tree changed, 20 at most, and says which it left out.
 
 Ends with 1 where a mutant lives that is not explained, where fewer than 95 % die, where a text is
 not once in its file, or where a mutant cannot be imported.
@@ -14,17 +14,21 @@ not once in its file, or where a mutant cannot be imported.
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from queue import Queue
+
+import forked
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "pindrive"
@@ -72,7 +76,9 @@ def problems(chosen: list[Mutant]) -> list[str]:
         if mutant.text == mutant.instead:
             found.append(f"{mutant.name}: changes nothing")
         for test in mutant.tests:
-            if not (ROOT / test.partition("::")[0]).is_file():
+            name, _, function = test.partition("::")
+            text = (ROOT / name).read_text("utf-8") if (ROOT / name).is_file() else ""
+            if not text or (function and f"def {function}(" not in text):
                 found.append(f"{mutant.name}: there is no {test}")
     return found
 
@@ -110,52 +116,61 @@ class Runner:
 
     def __init__(self, folder: Path) -> None:
         """Copies the installed package, with the Python files as they are in the source."""
-        self._folder, self._running, self._closed = folder, set[subprocess.Popen[str]](), False
-        where = "import pindrive; print(pindrive.__path__[0])"
-        done = subprocess.run(
-            [python(), "-c", where], cwd=folder, capture_output=True, text=True, check=False
-        )
-        if done.returncode:
-            raise SystemExit("pindrive is not installed; python3 run.py test sets it up")
-        self._whole = folder / "whole"
-        shutil.copytree(done.stdout.strip(), self._whole / "pindrive")
+        if not hasattr(os, "fork"):
+            raise SystemExit("mutants are run in forks of a process, which this system lacks")
+        self._folder, self._whole = folder, folder / "whole"
+        installed = self._place(os.environ)
+        shutil.copytree(installed, self._whole / "pindrive")
         for file in SOURCE.rglob("*.py"):
             target = self._whole / "pindrive" / file.relative_to(SOURCE)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(file, target)
+        copied = self._place(os.environ | {"PYTHONPATH": str(self._whole)})
+        if copied != self._whole / "pindrive":
+            raise SystemExit(f"the copy of the package is not what is imported: {copied}")
+        subprocess.run([python(), "-m", "compileall", "-q", str(self._whole)], check=False)
+        self._servers = [
+            subprocess.Popen(
+                [python(), Path(forked.__file__)],
+                cwd=ROOT,
+                env=os.environ | {"CI": "true", "OPENBLAS_NUM_THREADS": "1"},
+                text=True,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=True,
+            )
+            for _ in range(os.cpu_count() or 1)
+        ]
+        self._idle = Queue[subprocess.Popen[str]]()
+        for server in self._servers:
+            self._idle.put(server)
+
+    def _place(self, environment: Mapping[str, str]) -> Path:
+        """Where the package is that is imported."""
         done = subprocess.run(
-            [python(), "-c", where],
-            env=self._environment(self._whole),
-            cwd=folder,
+            [python(), "-c", "import pindrive; print(pindrive.__path__[0])"],
+            env=environment,
+            cwd=self._folder,
             capture_output=True,
             text=True,
             check=False,
         )
-        if Path(done.stdout.strip()) != self._whole / "pindrive":
-            raise SystemExit(f"the copy of the package is not what is imported: {done.stdout}")
-        subprocess.run([python(), "-m", "compileall", "-q", str(self._whole)], check=False)
-
-    @staticmethod
-    def _environment(path: Path) -> dict[str, str]:
-        return os.environ | {
-            "PYTHONPATH": str(path),
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "CI": "true",
-        }
+        if done.returncode:
+            raise SystemExit("pindrive is not installed; python3 run.py test sets it up")
+        return Path(done.stdout.strip())
 
     def control(self, tests: list[str]) -> str:
         """What the tests say of the package as it is; empty where they pass."""
-        status, said = self._test(self._whole, tests)
+        status, said = self._test(self._whole, "pindrive", tests)
         return "" if status == PASSED else said
 
     def verdict(self, mutant: Mutant) -> tuple[str, str]:
         """How it ends: "dies", "lives" or "error", and by what."""
+        module = ".".join(["pindrive", *Path(mutant.file).with_suffix("").parts])
         with self._spoiled(mutant) as path:
-            module = ".".join(["pindrive", *Path(mutant.file).with_suffix("").parts])
-            status, said = self._run([python(), "-c", f"import {module}"], path)
-            if status:
-                return "error", f"cannot be imported: {said}"
-            status, said = self._test(path, list(mutant.tests))
+            status, said = self._test(path, module, list(mutant.tests))
+        if status == forked.NOT_IMPORTED:
+            return "error", f"cannot be imported: {said}"
         if status not in (FAILED, PASSED):
             return ("dies", said) if said == "does not end" else ("error", said)
         return ("dies" if status == FAILED else "lives"), said
@@ -174,39 +189,23 @@ class Runner:
                 compiled.unlink()
             yield path
 
-    def _test(self, path: Path, tests: list[str]) -> tuple[int, str]:
-        options = ["-x", "-q", "-n", "0", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
-        return self._run([python(), "-m", "pytest", *options, *tests], path)
-
-    def _run(self, command: list[str], path: Path) -> tuple[int, str]:
-        """The exit status, and the line that says most."""
-        if self._closed:
-            return -1, "interrupted"
-        with subprocess.Popen(
-            command,
-            cwd=ROOT,
-            env=self._environment(path),
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        ) as running:
-            self._running.add(running)
-            try:
-                said, _ = running.communicate(timeout=TIMEOUT)
-            except subprocess.TimeoutExpired:
-                running.kill()
-                return -1, "does not end"
-            finally:
-                self._running.discard(running)
-        lines = [line for line in said.splitlines() if line.strip()] or [""]
-        telling = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
-        return running.returncode, (telling or lines[-1:])[0]
+    def _test(self, path: Path, module: str, tests: list[str]) -> tuple[int, str]:
+        """The exit status of the tests on the package at a path, and the line that says most."""
+        server = self._idle.get()
+        try:
+            assert server.stdin and server.stdout
+            job = {"path": str(path), "module": module, "tests": tests, "limit": TIMEOUT}
+            print(json.dumps(job), file=server.stdin, flush=True)
+            answer = json.loads(server.stdout.readline() or "null")
+        finally:
+            self._idle.put(server)
+        return (answer["status"], answer["said"]) if answer else (-1, "interrupted")
 
     def close(self) -> None:
         """Ends what still runs."""
-        self._closed = True
-        for running in list(self._running):
-            running.terminate()
+        for server in self._servers:
+            with server:
+                server.terminate()
 
 
 def run(chosen: list[Mutant]) -> int:
@@ -216,34 +215,34 @@ def run(chosen: list[Mutant]) -> int:
     for mutant in chosen:
         for test in mutant.tests:
             files.setdefault(test.partition("::")[0], set()).add(test)
-    with tempfile.TemporaryDirectory() as name:
-        runner = Runner(Path(name))
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            try:
-                print(f"The tests of {len(chosen)} mutants on the package as it is:", flush=True)
-                for file, said in zip(
-                    files, pool.map(runner.control, map(sorted, files.values())), strict=True
-                ):
-                    if said:
-                        print(f"  {file} fails: {said}")
-                        wrong.append(file)
-                if wrong:
-                    return 1
-                print("they pass.", flush=True)
-                for mutant, (verdict, said) in zip(
-                    chosen, pool.map(runner.verdict, chosen), strict=True
-                ):
-                    print(f"{verdict}: {mutant.file}: {mutant.name} ({said})", flush=True)
-                    died += verdict == "dies"
-                    if verdict == "lives":
-                        lived.append(mutant)
-                    elif verdict == "error":
-                        wrong.append(mutant.name)
-            except KeyboardInterrupt:
-                runner.close()
-                pool.shutdown(cancel_futures=True)
-                print("Interrupted.")
-                return 130
+    with (
+        tempfile.TemporaryDirectory() as name,
+        closing(Runner(Path(name))) as runner,
+        ThreadPoolExecutor(os.cpu_count()) as pool,
+    ):
+        try:
+            print(f"The tests of {len(chosen)} mutants on the package as it is:", flush=True)
+            said_of = pool.map(runner.control, map(sorted, files.values()))
+            for file, said in zip(files, said_of, strict=True):
+                if said:
+                    print(f"  {file} fails: {said}")
+                    wrong.append(file)
+            if wrong:
+                return 1
+            print("they pass.", flush=True)
+            verdicts = pool.map(runner.verdict, chosen)
+            for mutant, (verdict, said) in zip(chosen, verdicts, strict=True):
+                print(f"{verdict}: {mutant.file}: {mutant.name} ({said})", flush=True)
+                died += verdict == "dies"
+                if verdict == "lives":
+                    lived.append(mutant)
+                elif verdict == "error":
+                    wrong.append(mutant.name)
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            runner.close()
+            print("Interrupted.")
+            return 130
     print(f"{len(chosen)} mutants: {died} die, {len(lived)} live, {len(wrong)} are none.")
     for mutant in lived:
         print(f"  lives: {mutant.name}: {mutant.lives or 'NOT EXPLAINED'}")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fuzz_cases import KEYS, Case, device
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS
 
 FUZZ = Path(__file__).parent / "fuzz" / "files.py"
 

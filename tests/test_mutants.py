@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,8 @@ PERCENT = Mutant("percent", "quantities/units.py", "percent = 0.01", "percent = 
 
 @pytest.fixture(scope="module")
 def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
+    if not hasattr(os, "fork"):
+        pytest.skip("mutants are run in forks of a process")
     made = Runner(tmp_path_factory.mktemp("mutants"))
     yield made
     made.close()
@@ -30,10 +33,11 @@ def test_every_text_is_once_in_its_file() -> None:
 
 def test_a_mutant_that_is_none_is_an_error() -> None:
     gone = replace(PERCENT, text="percent = 0.02")
-    nowhere = replace(PERCENT, name="other", tests=("tests/test_none.py",))
+    nowhere = replace(PERCENT, name="other", tests=("tests/test_none.py", UNITS + "_not"))
     assert mutants.problems([gone, nowhere]) == [
         "percent: its text is 0 times in quantities/units.py, not once",
         "other: there is no tests/test_none.py",
+        f"other: there is no {UNITS}_not",
     ]
 
 

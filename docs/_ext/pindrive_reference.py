@@ -18,8 +18,8 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from pindrive.cli.app import app
-from pindrive.files.template import NUMBERS
-from pindrive.files.template import template as device_template
+from pindrive.files.keys import NUMBERS
+from pindrive.files.keys import template as device_template
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.results import DESIGNED, JUDGED, LINE, OUTPUTS, SCANNED, SERIES
 from pindrive.quantities.status import End, Status

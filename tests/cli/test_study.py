@@ -17,7 +17,7 @@ from command import EXAMPLE, EXAMPLES, GOOD, refused, run
 from pindrive import Contact, Drive, Release, simulate_batch
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.table import check
-from pindrive.study.compliance import Share
+from pindrive.study.outputs import Share
 from pindrive.study.sensitivity import sobol
 from pindrive.study.study import load_study
 

@@ -20,9 +20,10 @@ from pindrive.cli.tables import device_words, ending, motion_report, regime
 from pindrive.device import Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
 from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.evaluation.line_crossings import Cue
 from pindrive.evaluation.resolution import SpeedLimit, Trial
-from pindrive.evaluation.results import Cue
-from pindrive.files.device import load_device, motion_of
+from pindrive.files.device import load_device
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities.table import QUANTITIES
 from table_reading import numbers, printed, table
 

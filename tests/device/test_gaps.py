@@ -20,8 +20,7 @@ from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 from pindrive.cli.scan_tables import scan_report
 from pindrive.cli.tables import console, meeting_words
 from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scan, Scene, scan
-from pindrive.device.gaps import smallest_gaps
-from pindrive.device.geometry import COPPER, IRON, doubts
+from pindrive.device.geometry import COPPER, IRON, doubts, smallest_gaps
 from pindrive.device.pin_array import Neighbours
 from pindrive.evaluation import judge
 from pindrive.files.device import load_device

@@ -11,7 +11,7 @@ from PIL import features
 
 from command import run
 from pindrive.device.page import draw
-from pindrive.files.template import template
+from pindrive.files.keys import template
 from pindrive.quantities import budgets
 
 shaping = pytest.mark.skipif(

@@ -24,8 +24,7 @@ from pindrive.device import (
     strokes,
 )
 from pindrive.evaluation import Criteria, Judgement, Line, judge
-from pindrive.evaluation.line_crossings import printed, turnings
-from pindrive.evaluation.results import FATES
+from pindrive.evaluation.line_crossings import FATES, printed, turnings
 from random_scans import RandomScan
 
 PLATE = Contact(0.022, 0.0265)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pindrive.files.device import ConfigError, load_device
-from pindrive.files.template import KEYS, NUMBERS, template
+from pindrive.files.keys import KEYS, NUMBERS, template
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.units import UnitError, to_si
 

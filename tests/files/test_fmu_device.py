@@ -16,7 +16,7 @@ from pindrive import Page, Profile, Release, Scan, load_device, scan, simulate
 from pindrive.device.current import CoilState, Commands
 from pindrive.files.device import DeviceFile
 from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of, write_fmu
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS
 from pindrive.motion.release import INPUTS
 
 READER = Path(__file__).resolve().parents[2] / "examples" / "tactile-reader.toml"

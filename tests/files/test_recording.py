@@ -10,8 +10,9 @@ from numpy.testing import assert_equal
 
 from command import EXAMPLE, GOOD, refused, run
 from pindrive.device import strokes
-from pindrive.files.device import load_device, motion_of
-from pindrive.files.template import template
+from pindrive.files.device import load_device
+from pindrive.files.keys import template
+from pindrive.motion.simulate import motion_of
 from pindrive.study import load_study
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")

@@ -15,7 +15,7 @@ from command import GOOD, refused, run
 from pindrive.device import ControlBlock, Electromagnet, PinArray, scan
 from pindrive.device.reading import Reading
 from pindrive.files.device import ConfigError, load_device
-from pindrive.files.template import WHOLE, template, usual
+from pindrive.files.keys import WHOLE, template
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -136,7 +136,7 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
     if name in CLOSING:
         coil += "".join(f'{key} = "{value}"\n' for key, value in CLOSING.items())
     coil = "\n".join(line for line in coil.splitlines() if not line.startswith(f"{name} "))
-    value = f'"{usual(quantity)}"' if quantity.unit != "1" else usual(quantity)
+    value = f'"{quantity.usual}"' if quantity.unit != "1" else quantity.usual
     if name == "places":
         value = '[["0 mm", "1 mm"], ["1 mm", "0 mm"]]'
     if name == "voltage":

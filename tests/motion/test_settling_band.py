@@ -14,7 +14,8 @@ import xarray as xr
 
 from command import EXAMPLE, GOOD, refused, run
 from pindrive import Contact, Drive, Release, Status, simulate, simulate_batch
-from pindrive.files.device import load_device, motion_of
+from pindrive.files.device import load_device
+from pindrive.motion.simulate import motion_of
 from pindrive.study.robustness import robustness
 from pindrive.study.sensitivity import sobol
 from pindrive.study.study import load_study

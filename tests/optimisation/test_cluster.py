@@ -10,7 +10,7 @@ import pindrive as pd
 from pindrive.optimisation import Design, read_wish
 from pindrive.optimisation.goals import Asked
 from pindrive.optimisation.line_speed import speeds
-from pindrive.study.cluster import crew
+from pindrive.study.workers import crew
 from recordings import recorded
 from wishes import EXAMPLES, MOUSE, PAPER, SMALL
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from command import run
 from figure_reading import legend_of
 from pindrive.plot.slices import plot_study
-from pindrive.study.compliance import points_that_meet
+from pindrive.study.outputs import points_that_meet
 from pindrive.study.slices import View
 
 BASE = f'base = "{(Path(__file__).parents[1] / "minimal.toml").as_posix()}"\n'

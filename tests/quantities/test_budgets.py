@@ -19,7 +19,7 @@ from pindrive.device import Device, Electromagnet, PinArray, Scene, scan, stroke
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.perception import judge
 from pindrive.evaluation.resolution import largest_speeds
-from pindrive.files.template import template
+from pindrive.files.keys import template
 from pindrive.quantities import budgets
 from pindrive.quantities.budgets import Budget
 

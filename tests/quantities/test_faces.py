@@ -15,8 +15,7 @@ from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
 from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray
 from pindrive.device.reading import Reading
 from pindrive.evaluation import Criteria
-from pindrive.files.keys import variable
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS, variable
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity

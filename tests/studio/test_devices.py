@@ -13,7 +13,7 @@ import pytest
 
 from pindrive import Profile
 from pindrive.files.device import ConfigError, DeviceFile, load_device
-from pindrive.files.template import DRIVE, NUMBERS, template
+from pindrive.files.keys import DRIVE, NUMBERS, template
 from studio_cases import Ask, as_input
 
 EXAMPLES = [

@@ -14,9 +14,9 @@ from PIL import Image
 
 import pindrive as pd
 from command import EXAMPLE, EXAMPLES, SKIN, run
-from pindrive.files.device import motion_of
-from pindrive.files.template import template
+from pindrive.files.keys import template
 from pindrive.fitting.recording import read_recording
+from pindrive.motion.simulate import motion_of
 from studio_cases import NAMES, Ask, questions
 from studio_page import (
     VALUES,

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import pindrive as pd
-from pindrive.files.device import motion_of
+from pindrive.motion.simulate import motion_of
 from studio_page import VALUES, elastic_stops, opened, saved, settled, value
 
 

@@ -132,7 +132,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file() -> None:
 @pytest.mark.parametrize("place", ["tcp://127.0.0.1:9", "nobody.json", "study.toml.json"])
 def test_a_cluster_that_is_not_there(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
-    monkeypatch.setattr("pindrive.study.cluster._PATIENCE", 0.2)
+    monkeypatch.setattr("pindrive.study.workers._PATIENCE", 0.2)
     plan()
     Path("study.toml.json").write_text("[]")
     said = run("study.toml", "--cluster", place)
@@ -144,7 +144,7 @@ def test_a_cluster_that_is_not_there(place: str, monkeypatch: pytest.MonkeyPatch
 
 def test_workers_of_another_version_are_refused() -> None:
     from pindrive import __version__
-    from pindrive.study.cluster import _check_versions
+    from pindrive.study.workers import _check_versions
 
     _check_versions({"tcp://one": __version__, "tcp://two": __version__})
     with pytest.raises(ValueError, match=r"must be version .*, got 0\.0\.1 on tcp://two"):

@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, Release, simulate
 from pindrive.cli.app import app
-from pindrive.files.device import ConfigError, load_device, motion_of
+from pindrive.files.device import ConfigError, load_device
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities.drive import INPUTS
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked

@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from pindrive import Contact, Drive, Release, simulate_batch
 from pindrive.cli.app import app
-from pindrive.study.compliance import Share
 from pindrive.study.design import Plan
+from pindrive.study.outputs import Share
 from pindrive.study.robustness import robustness
 from pindrive.study.study import load_study
 

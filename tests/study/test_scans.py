@@ -27,8 +27,8 @@ from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
 from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.files.keys import NUMBERS
 from pindrive.files.output import OutputError
-from pindrive.files.template import NUMBERS
 from pindrive.plot.sensitivity import plot_influence
 from pindrive.plot.slices import plot_study
 from pindrive.study.distributions import Sample

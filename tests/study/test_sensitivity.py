@@ -13,8 +13,9 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from pindrive.cli.app import app
-from pindrive.files.device import load_device, motion_of
-from pindrive.files.template import DRIVE
+from pindrive.files.device import load_device
+from pindrive.files.keys import DRIVE
+from pindrive.motion.simulate import motion_of
 from pindrive.study.design import ranges_of
 from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.local_sensitivity import elasticities

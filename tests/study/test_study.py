@@ -86,7 +86,7 @@ def test_python_and_a_file_say_the_same_study(mouse: DeviceFile, tmp_path: Path)
 def test_each_point_is_the_release_it_says(mouse: DeviceFile) -> None:
     data = pd.Study(mouse, {"mass": [0.008, 0.012]}, ["settling_time"]).run()
     for i, mass in enumerate((0.008, 0.012)):
-        from pindrive.files.device import motion_of
+        from pindrive.motion.simulate import motion_of
 
         motion = motion_of(pd.load_device(MOUSE, {"mass": mass}))
         settling_time = motion.transient.settling_time

@@ -85,7 +85,7 @@ def _check_folder(folder: Path) -> None:
 
 def _files(found: Design, folder: Path) -> dict[str, bytes]:
     """What is written, by name."""
-    from pindrive.optimisation.device_file import designed_file
+    from pindrive.optimisation.results import designed_file
 
     files = {"design.toml": designed_file(found, folder / "design.toml").encode("utf-8")}
     with TemporaryDirectory(prefix="pindrive-") as place:

@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Group, RenderableType
 
 from pindrive.cli.tables import new_table, whole_lines
-from pindrive.files.template import NUMBERS as KEYS
+from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.optimisation.catalogue import short_keys
 from pindrive.optimisation.results import shown
 from pindrive.quantities.quantity import counted, significant

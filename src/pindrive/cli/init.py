@@ -30,8 +30,8 @@ def init(
     ] = False,
 ) -> None:
     """Write a commented device file, study file, or wish file, to start from."""
+    from pindrive.files.keys import template
     from pindrive.files.output import DEVICE_FILE, STUDY_FILE, WISH_FILE, Output, naming, writing
-    from pindrive.files.template import template
     from pindrive.optimisation.template import wish_template
     from pindrive.study.template import study_template
 

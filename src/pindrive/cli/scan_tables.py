@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from pindrive.device.criteria import Criteria
+    from pindrive.device.device import Criteria
     from pindrive.device.scanning import PinScan, Scan
     from pindrive.evaluation.perception import Judgement
     from pindrive.evaluation.resolution import Band, SpeedLimit

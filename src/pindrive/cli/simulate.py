@@ -46,7 +46,7 @@ def simulate(
 ) -> None:
     """Release the pin of a device file and say how it moves."""
     from pindrive.files import export
-    from pindrive.files.device import load_device, motion_of
+    from pindrive.files.device import load_device
     from pindrive.files.output import (
         EVENTS_CSV,
         MOTION_CSV,
@@ -56,6 +56,7 @@ def simulate(
         naming,
         writing,
     )
+    from pindrive.motion.simulate import motion_of
     from pindrive.quantities import budgets
 
     with refusing():

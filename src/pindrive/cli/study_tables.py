@@ -12,15 +12,14 @@ import typer
 from rich.console import Group
 
 from pindrive.cli.tables import new_table, whole_lines
-from pindrive.files import template
+from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import keys_meant
 from pindrive.lazy import h5py
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
-from pindrive.study.compliance import points_that_meet
 from pindrive.study.distributions import base_value
 from pindrive.study.evaluate import why
-from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.outputs import NUMBERS, label, points_that_meet
 from pindrive.study.runner import human_bytes
 from pindrive.study.slices import elasticity
 from pindrive.study.validation import coefficient_words
@@ -32,10 +31,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from pindrive.study.compliance import Share
     from pindrive.study.design import Plan
     from pindrive.study.evaluate import RefusedPoints
     from pindrive.study.local_sensitivity import Elasticities
+    from pindrive.study.outputs import Share
     from pindrive.study.robustness import Robustness, WorstCase
     from pindrive.study.runner import Result
     from pindrive.study.sensitivity import Influence
@@ -135,7 +134,7 @@ def _by_key(
     title: str, keys: Sequence[str], names: Sequence[str], cell: Callable[[str, int], str]
 ) -> Table:
     """A line for each number, a column for each key."""
-    heads = [template.NUMBERS[key].symbol for key in keys]
+    heads = [KEYS[key].symbol for key in keys]
     made = new_table(title, "number", *(f">{head}" for head in heads))
     for name in names:
         made.add_row(label(name), *(cell(name, i) for i in range(len(keys))))
@@ -178,7 +177,7 @@ def _notes(found: Influence) -> list[str]:
     if constant:
         lines.append(f"The same everywhere: {', '.join(constant)}.")
     lines += [
-        f"{template.NUMBERS[key].symbol}: some derivatives do not exist, {why}."
+        f"{KEYS[key].symbol}: some derivatives do not exist, {why}."
         for key, why in (found.near.gaps.items() if found.near else ())
     ]
     return lines
@@ -241,7 +240,7 @@ def _worst_cases(plan: Plan, found: Robustness) -> Table:
     heads = (f">{label(case.demand.name)}" for case in found.worst)
     made = new_table("The worst found for", "key", ">design", *heads, "unit")
     for key in found.worst[0].keys:
-        quantity, own = template.NUMBERS[key], base_value(plan.device, key)
+        quantity, own = KEYS[key], base_value(plan.device, key)
         values = [quantity.digits(case.keys[key]) for case in found.worst]
         shown = quantity.digits(own) if isinstance(own, float) else "-"
         made.add_row(key, shown, *values, quantity.display_unit)
@@ -270,10 +269,7 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
         given = " ".join(
             [
                 *(f"--set {key}={shlex.quote(text)}" for key, text in _set_besides(plan, case)),
-                *(
-                    f'--set {key}="{template.NUMBERS[key].written(value)}"'
-                    for key, value in case.keys.items()
-                ),
+                *(f'--set {key}="{KEYS[key].written(value)}"' for key, value in case.keys.items()),
             ]
         )
         command = (

@@ -8,7 +8,7 @@ from pindrive.device.current import CoilState as CoilState
 from pindrive.device.current import Current as Current
 from pindrive.device.device import Device as Device
 from pindrive.device.electromagnet import Electromagnet as Electromagnet
-from pindrive.device.gaps import Gap as Gap
+from pindrive.device.geometry import Gap as Gap
 from pindrive.device.hand import HandPath as HandPath
 from pindrive.device.hand import lines as lines
 from pindrive.device.hand import strokes as strokes

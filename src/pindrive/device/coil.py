@@ -6,16 +6,18 @@ from dataclasses import MISSING, fields
 from math import pi
 from typing import TYPE_CHECKING, Final
 
-from pindrive.device.current import VoltageSteps
 from pindrive.device.heating import Heat
+from pindrive.quantities.electromagnet import COIL as ROWS
+from pindrive.quantities.electromagnet import MADE, MAGNET
+from pindrive.quantities.part import Part, checked_by
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.rows import check_increasing
-from pindrive.quantities.table import check, checked, default
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from pindrive.quantities.part import Number, OptionalNumber
+
+TABLE: Final = Part(MAGNET + ROWS + MADE)
+"""What a magnet is described by."""
+default: Final = TABLE.default
 
 MAGNETIC_CONSTANT: Final = 1.25663706127e-6
 """N/A², CODATA 2022."""
@@ -23,7 +25,7 @@ COPPER: Final = 1 / 58e6
 """Resistivity of annealed copper at 20 °C, ohm m (IEC 60028)."""
 
 
-@checked
+@checked_by(TABLE)
 class Coil:
     """An electromagnet with two poles on a steel plate, by how it is made.
 
@@ -69,8 +71,10 @@ class Coil:
 
     def __post_init__(self) -> None:
         """Validate what follows from them."""
+        # Each value in range, yet not their quotient.
+        # Each value in range, yet not their quotient.
         for name in ("resistance", "inductance", "current", "field", "power"):
-            check(f"coil.{name}", getattr(self, name))  # each in range, yet not their quotient
+            TABLE.check(f"coil.{name}", getattr(self, name))
         if (self.lift is None) != (self.closing_force is None):
             one, other = ("lift", "closing_force")[:: 1 if self.closing_force is None else -1]
             raise ValueError(refusal(one, f"given with {other}", "it alone"))
@@ -109,24 +113,6 @@ class Coil:
     def power(self) -> float:
         """U I while it is on, W."""
         return self.supply_voltage * self.current
-
-    def steps(self, rows: Sequence[tuple[float, float]]) -> VoltageSteps:
-        """Rows (time since it was switched on in s, V) as parts of the supply voltage.
-
-        Raises:
-            ValueError: the first is not at 0 s, times do not increase, or a voltage is negative or
-                beyond the supply's.
-        """
-        if not rows or rows[0][0] != 0.0:
-            given = f"{rows[0][0]!r} s" if rows else "none"
-            raise ValueError(refusal("voltage[0] time", "0 s, when the coil is switched on", given))
-        check_increasing([t for t, _ in rows], "s", label="voltage[{}] time")
-        for i, (_, volts) in enumerate(rows):
-            if not 0.0 <= volts <= self.supply_voltage:
-                required = f"from 0 V to the supply voltage, {self.supply_voltage!r} V"
-                raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
-        times, volts_ = zip(*rows, strict=True)
-        return VoltageSteps(times, tuple(volts / self.supply_voltage for volts in volts_))
 
     @property
     def heat(self) -> Heat | None:

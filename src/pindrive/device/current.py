@@ -6,7 +6,7 @@ number while the gap is closed. The flux linkage is continuous; the current jump
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, exp, floor, inf, log, log1p
 from typing import TYPE_CHECKING, overload
@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from pindrive.quantities import budgets
+from pindrive.quantities.refusal import refusal
+from pindrive.quantities.rows import check_increasing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -256,6 +258,25 @@ class VoltageSteps:
     """s, increasing, the first 0."""
     levels: tuple[float, ...]
     """Parts of the full voltage, from 0 to 1."""
+
+    @classmethod
+    def of(cls, rows: Sequence[tuple[float, float]], full: float) -> VoltageSteps:
+        """Rows (time since it was switched on in s, V) as parts of a full voltage (V).
+
+        Raises:
+            ValueError: the first is not at 0 s, times do not increase, or a voltage is negative or
+                beyond the full one.
+        """
+        if not rows or rows[0][0] != 0.0:
+            given = f"{rows[0][0]!r} s" if rows else "none"
+            raise ValueError(refusal("voltage[0] time", "0 s, when the coil is switched on", given))
+        check_increasing([t for t, _ in rows], "s", label="voltage[{}] time")
+        for i, (_, volts) in enumerate(rows):
+            if not 0.0 <= volts <= full:
+                required = f"from 0 V to the supply voltage, {full!r} V"
+                raise ValueError(refusal(f"voltage[{i}]", required, f"{volts!r} V"))
+        times, volts_ = zip(*rows, strict=True)
+        return cls(times, tuple(volts / full for volts in volts_))
 
     def switchings(
         self, commands: Commands, before: CoilState, begin: float, end: float

@@ -1,4 +1,4 @@
-"""The whole device as data: drive, electromagnet, control block, pin array."""
+"""The whole device as data: drive, electromagnet, control block, pin array; what counts as felt."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from pindrive.device.electromagnet import Electromagnet, check_holds
 from pindrive.device.pin_array import PinArray
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Drive
+from pindrive.quantities.table import checked, default
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from pindrive.device.pin_array import Neighbours
+    from pindrive.quantities.part import Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,3 +90,25 @@ class Device:
     def load(self, pull: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
         """The factor on the plate's friction at a pull (N), any shape: (W + P) / W."""
         return 1.0 + pull / self.drive.normal_force
+
+
+@checked
+class Criteria:
+    """What counts as felt, by the sources in the table of quantities.
+
+    Args:
+        felt: motion that is felt as a pulse, m, greater than 0.
+        direction: motion of skin whose direction is perceived, m, greater than 0.
+        direction_sure: whose direction is told right in more than 95 % of cases, m.
+        direction_speed: at which that must be gone, m/s.
+        echo: a swing so high, a part of the line before it, is a false line; in (0, 1].
+
+    Raises:
+        ValueError: a value is no number or out of its range.
+    """
+
+    felt: Number = default("felt")
+    direction: Number = default("direction")
+    direction_sure: Number = default("direction_sure")
+    direction_speed: Number = default("direction_speed")
+    echo: Number = default("echo")

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Final, overload
 import numpy as np
 
 from pindrive.device.closing import CLOSED, closing_at
-from pindrive.device.coil import COIL, COIL_NEEDS, Coil, check_poles
+from pindrive.device.coil import COIL, COIL_NEEDS, TABLE, Coil, check_poles, default
 from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
 from pindrive.quantities import budgets
+from pindrive.quantities.part import checked_by
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import QUANTITIES, check, checked, default
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,12 +53,12 @@ def check_one_way(given: set[str], table: str = "") -> None:
         raise ValueError(refusal(label, required, f"both, {direct[0]} and {made[0]}"))
     missing = [name for name in COIL_NEEDS if name not in given]
     if missing:
-        needed = ", ".join(f"{name} ({QUANTITIES[name].meaning})" for name in missing)
+        needed = ", ".join(f"{name} ({TABLE.rows[name].meaning})" for name in missing)
         given_alone = f"{', '.join(made)} alone"
         raise ValueError(refusal(label, f"given with {needed}", given_alone))
 
 
-@checked
+@checked_by(TABLE)
 class Electromagnet:
     """What an electromagnet does to the plate.
 
@@ -138,8 +138,8 @@ class Electromagnet:
         Raises:
             ValueError: as for the class.
         """
-        rise, fall = check("rise_time", rise_time), check("fall_time", fall_time)
-        sigma = check("saturation", saturation)
+        rise, fall = TABLE.check("rise_time", rise_time), TABLE.check("fall_time", fall_time)
+        sigma = TABLE.check("saturation", saturation)
         return cls(
             hold_force=hold_force,
             rise_constant=-rise / log(1.0 - sigma * sqrt(0.9)),
@@ -194,7 +194,7 @@ class Electromagnet:
             outer_diameter=outer_diameter,
             height=height,
             coil=coil,
-            steps=None if voltage is None else coil.steps(voltage),
+            steps=None if voltage is None else VoltageSteps.of(voltage, coil.supply_voltage),
         )
 
     @cached_property

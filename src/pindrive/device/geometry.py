@@ -1,16 +1,42 @@
-"""Whether a device can be built: what stands side by side or fits in what, and what it weighs."""
+"""Whether a device can be built: what fits in what, what it weighs, how close pins come.
+
+How close neighbouring pins come along the drive axis is found with a certain bound.
+
+The gap of two pins is their clearance at rest less how far one runs into the other,
+x(ahead) - x(behind): x is counted against the drive axis. Between the events of both pins and the
+rows of their inputs each x is, as a rule, one closed form, whose acceleration y obeys
+
+    m y'' + c y' + κ y = 0,    so that    |y|, as long as that lasts, <= sqrt(y² + (y'/ω)²) now
+
+with ω² = κ/m (times exp(|c| t/m) where friction that falls with speed makes c negative). Where c
+changes within a piece, as that of a friction curve under a changing load, the piece is a step of a
+power series, and |y| stays below the largest of the Bernstein coefficients of its acceleration
+(docs/theory.md, section 11). With |y| of both together below A, a gap is nowhere in a time h more
+than A h²/8 below both its ends. Times in which it might become smaller than what was found so far
+are cut into pieces until there are none: no smaller gap is missed by more than `CLOSE`.
+"""
 
 from __future__ import annotations
 
-from math import hypot, pi
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, inf, pi
+from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from pindrive.motion.profile import Profile
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from numpy.typing import NDArray
+
     from pindrive.device.device import Device
+    from pindrive.device.pin_array import Neighbours
+    from pindrive.motion.motion import Motion
+
 
 IRON: Final = 7870.0
 COPPER: Final = 8960.0
@@ -83,3 +109,168 @@ def heaviest(diameter: float | None, height: float | None) -> float | None:
 def _apart(places: Sequence[tuple[float, float]], behind: int, ahead: int) -> float:
     """How far one pin stands ahead of the other along the drive axis, m."""
     return places[ahead][0] - places[behind][0]
+
+
+# ---- how close neighbouring pins come ------------------------------------------------------------
+
+
+CLOSE: Final = 1e-12
+"""The smallest gap is found to within that, m."""
+CUTS: Final = 8
+"""A piece is cut into so many at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """The smallest gap between two neighbouring pins in a scan."""
+
+    behind: int
+    ahead: int
+    """Their numbers, as the array has them."""
+    size: float
+    """m; negative where they would have to pass through each other."""
+    time: float
+    """When it is so small first, s, on the path's clock."""
+
+
+def smallest_gaps(
+    neighbours: Sequence[Neighbours], motions: Sequence[Motion], begin: float
+) -> tuple[Gap, ...]:
+    """The smallest gap of each pair of neighbours.
+
+    Args:
+        neighbours: as the array has them.
+        motions: of the pins, by their numbers, over one duration.
+        begin: when they begin on the path's clock, s.
+    """
+    pieces = {i: _Pieces(motions[i]) for pair in neighbours for i in (pair.behind, pair.ahead)}
+    found = []
+    for pair in neighbours:
+        approach, time = _closest(pieces[pair.behind], pieces[pair.ahead])
+        found.append(Gap(pair.behind, pair.ahead, pair.clearance + approach, begin + time))
+    return tuple(found)
+
+
+def _closest(behind: _Pieces, ahead: _Pieces) -> tuple[float, float]:
+    """The smallest x(behind) - x(ahead), m, and when."""
+    knots = np.union1d(behind.knots, ahead.knots)
+    low, high = knots[:-1], knots[1:]
+    apart = behind.position(knots) - ahead.position(knots)
+    first, last = apart[:-1], apart[1:]
+    i = int(np.argmin(apart))
+    smallest, time = float(apart[i]), float(knots[i])
+    while low.size:
+        lasts = high - low
+        swing = behind.largest_acceleration(low, lasts) + ahead.largest_acceleration(low, lasts)
+        least = np.minimum(first, last) - 0.125 * swing * lasts**2
+        open_ = (
+            (least < smallest - CLOSE) & (low < 0.5 * (low + high)) & (0.5 * (low + high) < high)
+        )
+        low, high = low[open_], high[open_]
+        if not low.size:
+            break
+        t = low[:, np.newaxis] + (high - low)[:, np.newaxis] * np.arange(CUTS + 1) / CUTS
+        t[:, -1] = high
+        apart = behind.position(t) - ahead.position(t)
+        if apart.min() < smallest:
+            i = int(np.argmin(apart))
+            smallest, time = float(apart.flat[i]), float(t.flat[i])
+        low, high = t[:, :-1].ravel(), t[:, 1:].ravel()
+        first, last = apart[:, :-1].ravel(), apart[:, 1:].ravel()
+    return smallest, time
+
+
+class _Pieces:
+    """A motion by the pieces in each of which it is one closed form, or a step of a series."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.position = motion.position
+
+    @cached_property
+    def knots(self) -> NDArray[np.float64]:
+        """Where the pieces begin, and the last one ends, s."""
+        duration = self.motion.duration
+        ends = np.array([segment.end for segment in self.motion.segments])
+        if ends[-1] < duration:  # of a cycle the segments hold one round
+            period = self.motion.ending.period
+            round_ = ends[ends > ends[-1] - period]
+            shifts = period * np.arange(1.0, np.ceil((duration - ends[-1]) / period) + 1.0)
+            ends = np.concatenate([ends, np.add.outer(shifts, round_).ravel()])
+        return np.unique(np.concatenate([[0.0], ends[ends < duration], [duration]]))
+
+    @cached_property
+    def _coefficients(self) -> dict[str, NDArray[Any]]:
+        """Of each piece c and κ over m, the slope g of its force over m, whether it is stuck.
+
+        And what |x''| stays below, NaN where these say it.
+        """
+        motion, drive = self.motion, self.motion.drive
+        begin, end = self.knots[:-1], self.knots[1:]
+        middle = 0.5 * (begin + end)
+        segments = motion.segments
+        known, period = segments[-1].end, motion.ending.period
+        in_first = (
+            middle
+            if known == inf
+            else np.where(middle < known, middle, known - period + np.mod(middle - known, period))
+        )
+        which = np.searchsorted([segment.begin for segment in segments], in_first, "right") - 1
+        plate = np.array([segment.plate == 0 for segment in segments])[which]
+        finger = np.array([segment.finger == 0 for segment in segments])[which]
+        rigid = drive.finger.rigid
+        stiffness = drive.stiffness + np.where(finger & (not rigid), drive.finger.stiffness, 0.0)
+        if drive.stop_stiffness is not None:  # elastic end stops, where they push
+            pushed = motion.force("stop", middle) != 0.0
+            stiffness = stiffness + np.where(pushed, drive.stop_stiffness, 0.0)
+        velocity = motion.velocity(middle)
+        damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
+        if drive.stop_stiffness is not None:
+            damping = damping + np.where(pushed, drive.stop_damping or 0.0, 0.0)
+        if drive.plate.curved:  # under a load that stays: else there is a bound
+            load = motion.release.plate_load
+            factor = load(middle) if isinstance(load, Profile) else load
+            speed = np.abs(velocity - motion.plate_velocity(middle))
+            damping = damping + factor * _slope(drive.plate.curve, speed)
+        c, k = damping / drive.mass, stiffness / drive.mass
+        changes = [
+            of(end, "left") - of(begin)
+            for of in (motion.acceleration, motion.velocity, motion.position)
+        ]
+        slope = (changes[0] + c * changes[1] + k * changes[2]) / (end - begin)
+        return {
+            "c": c,
+            "k": k,
+            "g": slope,
+            "stuck": plate | (finger & rigid),
+            "bound": motion.acceleration_bounds[which],
+        }
+
+    def largest_acceleration(
+        self, t: NDArray[np.float64], lasts: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """A bound on |x''| from `t` on for as long as `lasts`, s, within a piece, m/s²."""
+        i = np.searchsorted(self.knots, t, "right") - 1
+        c, k, g, stuck, bound = (
+            self._coefficients[name][i] for name in ("c", "k", "g", "stuck", "bound")
+        )
+        now = self.motion.acceleration(t)
+        jerk = g - c * now - k * self.motion.velocity(t)
+        growth = np.exp(np.maximum(-c, 0.0) * lasts)
+        closed = np.where(stuck, np.abs(now), np.hypot(now, jerk / np.sqrt(k)) * growth)
+        return np.where(np.isnan(bound), closed, bound)
+
+
+def _slope(
+    curve: Sequence[tuple[float, float]] | None, speed: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """How friction rises with sliding speed (m/s), N·s/m; beyond the last row as before it.
+
+    Where it has fallen to zero it stays there.
+    """
+    if curve is None or len(curve) < 2:
+        return np.zeros_like(speed)
+    speeds, forces = np.array(curve).T
+    i = np.clip(np.searchsorted(speeds, speed, "right") - 1, 0, len(speeds) - 2)
+    slope = (np.diff(forces) / np.diff(speeds))[i]
+    return np.where(forces[i] + slope * (speed - speeds[i]) < 0.0, 0.0, slope)

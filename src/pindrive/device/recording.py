@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.device.hand import RECORDED as EXAMPLE
 from pindrive.device.hand import HandPath
 from pindrive.lazy import signal
 from pindrive.quantities import budgets
@@ -35,7 +36,6 @@ from pindrive.quantities.table import QUANTITIES, check, default
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-EXAMPLE: Final = "t [s], x [mm], y [mm]"
 _USUAL: Final = {"t": "t [s]", "x": "x [mm]", "y": "y [mm]", "dx": "dx [count]", "dy": "dy [count]"}
 COUNTS: Final = ("count", "counts")
 """How a header calls the steps of a mouse."""

@@ -18,10 +18,9 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive.device.controller import Decision
-from pindrive.device.criteria import Criteria
 from pindrive.device.current import CoilState, Commands, Current, commanded_spans
-from pindrive.device.device import Device
-from pindrive.device.gaps import Gap, smallest_gaps
+from pindrive.device.device import Criteria, Device
+from pindrive.device.geometry import Gap, smallest_gaps
 from pindrive.device.hand import HandPath
 from pindrive.device.page import AT_ONCE, FINER, Scene
 from pindrive.device.page_description import Page, recorded

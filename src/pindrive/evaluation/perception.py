@@ -35,13 +35,23 @@ import numpy as np
 
 from pindrive import lazy
 from pindrive._core import settling_band
-from pindrive.device.criteria import Criteria
+from pindrive.device.device import Criteria
 from pindrive.device.trajectory import Course, Signal, Way
-from pindrive.evaluation.line_crossings import Printed, printed, turnings
-from pindrive.evaluation.results import CUES, FATES, Cue, Echo, Edge, Fate, Line
+from pindrive.evaluation.line_crossings import (
+    CUES,
+    FATES,
+    Cue,
+    Echo,
+    Edge,
+    Fate,
+    Line,
+    Printed,
+    printed,
+    turnings,
+)
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.results import LINE
+from pindrive.quantities.results import BAD_WHEN_SMALL, LINE, last_part
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
 
@@ -148,6 +158,27 @@ class Judgement(lazy.NotebookHtml):
         if not known.size:
             return nan, nan, nan
         return float(known.min()), float(np.median(known)), float(known.max())
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What a study keeps of a scan, SI, by the names there; NaN where one does not exist."""
+        counts, path = self.counts, self.scan.path
+        lines, duration = counts["judged.lines"], path.end - path.begin
+        on = max(sum(end - begin for begin, end in pin.energised) for pin in self.scan.pins)
+        coil = self.scan.device.magnet.coil
+        found: dict[str, float] = {
+            "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
+            **counts,
+            "hand.duration": duration,
+            "magnet.on_part": on / duration,
+            "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
+        }
+        for quantity in LINE:
+            name = last_part(quantity)
+            least, median, largest = self.spread(quantity.name)
+            found[f"median.{name}"] = median
+            found[f"worst.{name}"] = least if name in BAD_WHEN_SMALL else largest
+        return found
 
 
 def judge(scan: Scan, criteria: Criteria | None = None) -> Judgement:

@@ -28,16 +28,14 @@ from typing import TYPE_CHECKING, Final, overload
 import numpy as np
 
 from pindrive import lazy
-from pindrive.device.criteria import Criteria
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
 from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, check_vibration
-from pindrive.evaluation.line_crossings import Printed
+from pindrive.evaluation.line_crossings import Line, Printed
 from pindrive.evaluation.perception import JudgedPin
-from pindrive.evaluation.results import Line
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets

@@ -12,13 +12,25 @@ from math import inf
 from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from pindrive.device.controller import ControlBlock
-from pindrive.device.criteria import Criteria
-from pindrive.device.device import Device
+from pindrive.device.device import Criteria, Device
 from pindrive.device.reading import Reading
-from pindrive.files.keys import keys_meant, nearest, not_known, written
+from pindrive.device.recording import read_csv
+from pindrive.files.keys import (
+    ALONE,
+    AROUND,
+    DRIVE,
+    KEYS,
+    NUMBERS,
+    STUDY_KEYS,
+    TABLES,
+    keys_meant,
+    nearest,
+    not_known,
+    written,
+)
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
 from pindrive.files.schema import (
     Place,
@@ -31,7 +43,6 @@ from pindrive.files.schema import (
     release_of,
     table_of,
 )
-from pindrive.files.template import ALONE, AROUND, DRIVE, KEYS, NUMBERS, STUDY_KEYS, TABLES
 from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
@@ -40,9 +51,6 @@ from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import warn_of
 from pindrive.quantities.units import quoted
-
-if TYPE_CHECKING:
-    from pindrive.motion.motion import Motion
 
 
 class Setting(NamedTuple):
@@ -140,7 +148,7 @@ class DeviceFile:
     @property
     def recording_words(self) -> str:
         """What the recording is that gives the mouse velocity, and its smoothing; empty: none."""
-        return recording_words(self.tables, self.path.parent)
+        return recording_words(self.tables, self.path.parent, read_csv)
 
     def with_whole(self) -> DeviceFile:
         """The same with `whole`, also of a file without a table of it."""
@@ -247,7 +255,7 @@ def device_of(
     hand = whole and "mouse_velocity" not in tables["motion"]
     left_out = {"motion.mouse_velocity"} if hand else set()
     names = TABLES if whole else ALONE
-    read, unread = with_files_read(_copied(tables), file.parent, place)
+    read, unread = with_files_read(_copied(tables), file.parent, place, read_csv)
     values, found = read_values(read, names, place, meant | left_out)
     found = [*unread, *found]
     if hand:  # a single release is at the hand's speed then
@@ -280,18 +288,6 @@ def device_of(
     )
     _warn(device, place)
     return device
-
-
-def motion_of(device: DeviceFile) -> Motion:
-    """The release that a device file describes."""
-    from pindrive.motion.simulate import simulated
-
-    return simulated(
-        device.drive,
-        device.release,
-        duration=device.duration,
-        settling_band=device.settling_band,
-    )
 
 
 # ---- the file's text -----------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from pindrive.device.electromagnet import DIRECT
 from pindrive.files.device import DeviceFile
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS

@@ -15,7 +15,7 @@ from pathlib import Path
 from secrets import token_hex
 from typing import Any, Final
 
-from pindrive.files.template import STUDY_KEYS, TABLES
+from pindrive.files.keys import STUDY_KEYS, TABLES
 from pindrive.lazy import h5py
 
 _HEAD = 4096

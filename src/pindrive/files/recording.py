@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, Protocol
 
-from pindrive.files.keys import Tables, number
-from pindrive.files.template import NUMBERS, usual
+from pindrive.device.hand import RECORDED, HandPath
+from pindrive.files.keys import NUMBERS, Tables, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
@@ -16,14 +16,20 @@ from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.table import QUANTITIES, default
 from pindrive.quantities.units import quoted
 
-if TYPE_CHECKING:
-    from pindrive.device.hand import HandPath
-
 SUFFIX: Final = ".csv"
 OVER_TIME: Final = ("profile", "steps")
 """What rows over time make: linear between them, or constant until the next."""
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
+
+
+class Reader(Protocol):
+    """What reads a recorded path, as `read_csv` of `pindrive.device.recording` does."""
+
+    def __call__(
+        self, path: Path, /, *, acceleration: float, resolution: float, cutoff: float
+    ) -> HandPath:
+        """The path of the hand."""
 
 
 def is_file(key: str, value: object) -> bool:
@@ -33,7 +39,7 @@ def is_file(key: str, value: object) -> bool:
 
 
 def with_files_read(
-    tables: Tables, folder: Path, place: Callable[..., str]
+    tables: Tables, folder: Path, place: Callable[..., str], read_path: Reader
 ) -> tuple[dict[str, Any], list[str]]:
     """The tables with the rows, SI, of each CSV that they name, and what is wrong with those.
 
@@ -41,6 +47,7 @@ def with_files_read(
         tables: of a device file; their values as TOML has them.
         folder: of that file, to which a path is relative.
         place: where keys were written.
+        read_path: of a recorded hand.
     """
     found, problems = dict(tables), []
     for key, file in files_named(tables, folder).items():
@@ -48,7 +55,7 @@ def with_files_read(
         if found[table] is tables[table]:
             found[table] = dict(tables[table])
         try:
-            found[table][name] = _rows(file, key, tables)
+            found[table][name] = _rows(file, key, tables, read_path)
         except ValueError as error:
             problems.append(f"{place(key)}: {key}: {error}")
             found[table][name] = ((0.0, 0.0),)  # the rest of the file is read all the same
@@ -66,7 +73,7 @@ def files_named(tables: Tables, folder: Path) -> dict[str, Path]:
     return found
 
 
-def recording_words(tables: Tables, folder: Path) -> str:
+def recording_words(tables: Tables, folder: Path, read_path: Reader) -> str:
     """What the recording is that gives the mouse velocity, and its smoothing; empty: none does.
 
     The tables have been read without a problem.
@@ -74,7 +81,7 @@ def recording_words(tables: Tables, folder: Path) -> str:
     file = files_named(tables, folder).get(SPEED)
     if file is None or NUMBERS[SPEED].name in CsvTable.read(file, "rows", ""):
         return ""
-    return _path(file, tables).about
+    return _path(file, tables, read_path).about
 
 
 def profile_words(file: Path) -> str:
@@ -86,7 +93,7 @@ def profile_words(file: Path) -> str:
     table = CsvTable.read(file, "a CSV", profile_header(NUMBERS[SPEED]))
     for key, quantity in NUMBERS.items():
         if quantity.rows_of in OVER_TIME and quantity.name in table:
-            rows = _rows(file, key, {})
+            rows = _profile(table, key)
             lasts = QUANTITIES["profile.time"].text(rows[-1][0] - rows[0][0])
             low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))
             return (
@@ -101,17 +108,22 @@ def profile_header(quantity: Quantity) -> str:
     return f"t [s], {quantity.name}{unit}"
 
 
-def _rows(file: Path, key: str, tables: Tables) -> Rows:
+def _rows(file: Path, key: str, tables: Tables, read_path: Reader) -> Rows:
     """The rows of a CSV that stands for a key, SI."""
+    name = NUMBERS[key].name
+    table = CsvTable.read(file, f"a CSV of {name}", profile_header(NUMBERS[key]))
+    if name not in table and key == SPEED and ("x" in table or "dx" in table):
+        path = _path(file, tables, read_path)
+        return path.plate_velocity(_given(tables, "array.axis")).rows
+    return _profile(table, key)
+
+
+def _profile(table: CsvTable, key: str) -> Rows:
+    """The rows of a CSV that gives a key over time, SI."""
     quantity = NUMBERS[key]
     name, example = quantity.name, profile_header(quantity)
-    table = CsvTable.read(file, f"a CSV of {name}", example)
-    if name not in table and key == SPEED and ("x" in table or "dx" in table):
-        return _path(file, tables).plate_velocity(_given(tables, "array.axis")).rows
     if name not in table or "t" not in table:
-        from pindrive.device.recording import EXAMPLE
-
-        also = f", or {quoted(EXAMPLE)} of a recorded hand" if key == SPEED else ""
+        also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
         given = quoted(", ".join(table.headings))
         raise ValueError(refusal("the header", f"like {quoted(example)}{also}", given, table.file))
     times = table.column("t", "profile.time", "s", "t [s]")
@@ -130,11 +142,9 @@ def _rows(file: Path, key: str, tables: Tables) -> Rows:
     return rows
 
 
-def _path(file: Path, tables: Tables) -> HandPath:
+def _path(file: Path, tables: Tables, read_path: Reader) -> HandPath:
     """The path of a recorded hand, with what [scan] says of recordings."""
-    from pindrive.device.recording import read_csv
-
-    return read_csv(
+    return read_path(
         file,
         acceleration=_given(tables, "scan.hand_acceleration"),
         resolution=_given(tables, "scan.mouse_resolution"),
@@ -148,7 +158,7 @@ def _given(tables: Tables, key: str) -> float:
     quantity, value = NUMBERS[key], tables.get(table, {}).get(name)
     try:
         if value is not None:
-            return number(value, quantity, usual(quantity), key, "")
+            return number(value, quantity, quantity.usual, key, "")
     except ValueError:  # said where the tables are read
         pass
     return float(default(quantity.name))

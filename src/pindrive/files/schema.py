@@ -15,8 +15,17 @@ from pindrive.device.coil import COIL, COIL_NEEDS, Coil
 from pindrive.device.controller import check_band
 from pindrive.device.electromagnet import DIRECT, Electromagnet, check_holds, check_one_way
 from pindrive.device.pin_array import PinArray, check_apart, check_count, check_pins, check_slot
-from pindrive.files.keys import Tables, friction_parts, number, written
-from pindrive.files.template import DRIVE, NUMBERS, WHOLE, line, usual, usual_rows
+from pindrive.files.keys import (
+    DRIVE,
+    NUMBERS,
+    WHOLE,
+    Tables,
+    friction_parts,
+    line,
+    number,
+    usual_rows,
+    written,
+)
 from pindrive.motion.drive import (
     SLOPES,
     Contact,
@@ -116,7 +125,7 @@ def read_value(value: object, key: str, place: str) -> float | Rows:
     quantity = NUMBERS[key]
     if quantity.rows and (isinstance(value, list | tuple) or not quantity.may_be_constant):
         return _rows(value, quantity, key, place)
-    return number(value, quantity, usual(quantity), key, place)
+    return number(value, quantity, quantity.usual, key, place)
 
 
 def _rows(value: object, quantity: Quantity, key: str, place: str) -> Rows:

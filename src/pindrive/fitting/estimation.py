@@ -20,7 +20,7 @@ from pindrive.fitting.search import polished, search
 from pindrive.lazy import stats
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.refusal import check_whole, refusal
-from pindrive.study.cluster import Cluster, Here, crew
+from pindrive.study.workers import Cluster, Here, crew
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from pindrive import _core
 from pindrive.motion.motion import Motion
@@ -82,6 +82,36 @@ def simulated(
     if end is not None:
         check_phase(end, drive.natural_frequency)
     return Motion(drive, release, end, check("settling_band", settling_band))
+
+
+class Described(Protocol):
+    """What says all of a motion, as a device file does."""
+
+    @property
+    def drive(self) -> Drive:
+        """What moves."""
+
+    @property
+    def release(self) -> Release:
+        """The initial state, and the inputs."""
+
+    @property
+    def duration(self) -> float | None:
+        """In s; None: long enough to see the ending."""
+
+    @property
+    def settling_band(self) -> float:
+        """As for `simulate`."""
+
+
+def motion_of(device: Described) -> Motion:
+    """The release that a device file describes, without the warnings, which its reading gives."""
+    return simulated(
+        device.drive,
+        device.release,
+        duration=device.duration,
+        settling_band=device.settling_band,
+    )
 
 
 def check_phase(duration: float, natural_frequency: float) -> None:

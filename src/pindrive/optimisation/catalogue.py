@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.files.keys import keys_meant
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS, keys_meant
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import quoted

@@ -28,10 +28,10 @@ from pindrive.optimisation.search import Population, non_dominated, search
 from pindrive.optimisation.tolerance import excess_as_built, reserves, share_of
 from pindrive.optimisation.wish import read_wish, wish_of
 from pindrive.quantities.refusal import check_whole
-from pindrive.study.cluster import Cluster, crew
 from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
 from pindrive.study.outputs import Demand
+from pindrive.study.workers import Cluster, crew
 
 if TYPE_CHECKING:
     from pindrive.device.scanning import Progress

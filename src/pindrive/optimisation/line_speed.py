@@ -22,8 +22,7 @@ from pindrive.study.design import device_at
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from pindrive.device.criteria import Criteria
-    from pindrive.device.device import Device
+    from pindrive.device.device import Criteria, Device
     from pindrive.study.design import Plan
 
 FINE: Final = 1e-2

@@ -24,8 +24,8 @@ from pindrive.study.workers import standing
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from pindrive.study.cluster import Cluster
     from pindrive.study.design import Plan
+    from pindrive.study.workers import Cluster
 
 Array = NDArray[np.float64]
 POINTS: Final = 1 << 18

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import lazy
+from pindrive.files.device_text import device_text
+from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import variable
-from pindrive.files.template import NUMBERS as KEYS
 from pindrive.lazy import xr
 from pindrive.optimisation.goals import Goal, Variable, Wish, unit_of
 from pindrive.quantities.quantity import significant
@@ -23,13 +24,15 @@ from pindrive.study.outputs import NUMBERS, Demand, attributes, label
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from matplotlib.figure import Figure
 
     from pindrive.files.device import DeviceFile
     from pindrive.motion.motion import Motion
     from pindrive.optimisation.effort import Count
-    from pindrive.study.compliance import Share
+    from pindrive.study.outputs import Share
+
 
 __all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
 
@@ -288,3 +291,30 @@ def shown(name: str, value: float) -> str:
     """A number of a motion, a scan or a design for display: "12.34 ms"."""
     unit, scale = unit_of(name)
     return f"{significant(value * scale)} {unit}".rstrip()
+
+
+def designed_file(found: Design, target: Path) -> str:
+    """The text of a device file.
+
+    Args:
+        found: the design.
+        target: where the text will stand; paths in it are relative to that.
+    """
+    head = [
+        "Designed by pindrive.",
+        f"Wish: {found.wish.plan.path.name}, {found.wish.plan.name}; seed {found.seed}.",
+    ]
+    if not found.feasible:
+        head.append(f"No design meets the demands; {found.closest}.")
+    head += [
+        f"{reached.goal.text()}: {shown(reached.goal.name, reached.value)}"
+        for reached in found.goals
+    ]
+    head += [f"part {name}: {part}" for name, part in found.parts.items()]
+    head += [
+        f"{demanded.demand.text()}: {label(demanded.demand.name)} is "
+        f"{shown(demanded.demand.name, demanded.value)} at worst"
+        for demanded in found.demands
+    ]
+    comments = {key: ["chosen by the design"] for v in found.wish.variables for key in v.axes}
+    return device_text(found.device, {}, target, [*head, *found.warnings], comments)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from pindrive.optimisation.goals import Variable, Wish
 from pindrive.optimisation.problem import Problem
 from pindrive.optimisation.scanned import Scanned
-from pindrive.study.compliance import Share
 from pindrive.study.distributions import Sample, implied_links
+from pindrive.study.outputs import Share
 from pindrive.study.spec import plan_of
 
 if TYPE_CHECKING:

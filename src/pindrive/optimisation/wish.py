@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import ConfigError, DeviceFile, read_tables
-from pindrive.files.keys import keys_meant, written
-from pindrive.files.template import STUDY_KEYS, TABLES
+from pindrive.files.keys import STUDY_KEYS, TABLES, keys_meant, written
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
 from pindrive.optimisation.goals import PRICE, SPEED, YIELD, Goal, Variable, Wish
 from pindrive.quantities import budgets

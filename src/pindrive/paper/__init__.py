@@ -5,7 +5,7 @@ Here are equations (2) to (26) as functions of `Releases`; `pindrive paper` writ
 
 from pindrive.paper import formulas
 from pindrive.paper.formulas import *  # noqa: F403
-from pindrive.paper.release import Releases
+from pindrive.paper.formulas import Releases
 
 __all__ = ["Releases"]
 __all__ += formulas.__all__

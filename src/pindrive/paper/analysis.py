@@ -14,7 +14,7 @@ from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import Exhibit, by_case, listed, page, trend
-from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
+from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:

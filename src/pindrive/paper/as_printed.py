@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper import formulas
-from pindrive.paper.release import Releases
+from pindrive.paper.formulas import Releases
 
 if TYPE_CHECKING:
     from pindrive.paper.formulas import Array

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pindrive.paper import as_printed, formulas, population
-from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis
+from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis, statements
 from pindrive.paper.exhibit import at_most, share
 from pindrive.paper.population import TINY, Claim, finger_friction, motion_of, swing
-from pindrive.paper.scope import statements
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

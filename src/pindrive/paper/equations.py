@@ -13,7 +13,7 @@ import numpy as np
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import at_most, share
-from pindrive.paper.release import Releases
+from pindrive.paper.formulas import Releases
 
 if TYPE_CHECKING:
     from pindrive.paper.formulas import Array

@@ -17,8 +17,8 @@ from matplotlib.lines import Line2D
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
 from pindrive.paper.exhibit import Exhibit, at_most, page, trend
+from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.paper.population import SEED
-from pindrive.paper.release import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.contours import MAP, draw_contours, jump_key
 
 if TYPE_CHECKING:

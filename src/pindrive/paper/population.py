@@ -18,7 +18,7 @@ from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.paper import formulas
-from pindrive.paper.release import Releases
+from pindrive.paper.formulas import Releases
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import PinScan
+    from pindrive.evaluation.line_crossings import Line
     from pindrive.evaluation.perception import Judgement
-    from pindrive.evaluation.results import Line
 
 LINES: Final = 4
 """Shown in the history, at most."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from pindrive.device.criteria import Criteria
+    from pindrive.device.device import Criteria
     from pindrive.evaluation.resolution import SpeedLimit
 
 CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import radians
 from typing import Any, Final
 
-from pindrive.quantities.quantity import FINE, NON_NEGATIVE, SHARE, Quantity, between, in_table
+from pindrive.quantities.quantity import FINE, NON_NEGATIVE, Quantity, between, optional
 
 LUMINANCE: Final = between(0.0, 1.0)
 ACUTE: Final = between(0.0, radians(90.0))
@@ -19,7 +19,7 @@ PLACE: Final = between(-1e3, 1e3)
 """On the page."""
 TURN: Final = radians(720.0)
 
-CONTROL: Final = in_table(
+CONTROL: Final = optional(
     "control",
     Quantity(
         "sample_rate",
@@ -60,7 +60,7 @@ CONTROL: Final = in_table(
     ),
 )
 
-ARRAY: Final = in_table(
+ARRAY: Final = optional(
     "array",
     Quantity(
         "columns",
@@ -142,7 +142,7 @@ ARRAY: Final = in_table(
     ),
 )
 
-SCAN: Final = in_table(
+SCAN: Final = optional(
     "scan",
     Quantity(
         "hand_speed",
@@ -274,42 +274,6 @@ DEVICE_PARTS: Final[tuple[Quantity, ...]] = (
         absent=1e-4,
     ),
     Quantity("hand.place", "x", "m", "place in a recorded path", PLACE),
-    Quantity(
-        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
-    ),
-    Quantity(
-        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
-    ),
-    Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
-    Quantity(
-        "coil.field",
-        "B",
-        "T",
-        "field in the gap at full current, without saturation",
-        between(1e-12, 1e12),
-    ),
-    Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
-    Quantity(
-        "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
-    ),
-    Quantity(
-        "rise_constant",
-        "τ_r",
-        "s",
-        "time constant of the rising current",
-        between(1e-9, 1e6),
-        source="assumed: a third of rise_time",
-        absent=0.001,
-    ),
-    Quantity(
-        "fall_constant",
-        "τ_f",
-        "s",
-        "time constant of the falling current",
-        between(1e-9, 1e6),
-        source="assumed: four fifths of fall_time",
-        absent=0.004,
-    ),
     Quantity(
         "friction_coefficient",
         "μ",

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import FINE, SHARE, Quantity, between, in_table
+from pindrive.quantities.quantity import FINE, SHARE, Quantity, between, optional
 
-MAGNET: Final = in_table(
+MAGNET: Final = optional(
     "magnet",
     Quantity(
         "hold_force",
@@ -115,7 +115,7 @@ MAGNET: Final = in_table(
 )
 """The electromagnet by what it does."""
 
-COIL: Final = in_table(
+COIL: Final = optional(
     "magnet",
     Quantity(
         "turns",
@@ -259,3 +259,43 @@ COIL: Final = in_table(
     ),
 )
 """The electromagnet by how it is made."""
+
+MADE: Final[tuple[Quantity, ...]] = (
+    Quantity(
+        "coil.resistance", "R", "ohm", "resistance of the winding at 20 °C", between(1e-9, 1e15)
+    ),
+    Quantity(
+        "coil.inductance", "L", "H", "inductance of the coil on the plate", between(1e-15, 1e9)
+    ),
+    Quantity("coil.current", "I", "A", "full current", between(1e-12, 1e12)),
+    Quantity(
+        "coil.field",
+        "B",
+        "T",
+        "field in the gap at full current, without saturation",
+        between(1e-12, 1e12),
+    ),
+    Quantity("coil.power", "P_el", "W", "power while it is on", between(1e-15, 1e15)),
+    Quantity(
+        "coil.duty", "D_th", "1", "part of the time it may be on for the warming allowed", SHARE
+    ),
+    Quantity(
+        "rise_constant",
+        "τ_r",
+        "s",
+        "time constant of the rising current",
+        between(1e-9, 1e6),
+        source="assumed: a third of rise_time",
+        absent=0.001,
+    ),
+    Quantity(
+        "fall_constant",
+        "τ_f",
+        "s",
+        "time constant of the falling current",
+        between(1e-9, 1e6),
+        source="assumed: four fifths of fall_time",
+        absent=0.004,
+    ),
+)
+"""What follows from how it is made, and the time constants, which stand for its times."""

@@ -208,6 +208,14 @@ def in_table(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
     return tuple(replace(row, section=section) for row in rows)
 
 
+def optional(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
+    """The same of a table that may be left out: what `pindrive init` writes holds then."""
+    return tuple(
+        replace(row, absent=row.default) if row.absent is None else row
+        for row in in_table(section, *rows)
+    )
+
+
 def counted(number: int, noun: str, plural: str = "") -> str:
     """A count with its noun, thousands apart: "1 point", "10 000 points"."""
     shown = f"{number:,}".replace(",", " ")

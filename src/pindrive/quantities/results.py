@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, in_table
+from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, optional
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
     ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
@@ -179,7 +179,7 @@ GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion
 HANDS: Final = "hand speed in finger studies, 20-100 mm/s (arXiv 2505.11162)"
 FELT: Final = between(1e-9, 1.0)
 
-CRITERIA: Final = in_table(
+CRITERIA: Final = optional(
     "judge",
     Quantity(
         "felt",
@@ -248,6 +248,15 @@ LINE: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"line.{name}", symbol, unit, meaning) for name, symbol, unit, meaning in _FOUND
 )
 """What is found of each line under each pin."""
+
+BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
+"""Numbers of a line, by their last parts, whose worst value is the least."""
+
+
+def last_part(quantity: Quantity) -> str:
+    """The last part of the name of a line's number."""
+    return quantity.name.partition(".")[2]
+
 
 JUDGED: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"judged.{name}", symbol, "", meaning)

@@ -7,26 +7,22 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 from typing import Final, TypeVar, dataclass_transform
 
 from pindrive.quantities.device import ARRAY, CONTROL, DEVICE_PARTS, PIN, SCAN
 from pindrive.quantities.drive import INPUTS, PARTS
-from pindrive.quantities.electromagnet import COIL, MAGNET
+from pindrive.quantities.electromagnet import COIL, MADE, MAGNET
 from pindrive.quantities.part import Part, checked_class
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.results import CRITERIA, DESIGNED, FINAL, JUDGE, OUTPUTS, RATE
 
 T = TypeVar("T")
 
-DEVICE_INPUTS: Final = tuple(
-    replace(row, absent=row.default) if row.absent is None else row
-    for row in MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
-)
+DEVICE_INPUTS: Final = MAGNET + COIL + CONTROL + ARRAY + SCAN + CRITERIA
 """What a device file may give beyond the drive, in its order; all of it may be left out."""
 
 
-DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + DEVICE_PARTS + PIN + JUDGE
+DEVICE: Final[tuple[Quantity, ...]] = DEVICE_INPUTS + MADE + DEVICE_PARTS + PIN + JUDGE
 """What the whole device adds."""
 
 _ALL: Final = Part((*INPUTS, *PARTS, *OUTPUTS, *FINAL, RATE, *DEVICE, *DESIGNED))

@@ -8,8 +8,7 @@ from math import inf
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from pindrive.files.keys import has_part, keys_meant, not_known, number
-from pindrive.files.template import DRIVE, NUMBERS, TABLES, usual
+from pindrive.files.keys import DRIVE, NUMBERS, TABLES, has_part, keys_meant, not_known, number
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.units import UnitError, quoted, to_si
@@ -118,7 +117,7 @@ class AxisReader:
     def _value(self, given: object, part: str) -> float:
         """One value in SI, within the key's bounds."""
         quantity, label = self._quantity, f"{self._label}{part}"
-        return number(given, quantity, usual(quantity), label, self._file, si=self._si)
+        return number(given, quantity, quantity.usual, label, self._file, si=self._si)
 
     def _pair(self, given: object, part: str, names: tuple[str, str]) -> list[Any]:
         if not isinstance(given, list) or len(given) != 2:
@@ -218,7 +217,7 @@ class AxisReader:
         about = self._base if about is None else about
         quantity, text = self._quantity, given.strip() if isinstance(given, str) else ""
         relative = text.endswith("%")
-        example = usual(quantity)
+        example = quantity.usual
         try:
             if relative:
                 off = to_si(text, "1", "5 %") * abs(about or 0.0)

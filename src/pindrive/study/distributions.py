@@ -17,8 +17,7 @@ from zlib import crc32
 
 import numpy as np
 
-from pindrive.files.keys import friction_parts
-from pindrive.files.template import DRIVE
+from pindrive.files.keys import DRIVE, friction_parts
 from pindrive.lazy import qmc, special
 from pindrive.motion.friction import COEFFICIENT_OF, friction_force
 from pindrive.quantities.table import QUANTITIES

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.device.scanning import scan
-from pindrive.files.device import motion_of
 from pindrive.files.keys import variable
 from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
@@ -19,13 +18,12 @@ from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, Release
-from pindrive.motion.simulate import simulated
+from pindrive.motion.simulate import motion_of, simulated
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.refusal import Refusal, refused_by, told_by
-from pindrive.quantities.results import LINE
 from pindrive.quantities.status import End, SimulationError, Status
 from pindrive.study.design import device_at
-from pindrive.study.outputs import BAD_WHEN_SMALL, MEASURED, SCANNED, short, variables
+from pindrive.study.outputs import MEASURED, SCANNED, variables
 from pindrive.study.workers import standing
 
 if TYPE_CHECKING:
@@ -34,7 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pindrive.device.scanning import Progress
-    from pindrive.evaluation.perception import Judgement
     from pindrive.files.device import DeviceFile
     from pindrive.study.design import Columns, Plan, Ranges
 
@@ -45,8 +42,8 @@ _PORTION: Final = 8
 """Points that a process takes at a time, at most."""
 
 
-def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
-    """The scan at one point of a study with a page, which the keys' values (SI) say, judged.
+def scan_numbers(plan: Plan, at: Mapping[str, float]) -> dict[str, float]:
+    """The numbers of the scan at one point, which the keys' values (SI) say, by their names.
 
     Raises:
         ValueError: there is none: the values do not go together, or a spot leaves the page.
@@ -58,29 +55,8 @@ def judged_at(plan: Plan, at: Mapping[str, float]) -> Judgement:
     scene = plan.page.scene(reading, device.array)
     path = plan.page.hand(reading, scene, device.array)
     done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
-    judgement: Judgement = done.evaluate(file.criteria)
-    return judgement
-
-
-def scan_numbers(judgement: Judgement) -> dict[str, float]:
-    """The numbers of one scan, SI, by their names; NaN where one does not exist."""
-    counts, path = judgement.counts, judgement.scan.path
-    lines, duration = counts["judged.lines"], path.end - path.begin
-    on = max(sum(end - begin for begin, end in pin.energised) for pin in judgement.scan.pins)
-    coil = judgement.scan.device.magnet.coil
-    found: dict[str, float] = {
-        "judged.shown_part": counts["judged.shown"] / lines if lines else nan,
-        **counts,
-        "hand.duration": duration,
-        "magnet.on_part": on / duration,
-        "coil.warming": coil.thermal_resistance * coil.power * on / duration if coil else nan,
-    }
-    for quantity in LINE:
-        name = short(quantity)
-        least, median, largest = judgement.spread(quantity.name)
-        found[f"median.{name}"] = median
-        found[f"worst.{name}"] = least if name in BAD_WHEN_SMALL else largest
-    return found
+    numbers: dict[str, float] = done.evaluate(file.criteria).numbers
+    return numbers
 
 
 def _evaluate_scans(
@@ -115,7 +91,7 @@ def _row(plan: Plan, point: Mapping[str, float]) -> Row:
     """The numbers at a point; one without a scan has a status and no numbers."""
     names = variables(SCANNED)
     try:
-        found = scan_numbers(judged_at(plan, point))
+        found = scan_numbers(plan, point)
     except (ValueError, ArithmeticError, MemoryError) as error:
         status = error.status if isinstance(error, SimulationError) else Status.refused
         return dict.fromkeys(names, nan) | {"status": status, "reason": refused_by(error)}
@@ -341,7 +317,7 @@ def why(plan: Plan, at: Mapping[str, float]) -> str:
     """Why there is no motion or scan at a point, which the keys' values (SI) say; empty: it is."""
     try:
         if plan.page:
-            judged_at(plan, at)
+            scan_numbers(plan, at)
         else:
             motion_of(device_at(plan, at))
     except (ValueError, ArithmeticError, MemoryError) as error:

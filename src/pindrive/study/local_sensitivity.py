@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from pindrive import lazy
-from pindrive.files.device import motion_of
 from pindrive.files.keys import variable
 from pindrive.lazy import xr
 from pindrive.motion.friction import COEFFICIENTS
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.study.design import ranges_of

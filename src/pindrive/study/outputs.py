@@ -1,4 +1,4 @@
-"""The numbers that a study keeps of each motion or scan, and the limits that are set on them."""
+"""The numbers that a study keeps, the limits set on them, and how many points meet these."""
 
 from __future__ import annotations
 
@@ -10,38 +10,41 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from pindrive.lazy import h5py, stats
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import hint, refusal
-from pindrive.quantities.results import DESIGNED, ENDING, ENERGY, JUDGED, LINE, TRANSIENT
+from pindrive.quantities.results import (
+    BAD_WHEN_SMALL,
+    DESIGNED,
+    ENDING,
+    ENERGY,
+    JUDGED,
+    LINE,
+    TRANSIENT,
+    last_part,
+)
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import UnitError, quoted, to_si
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
     from pindrive.quantities.quantity import Quantity
 
-BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
-"""Numbers of a line, by their last parts, whose worst value is the least."""
-
-
-def short(quantity: Quantity) -> str:
-    """The last part of the name of a line's number."""
-    return quantity.name.partition(".")[2]
-
 
 def _median(quantity: Quantity) -> Quantity:
     meaning = f"median of the lines shown: {quantity.meaning}"
-    return replace(quantity, name=f"median.{short(quantity)}", meaning=meaning)
+    return replace(quantity, name=f"median.{last_part(quantity)}", meaning=meaning)
 
 
 def _worst(quantity: Quantity) -> Quantity:
-    end = "least" if short(quantity) in BAD_WHEN_SMALL else "largest"
+    end = "least" if last_part(quantity) in BAD_WHEN_SMALL else "largest"
     meaning = f"{end} of the lines shown: {quantity.meaning}"
-    return replace(quantity, name=f"worst.{short(quantity)}", meaning=meaning)
+    return replace(quantity, name=f"worst.{last_part(quantity)}", meaning=meaning)
 
 
 SCANNED: Final[tuple[Quantity, ...]] = (
@@ -249,3 +252,76 @@ def _demand(name: str, condition: object, where: str, file: str) -> Demand:
         required = f"a finite limit, of at most {LARGEST:g} in size"
         raise ValueError(refusal(where, required, quoted(condition), file))
     return Demand(name, match[1] in _AT_MOST, limit)
+
+
+# ---- how many meet a specification ---------------------------------------------------------------
+
+
+_CONFIDENCE: Final = 0.95
+_SLICE: Final = 1 << 22
+"""Points that are read at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A part of the designs that exist, with its exact 95 % confidence interval.
+
+    The interval is that of Clopper and Pearson 1934.
+    """
+
+    met: int
+    of: int
+    low: float
+    high: float
+    without: int = 0
+    """How many have no number to meet the demand with, such as one that never settles."""
+
+    @property
+    def text(self) -> str:
+        """The part for a person: "97.482 %", never all nor none by rounding."""
+        shown = f"{100.0 * self.met / self.of:.3f}"
+        if shown == "100.000" and self.met < self.of:
+            return "> 99.999 %"
+        return "< 0.001 %" if shown == "0.000" and self.met else f"{shown} %"
+
+    @classmethod
+    def of_designs(cls, met: int, of: int, without: int = 0) -> Share:
+        """Of so many independent draws of designs that exist, at least 1."""
+        interval = stats.binomtest(met, of).proportion_ci(_CONFIDENCE, method="exact")
+        return cls(met, of, float(interval.low), float(interval.high), without)
+
+
+def points_that_meet(path: Path) -> tuple[int, int] | None:
+    """How many points meet the specification that the file holds, and of how many that exist.
+
+    None where it holds none.
+    """
+    with h5py.File(path, "r") as file:
+        demanded = from_attribute(str(file.attrs.get("specification", "")))
+        if not demanded:
+            return None
+        met = of = 0
+        for part in _slices(file["status"].shape):
+            exist = file["status"][part] == 0
+            here = exist & _all_met(file, demanded, part)
+            met, of = met + int(here.sum()), of + int(exist.sum())
+    return met, of
+
+
+def _slices(shape: tuple[int, ...]) -> Iterator[slice]:
+    """Parts of the first axis."""
+    inner = max(1, int(np.prod(shape[1:])))
+    rows = max(1, _SLICE // inner)
+    for begin in range(0, shape[0], rows):
+        yield slice(begin, begin + rows)
+
+
+def _all_met(file: Any, demanded: tuple[Demand, ...], part: slice) -> NDArray[np.bool_]:
+    each = []
+    for demand in demanded:
+        values = file[demand.name][part].astype(np.float64)
+        none = missing(demand.name)
+        each.append(
+            demand.met(values if none is None else np.where(values == none, np.nan, values))
+        )
+    return np.asarray(np.logical_and.reduce(each))

@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive import lazy
-from pindrive.files.device import motion_of
 from pindrive.lazy import optimize, xr
+from pindrive.motion.simulate import motion_of
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.study.compliance import Share
 from pindrive.study.design import Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
-from pindrive.study.outputs import NUMBERS, attributes
+from pindrive.study.outputs import NUMBERS, Share, attributes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

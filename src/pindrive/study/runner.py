@@ -29,7 +29,6 @@ from pindrive.lazy import h5py
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.study import outputs
-from pindrive.study.cluster import check_installed, cluster_executor
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
     Journal,
@@ -41,7 +40,7 @@ from pindrive.study.store import (
     difference,
     lay_out,
 )
-from pindrive.study.workers import DIED, workers
+from pindrive.study.workers import DIED, check_installed, cluster_executor, workers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

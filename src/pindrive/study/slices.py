@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.files import template
-from pindrive.files.keys import keys_meant, variable
-from pindrive.files.template import WHOLE, usual
+from pindrive.files.keys import NUMBERS as KEYS
+from pindrive.files.keys import WHOLE, keys_meant, variable
 from pindrive.lazy import xr
 from pindrive.quantities.refusal import hint
 from pindrive.quantities.table import short
@@ -39,9 +38,7 @@ if TYPE_CHECKING:
     from pindrive.study.distributions import Distribution
 
 
-QUANTITY: Final[dict[str, Quantity]] = {
-    variable(key): q for key, q in template.NUMBERS.items()
-} | NUMBERS
+QUANTITY: Final[dict[str, Quantity]] = {variable(key): q for key, q in KEYS.items()} | NUMBERS
 """Inputs and numbers by the names of their variables."""
 
 _WORDS: Final = {
@@ -218,7 +215,7 @@ class View:
         Raises:
             ValueError: it is unknown, or was not varied.
         """
-        names = [variable(key) for key in keys_meant(given) if key in template.NUMBERS]
+        names = [variable(key) for key in keys_meant(given) if key in KEYS]
         names = [name for name in (*names, given.replace(".", "_")) if name in self.keys]
         if names:
             return names[0]
@@ -265,7 +262,7 @@ class View:
                 raise ValueError(f"--at {name}: is sampled, and cannot be held at one value")
             quantity = QUANTITY[key]
             try:
-                found[key] = to_si(written, quantity.unit, usual(quantity))
+                found[key] = to_si(written, quantity.unit, quantity.usual)
             except UnitError as error:
                 raise ValueError(f"--at {name}: must be {error}, got {quoted(written)}") from None
         return found

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import ConfigError, Setting, device_of, read_tables, settings_of
-from pindrive.files.keys import keys_meant, variable
+from pindrive.files.keys import STUDY_KEYS, TABLES, keys_meant, variable
 from pindrive.files.recording import is_file
-from pindrive.files.template import STUDY_KEYS, TABLES
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import hint, refusal
 from pindrive.quantities.units import quoted

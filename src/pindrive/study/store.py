@@ -22,9 +22,8 @@ import numpy as np
 
 from pindrive.device.coil import COIL
 from pindrive.device.electromagnet import DIRECT
-from pindrive.files.keys import variable
+from pindrive.files.keys import NUMBERS, variable
 from pindrive.files.output import OutputError, naming
-from pindrive.files.template import NUMBERS
 from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from pindrive.files.template import DRIVE, NUMBERS, line
+from pindrive.files.keys import DRIVE, NUMBERS, line
 from pindrive.quantities.device import READER
 
 _RELEASES: Final = """\

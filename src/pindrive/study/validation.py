@@ -8,7 +8,7 @@ import numpy as np
 
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
-from pindrive.files.template import NUMBERS
+from pindrive.files.keys import NUMBERS
 from pindrive.motion.coefficients import KINETIC, within
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force

@@ -1,7 +1,8 @@
-"""Who works on a study: threads where the core does the work, processes where Python does."""
+"""Who works on a study: threads where the core does the work, processes where Python does, Dask."""
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -12,13 +13,18 @@ from contextlib import contextmanager
 from functools import cache
 from multiprocessing import active_children, parent_process
 from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, NoReturn, TypeVar
+from time import monotonic, sleep
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from pindrive.files.output import OutputError
+from pindrive.quantities.refusal import refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from concurrent.futures import Executor
+
 
 Shared = TypeVar("Shared")
 Given = TypeVar("Given")
@@ -109,3 +115,127 @@ def _attend() -> None:
             os._exit(1)
 
         Thread(target=end, daemon=True).start()
+
+
+# ---- a Dask scheduler ----------------------------------------------------------------------------
+
+
+_PATIENCE: Final = 20.0
+"""How long a scheduler may take to write its file, and to answer, s."""
+
+
+class Here:
+    """Parts one after the other, in this thread."""
+
+    def spread(
+        self,
+        work: Callable[[Shared, Given], Done],
+        shared: Shared,
+        portions: Sequence[Given],
+    ) -> Iterator[Done]:
+        """The work of each portion, in their order."""
+        return (work(shared, portion) for portion in portions)
+
+
+class Cluster:
+    """Parts on the workers of a Dask scheduler."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def spread(
+        self,
+        work: Callable[[Shared, Given], Done],
+        shared: Shared,
+        portions: Sequence[Given],
+    ) -> Iterator[Done]:
+        """The work of each portion, in their order."""
+        begun = [self._executor.submit(work, shared, portion) for portion in portions]
+        return (future.result() for future in begun)
+
+
+@contextmanager
+def crew(address: str | None) -> Iterator[Here | Cluster]:
+    """Who computes independent parts: the workers of a scheduler, or without one this thread.
+
+    Raises:
+        ValueError: as for `cluster_executor`.
+    """
+    if address is None:
+        yield Here()
+        return
+    check_installed()
+    with cluster_executor(address, "nothing was written") as (executor, _):
+        yield Cluster(executor)
+
+
+def check_installed() -> None:
+    """Refuse where Dask's distributed is not installed."""
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise ValueError(
+            "--cluster needs Dask's distributed; pip install 'pindrive[cluster]'"
+        ) from None
+
+
+@contextmanager
+def cluster_executor(address: str, kept: str) -> Iterator[tuple[Executor, int]]:
+    """An executor on the workers of a scheduler, and how many threads they have, at least 1.
+
+    Args:
+        address: such as tcp://10.0.0.1:8786, or the file of the scheduler, which ends in .json.
+        kept: what is left where workers die one after the other, for the message.
+
+    Raises:
+        ValueError: nothing answers at the address, or a worker has another version.
+    """
+    from distributed import Client, KilledWorker
+
+    try:
+        place = _written(Path(address)) if address.endswith(".json") else address
+        client = Client(place, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        required = "the address of a Dask scheduler, like tcp://10.0.0.1:8786, or its .json file"
+        given = f"{address}: {str(error) or type(error).__name__}"
+        raise ValueError(refusal("--cluster", required, given)) from None
+    with client, client.get_executor(pure=False) as executor:
+        _check_versions(client.run(_version))
+        try:
+            yield executor, max(1, sum(client.nthreads().values()))
+        except KilledWorker as error:
+            raise OutputError(
+                f"--cluster {address}: workers died one after the other: {error}; {kept}"
+            ) from None
+
+
+def _written(file: Path) -> str:
+    """The address in the file of a scheduler, which may have just begun.
+
+    Raises:
+        ValueError: it is not there, or holds no address, after `_PATIENCE`.
+    """
+    end = monotonic() + _PATIENCE
+    while True:
+        try:
+            return str(json.loads(file.read_text("utf-8"))["address"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            if monotonic() > end:
+                missing = isinstance(error, OSError)
+                raise ValueError("cannot be read" if missing else "holds no address") from None
+        sleep(0.05)
+
+
+def _version() -> str:
+    """The version that a worker has."""
+    from pindrive import __version__
+
+    return __version__
+
+
+def _check_versions(of_workers: Mapping[str, Any]) -> None:
+    """Refuse workers that would compute with another version."""
+    for worker, version in of_workers.items():
+        if version != _version():
+            given = f"{version} on {worker}"
+            raise ValueError(refusal("the workers' pindrive", f"version {_version()}", given))
