@@ -60,7 +60,9 @@ class SeriesMode {
   /// Whether flow.hpp has it in closed form, so that no series is needed.
   bool has_closed_form() const {
     const bool slides = slips(mode_.plate);
-    const bool bilinear = slides && inputs_.plate_load.rate != 0 && plate().slope != 0;
+    const bool bilinear =
+        (slides && inputs_.plate_load.rate != 0 && plate().slope != 0) ||
+        (slips(mode_.finger) && inputs_.finger_load.rate != 0 && finger().slope != 0);
     return !bilinear && !(slides && inputs_.oblique()) && !lags();
   }
 
@@ -89,14 +91,17 @@ class SeriesMode {
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
     }
+    const Line<T>& load = inputs_.finger_load;
     if (lags()) {
-      e.skin_factor = finger().slope * inputs_.finger_load.value;
-      e.skin_gain = e.skin_decay = drive_.finger.stiffness / e.skin_factor;
+      e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
+      e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
+      e.skin_drift = along(mode_.finger, at_rest(finger())) * load.rate;
     } else if (mode_.finger == ContactState::elastic_stick) {
-      e.skin_factor = T(1);
-      e.skin_gain = drive_.finger.stiffness;
+      e.skin_factor.value = T(1);
+      e.skin_stiffness = drive_.finger.stiffness;
     } else if (slips(mode_.finger)) {
-      e.damping += finger().slope * inputs_.finger_load.value;
+      e.damping += finger().slope * load.value;
+      e.damping_rate = finger().slope * load.rate;
     }
     e.held = mode_.stuck() || held_by_stop(drive_, mode_);
     if (touches(mode_.stop) && !drive_.stops.rigid()) {
@@ -111,8 +116,10 @@ class SeriesMode {
   /// The force that stretches the skin, from the state of the skin; 0 of a rigid finger, N.
   T skin_force(T skin) const {
     if (drive_.finger.rigid()) return T(0);
-    if (lags()) return along(mode_.finger, at_rest(finger())) + finger().slope * skin;
-    return slips(mode_.finger) ? along(mode_.finger, finger().force) : skin;
+    if (!slips(mode_.finger)) return skin;
+    const T friction = lags() ? at_rest(finger()) : finger().force;
+    return inputs_.finger_load.value *
+           (along(mode_.finger, friction) + (lags() ? finger().slope * skin : T(0)));
   }
 
   /// Where the mode begins exactly: the bounds of the speeds, and the side of a stick force at its limit.
@@ -180,12 +187,16 @@ class SeriesMode {
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
     if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
-    if (slips(mode_.finger))
-      between(found, along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity), finger(),
-              at.finger, false, false);
+    if (slips(mode_.finger)) {
+      Polynomial<T> speed = along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity);
+      if (!lags() && !drive_.finger.rigid()) speed += Line<T>{-follows(finger().force), T(0)};
+      between(found, speed, finger(), at.finger, false, false);
+    }
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
-      within(found, step.skin, {drive_.finger.static_limit * inputs_.finger_load.value, T(0)},
+      within(found, step.skin,
+             {drive_.finger.static_limit * inputs_.finger_load.value,
+              drive_.finger.static_limit * inputs_.finger_load.rate},
              limit, false);
     }
     if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, step, at);
@@ -197,6 +208,10 @@ class SeriesMode {
 
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
+  /// The velocity at which the skin of a friction stretches as its load changes, m/s.
+  T follows(T friction) const {
+    return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
+  }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
 
   void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,
