@@ -38,8 +38,8 @@ class Followed {
       : plate_(at.plate, along.plate),
         finger_(at.finger, along.finger),
         stepper(drive(at, along, *this), start) {}
-  Followed(const pd::Numbers& at, const pd::Numbers& along,
-           const pd::Inputs<T, pd::Held<T>>& inputs, double begin)
+  Followed(const pd::Numbers& at, const pd::Numbers& along, const pd::Inputs<T>& inputs,
+           double begin)
       : plate_(at.plate, along.plate),
         finger_(at.finger, along.finger),
         stepper(drive(at, along, *this), inputs, T(begin)) {}
@@ -113,15 +113,15 @@ std::unique_ptr<Followed<T>> followed(const pd::Numbers& at, const pd::Numbers& 
   const auto held = [&](const pd::Rows& rows, const pd::Rows& rates) {
     return pd::Held<T>{T(begin), {pd::number<T>(rows[0].second, rates[0].second), T(0)}};
   };
-  const pd::Inputs<T, pd::Held<T>> inputs{held(at.mouse_velocity, along.mouse_velocity),
-                                          pd::number<T>(at.displacement, along.displacement),
-                                          pd::number<T>(at.velocity, along.velocity),
-                                          T(infinity),
-                                          held(at.plate_load, along.plate_load),
-                                          pd::number<T>(at.skin_stretch, along.skin_stretch),
-                                          held(at.force, along.force),
-                                          held(at.across_velocity, along.across_velocity),
-                                          held(at.finger_load, along.finger_load)};
+  const pd::Inputs<T> inputs{held(at.mouse_velocity, along.mouse_velocity),
+                             pd::number<T>(at.displacement, along.displacement),
+                             pd::number<T>(at.velocity, along.velocity),
+                             T(infinity),
+                             held(at.plate_load, along.plate_load),
+                             pd::number<T>(at.skin_stretch, along.skin_stretch),
+                             held(at.force, along.force),
+                             held(at.across_velocity, along.across_velocity),
+                             held(at.finger_load, along.finger_load)};
   return std::make_unique<Followed<T>>(at, along, inputs, begin);
 }
 

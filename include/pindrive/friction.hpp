@@ -14,34 +14,18 @@ namespace pindrive::detail {
 
 /// A contact at an instant: its surface and its load from here on, what it may do next and, of that,
 /// what it does.
-template <class T, class Surface>
-struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
-  using OfSlider = SliderOf<Touch<T, Surface>, T, Surface>;
+template <class T>
+struct Touch : SlidingSkin<T> {
+  using Base = SlidingSkin<T>;
   using Option = TouchOption<T>;
-  using OfSlider::lags, OfSlider::slide, OfSlider::gap, OfSlider::drops;
+  using Base::Base, Base::contact, Base::surface, Base::load, Base::across, Base::does;
+  using Base::before, Base::reached, Base::count, Base::friction, Base::direction;
+  using Base::lags, Base::gap, Base::drops;
+  using Base::slip, Base::sliding, Base::elastic, Base::branch, Base::stick_limit;
 
-  explicit Touch(const Surface& given) : contact(given) {}
-
-  const Surface contact;
-  Line<T> surface{}, load{T(1), T(0)}, across{};
-  Option does{};
-  ContactState before{};       ///< what it did until the last event, …
-  Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
-  int count{0};                ///< of its options
-  T friction{0};   ///< how large its friction is at its sliding speed under a load of 1, N
-  T direction{0};  ///< of an oblique slip, along the axis: u/√(u² + w²)
-
-  static Option slip(T sense, Bound at, int branch = 0) {
-    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
-            sense};
-  }
   bool may_stick() const { return rest_ == ContactState::stick; }
-  bool sliding() const { return slips(does.state); }
   bool stuck() const { return does.state == ContactState::stick; }
-  bool elastic() const { return !Surface::plain && does.state == ContactState::elastic_stick; }
-  bool oblique() const { return !Surface::plain && does.state == ContactState::slip_oblique; }
-  Branch<T> branch() const { return contact.branch(does.branch); }
-  T stick_limit() const { return contact.static_limit * load.value; }  ///< N
+  bool oblique() const { return does.state == ContactState::slip_oblique; }
   /// Whether nothing but its relative acceleration tells where it goes.
   bool rests(T v) const {
     if (does.at == Bound::none || oblique()) return false;
@@ -51,11 +35,18 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
   void begin(State<T>& s, bool stretched) {
     const T u = s.v - surface.value, size = u < 0 ? -u : u;
     if (!contact.present() || (!contact.rigid() && load.value == 0)) return;
-    const bool elastic = !contact.rigid() && (stretched || s.v == 0);
-    does.state = elastic ? ContactState::elastic_stick : ContactState::stick;
-    if (elastic || u == 0) return;
+    const bool skin = !contact.rigid() && (stretched || s.v == 0);
+    does.state = skin ? ContactState::elastic_stick : ContactState::stick;
+    if (skin || u == 0) return;
     does = slip(u / size, Bound::none, contact.branch_of(size));
     if (lags()) this->begin_slider(s, size);
+  }
+
+  /// Without a load for ever it is absent.
+  void take_off(const Profile<T>& given) {
+    if (!given.constant() || given.first() != 0) return;
+    contact = {};
+    does = {};
   }
 
   /// Finds out what it may do. A speed that has reached no bound and is not inside its branch is at the end
@@ -67,8 +58,7 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
     reached = Bound::none;
     rest_ = ContactState::absent;
     const T u = s.v - surface.value;
-    bool across_too = false;
-    if constexpr (!Surface::plain) across_too = asks_across(*this, u, at_);
+    const bool across_too = asks_across(*this, u, at_);
     goes_on_ = does.state;
     sense_ = does.sense;
     branch_ = does.branch;
@@ -119,22 +109,20 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
   }
   /// … how fast it changes on a pin of this acceleration, how large the terms of that rate are, as its slope
   /// is known to rounding only, and how fast the rate changes while the acceleration is constant.
-  struct Rate {
-    T value{0}, size{0}, bend{0};
-  };
+  using Rate = ForceRate<T>;
   Rate force_rate(T v, T acceleration) const {
     using std::abs;
     const T stretching = contact.stiffness * v;
     if (elastic()) return {-stretching, abs(stretching), -contact.stiffness * acceleration};
     if (!sliding()) return {};
-    if (lags()) return this->template slip_rate<Rate>(v, acceleration);
+    if (lags()) return this->slip_rate(v, acceleration);
     const Branch<T> range = branch();
     const T faster = acceleration - surface.rate;
     T rate{}, bend{};
     if (oblique()) {
-      const ObliqueSlip<T> slip = slides(v, acceleration);
-      rate = slip.force_rate(range, load);
-      bend = slip.force_bend(range, load);
+      const ObliqueSlip<T> speed = slides(v, acceleration);
+      rate = speed.force_rate(range, load);
+      bend = speed.force_bend(range, load);
     } else {
       rate = -range.slope * load.value * faster - does.sense * friction * load.rate;
       bend = -2 * range.slope * load.rate * faster;
@@ -179,10 +167,10 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
   bool goes_inside(const State<T>& s, T first, T second = T(0), T third = T(0)) const {
     if (does.at == Bound::none) return true;
     if (oblique()) {
-      const ObliqueSlip<T> slip = slides(s.v, surface.rate + first);
-      const T closing = slip.closing(), known = slip.rounding_of(surface.value);
-      const bool turns = closing == 0 || touches(closing, slip.parting(), known);
-      const T faster = turns ? slip.parting() : closing;
+      const ObliqueSlip<T> speed = slides(s.v, surface.rate + first);
+      const T closing = speed.closing(), known = speed.rounding_of(surface.value);
+      const bool turns = closing == 0 || touches(closing, speed.parting(), known);
+      const T faster = turns ? speed.parting() : closing;
       return (does.at == Bound::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;
@@ -204,14 +192,7 @@ struct Touch : SliderOf<Touch<T, Surface>, T, Surface> {
   }
 
  private:
-  friend OfSlider;
-  ContactState goes_on_{
-      ContactState::absent};  ///< what it does unless it comes to an end of its range,
-  T sense_{0};                ///< in which direction it slips then,
-  int branch_{0};             ///< on which branch,
-  Bound at_{Bound::none};     ///< and the end of its range that it is at now
-  ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
-  Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
+  using Base::goes_on_, Base::sense_, Base::branch_, Base::at_, Base::rest_, Base::parts_;
 };
 
 }  // namespace pindrive::detail

@@ -58,8 +58,7 @@ class Guards {
     if (stick_force) forces_ = count_;
   }
   /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
-  template <class Surface>
-  void add(const Touch<T, Surface>& side, const Segment<T>& segment, bool plate) {
+  void add(const Touch<T>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.stick_limit(), T(0)};
       const int near = -sense(segment.finger_force);

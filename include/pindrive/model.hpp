@@ -72,8 +72,9 @@ struct Contact {
   const Branch<T>* curve{nullptr};
   int branches{0};
 
-  static constexpr bool plain = false;
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+  /// Whether the slider may lag behind the pin: that of skin on a friction curve.
+  bool may_lag() const { return branches > 0 && !rigid(); }
   Branch<T> branch(int index) const {
     if (branches == 0) return {T(0), std::numeric_limits<T>::infinity(), kinetic, T(0), T(0)};
     return curve[index];
@@ -86,21 +87,6 @@ struct Contact {
   bool present() const {
     return static_limit > 0 || branches > 1 || (branches == 1 && curve[0].slope > 0);
   }
-};
-
-/// The contact of most studies: rigid, with one friction at every speed. Its type says what it lacks,
-/// so that nothing is computed for it.
-template <class T>
-struct Coulomb {
-  T kinetic{0}, static_limit{0};
-
-  static constexpr bool plain = true;  ///< neither a curve nor skin
-  static constexpr int branches = 0;
-  static constexpr T stiffness = std::numeric_limits<T>::infinity();
-  static constexpr bool rigid() { return true; }
-  Branch<T> branch(int) const { return {T(0), stiffness, kinetic, T(0), T(0)}; }
-  static constexpr int branch_of(T) { return 0; }
-  bool present() const { return static_limit > 0; }
 };
 
 /// End stops of the pin's travel, which push it and never pull: rigid and plastic, or elastic.
@@ -116,29 +102,49 @@ struct Stops {
   T within(T x) const { return !rigid() ? x : x < -travel ? -travel : travel < x ? travel : x; }
 };
 
-template <class T, class Surface = Contact<T>>
+template <class T>
 struct Drive {
-  T mass;                 ///< electromagnet and pin, kg; > 0
-  T stiffness;            ///< spring, N/m; > 0
-  T damping;              ///< damper, N s/m; >= 0
-  Surface plate, finger;  ///< the plate is rigid
+  T mass;                    ///< electromagnet and pin, kg; > 0
+  T stiffness;               ///< spring, N/m; > 0
+  T damping;                 ///< damper, N s/m; >= 0
+  Contact<T> plate, finger;  ///< the plate is rigid
   Stops<T> stops{};
 };
 
-/// An input over time: linear between its rows, constant outside. It owns nothing.
+/// An input that goes on at its rate from the time at which it was set; at no rate it is a constant.
+template <class T>
+struct Held {
+  T since{0};                                  ///< s
+  Line<T> line{};                              ///< from then on
+  T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
+
+  Held() = default;
+  constexpr Held(T constant) noexcept : line{constant, T(0)} {}  // NOLINT: a number is an input
+  Held(T begin, const Line<T>& from_there) noexcept : since(begin), line(from_there) {}
+
+  Line<T> from(T t) const {
+    if (t >= ends) return {};
+    return {line.at(t - since), line.rate};
+  }
+  T next_row(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
+};
+
+/// An input over time: held, or linear between its rows and constant outside. It owns nothing.
 template <class T>
 class Profile {
  public:
-  constexpr Profile(T constant) noexcept : constant_(constant) {}  // NOLINT: a number is a profile
+  constexpr Profile(T constant) noexcept : held_(constant) {}       // NOLINT: a number is a profile
+  constexpr Profile(const Held<T>& line) noexcept : held_(line) {}  // NOLINT: so is what is held
+  Profile(T since, const Line<T>& from_there) noexcept : held_(since, from_there) {}
   /// count >= 1 rows, times strictly increasing.
   Profile(const T* times, const T* values, std::size_t count)
-      : constant_(values[0]), times_(times), values_(values), count_(count) {}
+      : held_(values[0]), times_(times), values_(values), count_(count) {}
 
   /// Value and rate from time t on, until the next row.
   Line<T> from(T t) const {
-    if (constant()) return {constant_, T(0)};
+    if (count_ == 0) return held_.from(t);
     const std::size_t i = rows_until(t);
-    if (i == 0) return {constant_, T(0)};
+    if (i == 0) return {first(), T(0)};
     if (i == count_) return {values_[count_ - 1], T(0)};
     const T rate = (values_[i] - values_[i - 1]) / (times_[i] - times_[i - 1]);
     const T after = t - times_[i - 1];  // what lies after a row by the rounding of a time is at it
@@ -146,48 +152,41 @@ class Profile {
   }
   /// The first row after time t; infinite when there is none.
   T next_row(T t) const {
-    if (constant()) return std::numeric_limits<T>::infinity();
+    if (count_ == 0) return held_.next_row(t);
     const std::size_t i = rows_until(t);
     return i == count_ ? std::numeric_limits<T>::infinity() : times_[i];
   }
-  bool constant() const { return count_ == 0; }
-  T first() const { return constant_; }  ///< its value until its first row
+  bool constant() const { return count_ == 0 && held_.line.rate == 0; }
+  T first() const { return held_.line.value; }  ///< its value until its first row
+
+  Held<T>& held() { return held_; }  ///< of an input without rows
+  const Held<T>& held() const { return held_; }
 
  private:
   std::size_t rows_until(T t) const {
     return static_cast<std::size_t>(std::upper_bound(times_, times_ + count_, t) - times_);
   }
 
-  T constant_;
+  Held<T> held_;  ///< without rows; before the first, a constant
   const T* times_{nullptr};
   const T* values_{nullptr};
   std::size_t count_{0};
 };
 
-/// An input that stays as it is.
-template <class T>
-struct Constant {
-  T value;
-
-  Line<T> from(T) const { return {value, T(0)}; }
-  static constexpr T next_row(T) { return std::numeric_limits<T>::infinity(); }
-  static constexpr bool constant() { return true; }
-};
-
 /// The release at t = 0 and what happens after it.
-template <class T, class Input = Profile<T>>
+template <class T>
 struct Inputs {
-  Input mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
-  T displacement;        ///< x(0), m
-  T velocity;            ///< x'(0), m/s
+  Profile<T> mouse_velocity;  ///< v_p: the plate's velocity in the housing's frame, m/s
+  T displacement;             ///< x(0), m
+  T velocity;                 ///< x'(0), m/s
   T duration{std::numeric_limits<T>::infinity()};  ///< s; infinite: until the ending is known
-  Input plate_load{T(1)};                          ///< factor on the plate's friction; >= 0
+  Profile<T> plate_load{T(1)};                     ///< factor on the plate's friction; >= 0
   /// Stretch of a compliant finger, m; NaN: as it slides or, at rest, none.
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
-  Input force{T(0)};            ///< on the pin from outside, N
-  Input across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
-  Input finger_load{T(1)};      ///< factor on the finger's friction; >= 0, constant where that is
-                                ///< compliant or has a curve
+  Profile<T> force{T(0)};            ///< on the pin from outside, N
+  Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
+  Profile<T> finger_load{T(1)};  ///< factor on the finger's friction; >= 0, constant where that is
+                                 ///< compliant or has a curve
 };
 
 /// What a contact does: it slips with one sign of its sliding velocity or the other, sticks, is
@@ -251,8 +250,8 @@ struct Event {
 };
 
 /// Whether a rigid stop holds the pin.
-template <class Drive>
-bool held_by_stop(const Drive& drive, const Mode& mode) {
+template <class T>
+bool held_by_stop(const Drive<T>& drive, const Mode& mode) {
   return touches(mode.stop) && drive.stops.rigid();
 }
 

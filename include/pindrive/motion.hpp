@@ -116,8 +116,7 @@ class Motion {
   auto along(const Segment<T>& segment, Visitor&& visit) const {
     const bool bilinear = (drive_.plate.branches > 0 && !inputs_.plate_load.constant()) ||
                           (drive_.finger.branches > 0 && !inputs_.finger_load.constant());
-    const bool lags = drive_.finger.branches > 0 && !drive_.finger.rigid();
-    if (!bilinear && !lags && segment.mode.plate != ContactState::slip_oblique)
+    if (!bilinear && !drive_.finger.may_lag() && segment.mode.plate != ContactState::slip_oblique)
       return visit(ClosedForm<T>(segment));
     return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
   }

@@ -41,9 +41,8 @@ class Return {
   }
   /// Meets such an event between a segment and the mode that follows; if the state has been there before,
   /// says in the outcome what cycle it closes.
-  template <class Drive>
-  void meet(const Drive& drive, const Segment<T>& ended, const Mode& after, const State<T>& state,
-            Outcome<T>& outcome) {
+  void meet(const Drive<T>& drive, const Segment<T>& ended, const Mode& after,
+            const State<T>& state, Outcome<T>& outcome) {
     const bool release = released(ended.mode, after);
     if (release) stick_begin_ = ended.begin;
     const Visit now{ended.end, stick_begin_, state, after, release};
@@ -75,8 +74,7 @@ class Return {
     bool released;  ///< by the plate; kept: since then, too
   };
 
-  template <class Drive>
-  bool same(const Drive& drive, const Visit& now) const {
+  bool same(const Drive<T>& drive, const Visit& now) const {
     using std::abs;
     using std::sqrt;
     const T close = T(return_tolerance) + T(return_tolerance_per_round) * T(visits_);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 
 #include "pindrive/friction.hpp"
 #include "pindrive/guards.hpp"
@@ -15,12 +14,12 @@
 namespace pindrive::detail {
 
 /// The pin and its contacts at an instant, and the mode in which they go on from there.
-template <class T, class Surface>
+template <class T>
 class Selection {
  protected:
-  using Side = Touch<T, Surface>;
+  using Side = Touch<T>;
 
-  Selection(const Drive<T, Surface>& drive, T time, T x, T v)
+  Selection(const Drive<T>& drive, T time, T x, T v)
       : drive_(drive),
         time_(time),
         state_{x, v, T(0), T(0), T(0)},
@@ -42,26 +41,20 @@ class Selection {
     inertia_ = drive_.mass * plate_.surface.rate;
     pull_ = drive_.stiffness * state_.x + drive_.damping * state_.v;
     T size = drive_.stiffness * state_.x_size + drive_.damping * abs(state_.v);
-    if constexpr (!Surface::plain) {
-      inertia_ += force_.value;
-      size += abs(force_.rate) * time_;  // known to the rounding of the time
-      stop_.ask(state_);
-      size += stop_.size(state_);
-    }
+    inertia_ += force_.value;
+    size += abs(force_.rate) * time_;  // known to the rounding of the time
+    stop_.ask(state_);
+    size += stop_.size(state_);
     state_.roundoff =
         rounding<T> * (size + 2 * abs(inertia_) + plate_.size(state_.v) + finger_.size(state_.v));
-    if constexpr (Surface::plain) {
-      return sticks() || slips();
-    } else {
-      const T pull = pull_;
-      for (const bool stick : {true, false})
-        for (int option = 0; option < stop_.count(); ++option) {
-          stop_.take(option);
-          pull_ = pull - stop_.force(state_);
-          if (stop_.holds() ? stick && stays_at_stop() : stick ? sticks() : slips()) return true;
-        }
-      return false;
-    }
+    const T pull = pull_;
+    for (const bool stick : {true, false})
+      for (int option = 0; option < stop_.count(); ++option) {
+        stop_.take(option);
+        pull_ = pull - stop_.force(state_);
+        if (stop_.holds() ? stick && stays_at_stop() : stick ? sticks() : slips()) return true;
+      }
+    return false;
   }
 
   /// The mode that was selected.
@@ -75,11 +68,11 @@ class Selection {
     return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) && !stop_.jumped();
   }
 
-  const Drive<T, Surface>& drive_;
+  const Drive<T>& drive_;
   T time_;  ///< now, s
   State<T> state_;
-  Side plate_, finger_;  ///< in the mode that was selected, …
-  std::conditional_t<Surface::plain, NoStops, EndStops<T>> stop_;  ///< … and the end stops
+  Side plate_, finger_;   ///< in the mode that was selected, …
+  EndStops<T> stop_;      ///< … and the end stops
   int limit_{0};          ///< the side of a stick force that has just come to its limit
   Line<T> force_{};       ///< from outside, N
   T inertia_{}, pull_{};  ///< m v_p' and what acts from outside; k x + b v less a stop's force, N
@@ -91,18 +84,8 @@ class Selection {
 
  private:
   /// Of spring and damper, with a stop that pushes.
-  T stiffness() const {
-    if constexpr (Surface::plain)
-      return drive_.stiffness;
-    else
-      return drive_.stiffness + stop_.stiffness();
-  }
-  T damping() const {
-    if constexpr (Surface::plain)
-      return drive_.damping;
-    else
-      return drive_.damping + stop_.damping();
-  }
+  T stiffness() const { return drive_.stiffness + stop_.stiffness(); }
+  T damping() const { return drive_.damping + stop_.damping(); }
 
   /// Whether the finger is asked before the plate.
   bool finger_first() const {
@@ -180,10 +163,8 @@ class Selection {
     const auto rate = other.force_rate(state_.v, a);
     size = abs(spring) + abs(damper) + rate.size;
     T drift = spring + damper - rate.value;
-    if constexpr (!Surface::plain) {
-      drift -= force_.rate;
-      size += abs(force_.rate);
-    }
+    drift -= force_.rate;
+    size += abs(force_.rate);
     return {force, T(0), T(0), drift, stiffness() * a - rate.bend};
   }
 
@@ -192,8 +173,7 @@ class Selection {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
-    if constexpr (!Surface::plain)
-      if (!stop_.allows(state_.v, on.surface.rate, T(0))) return false;
+    if (!stop_.allows(state_.v, on.surface.rate, T(0))) return false;
     const T of_on = on.contact.static_limit;
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
@@ -226,9 +206,8 @@ class Selection {
     tangential_ = false;
     guards_.clear();
     const T finger = finger_.force(state_);
-    if constexpr (!Surface::plain)
-      if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
-        plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
+    if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
+      plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
     const T plate = plate_.force(state_);
     acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
@@ -242,8 +221,7 @@ class Selection {
       return force;
     };
     const T at_plate = parts(plate_, plate, finger), at_finger = parts(finger_, finger, plate);
-    if constexpr (!Surface::plain)
-      if (stop_.ask_further() && !leaves_stop()) return false;
+    if (stop_.ask_further() && !leaves_stop()) return false;
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (side.oblique()) return side.goes_inside(state_, acceleration_ - side.surface.rate);
       if (!tangential_) return side.goes_inside(state_, force);

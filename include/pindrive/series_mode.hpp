@@ -29,8 +29,7 @@ struct InputLines {
             later(finger_load)};
   }
   /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
-  template <class Input>
-  static InputLines of(const Inputs<T, Input>& inputs, const Segment<T>& segment) {
+  static InputLines of(const Inputs<T>& inputs, const Segment<T>& segment) {
     return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
             across_from(inputs.across_velocity, segment.begin, segment.plate_velocity),
             inputs.force.from(segment.begin), inputs.finger_load.from(segment.begin)};
@@ -38,8 +37,7 @@ struct InputLines {
   /// A velocity across from a time on, of a plate that moves like this along the axis. Where it is within some
   /// roundings of both, it is zero: the nearer to it, the shorter are the steps of a pin that comes to rest on
   /// the plate at once.
-  template <class Input>
-  static Line<T> across_from(const Input& across_velocity, T time, const Line<T>& along) {
+  static Line<T> across_from(const Profile<T>& across_velocity, T time, const Line<T>& along) {
     using std::abs;
     Line<T> line = across_velocity.from(time);
     const T changes = time * (abs(line.rate) + abs(along.rate));

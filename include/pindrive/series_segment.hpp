@@ -107,9 +107,4 @@ class SeriesSegment {
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
 
-/// Contacts without friction curves have closed forms only.
-struct NoSeries {
-  static constexpr bool used() { return false; }
-};
-
 }  // namespace pindrive::detail

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "pindrive/flow.hpp"
 #include "pindrive/friction.hpp"
@@ -25,11 +24,12 @@ namespace pindrive::detail {
 
 /// Follows one pin from its release and hands each segment to the sink, in order of time; a sink may
 /// return false to stop.
-template <class T, class Surface = Contact<T>, class Input = Profile<T>>
-class Simulation : private Selection<T, Surface> {
+template <class T>
+class Simulation : private Selection<T> {
  public:
-  Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs)
-      : Simulation(drive, inputs, T(0)) {
+  Simulation(const Drive<T>& drive, const Inputs<T>& inputs) : Simulation(drive, inputs, T(0)) {
+    plate_.take_off(inputs.plate_load);
+    finger_.take_off(inputs.finger_load);
     select();
   }
 
@@ -47,10 +47,8 @@ class Simulation : private Selection<T, Surface> {
         const Mode after = mode();
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
-        if constexpr (!Surface::plain) {
-          segment.event.stop = change(segment.mode.stop, after.stop, struck_);
-          if (finger_.drops()) segment.event.finger = Transition::slip;
-        }
+        segment.event.stop = change(segment.mode.stop, after.stop, struck_);
+        if (finger_.drops()) segment.event.finger = Transition::slip;
         if (Return<T>::watches(segment.mode, after) && !(row_ < never))
           returns_.meet(drive_, segment, after, state_, outcome_);
       } else if (tau == never) {
@@ -77,7 +75,7 @@ class Simulation : private Selection<T, Surface> {
  private:
   friend class pindrive::Stepper<T>;
   static constexpr T never = std::numeric_limits<T>::infinity();
-  using Selected = Selection<T, Surface>;
+  using Selected = Selection<T>;
   using Selected::drive_, Selected::state_, Selected::plate_, Selected::finger_, Selected::limit_;
   using Selected::stop_, Selected::stick_force_, Selected::guards_, Selected::mode,
       Selected::continues;
@@ -86,7 +84,7 @@ class Simulation : private Selection<T, Surface> {
   using typename Selected::Side;
 
   /// A release at a time, of which the first mode is still to be selected.
-  Simulation(const Drive<T, Surface>& drive, const Inputs<T, Input>& inputs, T begin)
+  Simulation(const Drive<T>& drive, const Inputs<T>& inputs, T begin)
       : Selected(drive, begin, inputs.displacement, inputs.velocity),
         inputs_(inputs),
         plain_(drive.mass, drive.damping, drive.stiffness),
@@ -96,7 +94,7 @@ class Simulation : private Selection<T, Surface> {
     look_ahead();
     const bool given = !isnan(inputs.skin_stretch);
     if (given) state_.skin = drive.finger.stiffness * inputs.skin_stretch;
-    if constexpr (!Surface::plain) stop_.begin(state_);
+    stop_.begin(state_);
     plate_.begin(state_, false);
     finger_.begin(state_, given);
   }
@@ -104,7 +102,7 @@ class Simulation : private Selection<T, Surface> {
   /// Flat, as calls would cost a plain release a tenth of its time.
   [[gnu::flatten]] void select() {
     if (!Selected::select()) outcome_.status = Status::inconsistent;
-    if constexpr (!Surface::plain) finger_.land(state_);
+    finger_.land(state_);
   }
 
   /// The segment of the mode that was selected, and its guards.
@@ -116,11 +114,10 @@ class Simulation : private Selection<T, Surface> {
     segment.event = {};
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
-    if constexpr (!Surface::plain)
-      if (series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
-                        continues() ? limit_ : 0, stop_.no_push(),
-                        std::min(row_, inputs_.duration) - time_))
-        return;
+    if (series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
+                      continues() ? limit_ : 0, stop_.no_push(),
+                      std::min(row_, inputs_.duration) - time_))
+      return;
     segment.flow = flow(plate, finger);
     segment.plate_force = plate.along(segment.flow);
     segment.finger_force = finger.along(segment.flow);
@@ -130,8 +127,7 @@ class Simulation : private Selection<T, Surface> {
       segment.finger_force = stick_force_;
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
-    if constexpr (!Surface::plain)
-      if (!stop_.holds()) stop_.add_guards(guards_, state_, segment.flow);
+    if (!stop_.holds()) stop_.add_guards(guards_, state_, segment.flow);
   }
 
   Flow<T> flow(const Force<T>& plate, const Force<T>& finger) const {
@@ -144,12 +140,10 @@ class Simulation : private Selection<T, Surface> {
     T stiffness = drive_.stiffness + plate.stiffness + finger.stiffness;
     T pull = inertia_ - drive_.stiffness * s.x + plate.constant.value + finger.constant.value;
     T rate = plate.constant.rate + finger.constant.rate;
-    if constexpr (!Surface::plain) {
-      rate += force_.rate;
-      damping += stop_.damping();
-      stiffness += stop_.stiffness();
-      pull += stop_.spring_force(s);
-    }
+    rate += force_.rate;
+    damping += stop_.damping();
+    stiffness += stop_.stiffness();
+    pull += stop_.spring_force(s);
     Oscillator<T> oscillator = plain_;
     if (!linear()) {
       // A damper that falling friction cancels to rounding neither damps nor drives.
@@ -168,15 +162,14 @@ class Simulation : private Selection<T, Surface> {
   }
 
   bool linear() const {  // no contact damps or stiffens
-    return Surface::plain || (!finger_.elastic() && !stop_.pushes() && drive_.plate.branches == 0 &&
-                              drive_.finger.branches == 0);
+    return !finger_.elastic() && !stop_.pushes() && drive_.plate.branches == 0 &&
+           drive_.finger.branches == 0;
   }
 
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
     const T row = row_ - time_;
-    if constexpr (!Surface::plain)
-      if (series_.used()) return series_.earliest(time_, row);
+    if (series_.used()) return series_.earliest(time_, row);
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
     const T end = guards_.first_event(flow.oscillator, time_, limit, limit == row, state_.roundoff);
@@ -187,7 +180,7 @@ class Simulation : private Selection<T, Surface> {
   void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    if constexpr (!Surface::plain) series_.move(state_, drive_, finger_, tau);
+    series_.move(state_, drive_, finger_, tau);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
@@ -203,8 +196,7 @@ class Simulation : private Selection<T, Surface> {
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
-      if constexpr (!Surface::plain)
-        if (meets_stop(guard, row)) continue;
+      if (meets_stop(guard, row)) continue;
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
@@ -225,11 +217,9 @@ class Simulation : private Selection<T, Surface> {
     }
     if (on_plate && on_finger) plate_.surface.value = T(0);
     if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
-    if constexpr (!Surface::plain) {
-      if (finger_.sliding() && !drive_.finger.rigid()) state_.skin = finger_.skin_force(state_);
-      land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
-      if (stop_.settles(state_) || struck_) begin_at_stop();
-    }
+    if (finger_.sliding() && !drive_.finger.rigid()) state_.skin = finger_.skin_force(state_);
+    land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
+    if (stop_.settles(state_) || struck_) begin_at_stop();
   }
 
   /// Whether a guard was one of the stops, which is then exactly where it has come to.
@@ -258,26 +248,24 @@ class Simulation : private Selection<T, Surface> {
     for (;; time_ = row_) {
       plate_.surface = inputs_.mouse_velocity.from(time_);
       plate_.load = inputs_.plate_load.from(time_);
-      row_ = std::min(inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_));
-      if constexpr (!Surface::plain) {
-        finger_.load = inputs_.finger_load.from(time_);
-        force_ = inputs_.force.from(time_);
-        plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_, plate_.surface);
-        row_ = std::min({row_, inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
-                         inputs_.across_velocity.next_row(time_)});
-      }
+      finger_.load = inputs_.finger_load.from(time_);
+      force_ = inputs_.force.from(time_);
+      plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_, plate_.surface);
+      row_ = std::min({inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_),
+                       inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
+                       inputs_.across_velocity.next_row(time_)});
       if (row_ - time_ > rounding<T> * time_) return;
     }
   }
 
-  const Inputs<T, Input>& inputs_;
+  const Inputs<T>& inputs_;
   Oscillator<T> plain_;      ///< of a pin on which no contact acts but with a constant force,
   T half_period_;            ///< from one zero of its velocity to the next,
   Propagator<T> half_turn_;  ///< and how it has moved on there
 
   T row_{never};        ///< time of the next row of an input, s
   bool struck_{false};  ///< a rigid stop, just now
-  std::conditional_t<Surface::plain, NoSeries, SeriesSegment<T>> series_;
+  SeriesSegment<T> series_;
 
   Return<T> returns_;
   Outcome<T> outcome_{};

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
@@ -96,12 +95,6 @@ class Slider {
   Pin pin_;
 };
 
-/// That of a contact without skin.
-struct NoLanding {
-  static constexpr int speed = 0, friction = 0;
-  static constexpr bool drops = false;
-};
-
 /// What a contact may do.
 template <class T>
 struct TouchOption {
@@ -111,154 +104,182 @@ struct TouchOption {
   T sense{0};  ///< in which it slips: 1, −1 or 0
 };
 
-/// What a compliant contact has beside a rigid one: the part of `Touch` that knows its slider.
-template <class Touch, class T, class Surface>
-class SliderOf {
-  friend Touch;
-  SliderOf() = default;
+/// The rate of a force, how large the terms of that rate are, as its slope is known to rounding only, and how
+/// fast the rate changes while the acceleration is constant.
+template <class T>
+struct ForceRate {
+  T value{0}, size{0}, bend{0};
+};
 
+/// A contact at an instant: its surface and its load from here on, and what it does.
+template <class T>
+struct TouchState {
+  explicit TouchState(const Contact<T>& given) : contact(given) {}
+
+  Contact<T> contact;
+  Line<T> surface{}, load{T(1), T(0)}, across{};
+  TouchOption<T> does{};
+  ContactState before{};       ///< what it did until the last event, …
+  Bound reached{Bound::none};  ///< … and the end of its branch that its speed came to there
+  int count{0};                ///< of its options
+  T friction{0};   ///< how large its friction is at its sliding speed under a load of 1, N
+  T direction{0};  ///< of an oblique slip, along the axis: u/√(u² + w²)
+
+  static TouchOption<T> slip(T sense, Bound at, int branch = 0) {
+    return {sense > 0 ? ContactState::slip_forward : ContactState::slip_backward, at, branch,
+            sense};
+  }
+  bool sliding() const { return slips(does.state); }
+  bool elastic() const { return does.state == ContactState::elastic_stick; }
+  Branch<T> branch() const { return contact.branch(does.branch); }
+  T stick_limit() const { return contact.static_limit * load.value; }  ///< N
+
+ protected:
+  ContactState goes_on_{
+      ContactState::absent};  ///< what it does unless it comes to an end of its range,
+  T sense_{0};                ///< in which direction it slips then,
+  int branch_{0};             ///< on which branch,
+  Bound at_{Bound::none};     ///< and the end of its range that it is at now
+  ContactState rest_{ContactState::absent};  ///< how it can stick, or absent
+  Bound parts_{Bound::none};                 ///< where it is on its branch if it slips from there
+};
+
+/// What a compliant contact has beside a rigid one: the part of `Touch` that knows its slider.
+template <class T>
+class SlidingSkin : public TouchState<T> {
  public:
+  using Base = TouchState<T>;
+  using Base::Base, Base::contact, Base::surface, Base::load, Base::does, Base::before, Base::count;
+  using Base::friction, Base::slip, Base::sliding, Base::elastic, Base::branch, Base::stick_limit;
+
   /// Whether the velocity of its slider is a state of its own, beside that of the pin.
-  bool lags() const { return compliant() && self().sliding() && self().branch().slope != 0; }
+  bool lags() const { return contact.may_lag() && sliding() && branch().slope != 0; }
   /// The speed of its slider, which lags; along its slip.
   T slide() const { return landed() ? T(landing_.speed) : slid_; }
   /// By how much the pin is faster than that.
-  T gap(T v) const { return meets_ && slide() == slid_ ? T(0) : self().does.sense * v - slide(); }
+  T gap(T v) const { return meets_ && slide() == slid_ ? T(0) : does.sense * v - slide(); }
   /// Whether its skin has become shorter at once.
   bool drops() const { return landed() && landing_.drops; }
 
   /// What it stretches its skin with as it slips, N.
   T skin_force(const State<T>& s) const {
-    const Branch<T> range = self().branch();
-    const T sense = self().does.sense;
-    return sense * range.at(lags() ? sense * s.slide : range.from) * self().load.value;
+    const Branch<T> range = branch();
+    const T sense = does.sense;
+    return sense * range.at(lags() ? sense * s.slide : range.from) * load.value;
   }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {
     if (drops()) s.skin = grip(s);
-    if (lags()) s.slide = self().does.sense * slide();
+    if (lags()) s.slide = does.sense * slide();
   }
 
  protected:
   /// Its friction under a load of 1 in what it does, N.
-  T carried() const { return landed() ? T(landing_.friction) : self().friction; }
+  T carried() const { return landed() ? T(landing_.friction) : friction; }
   /// The force that stretches its skin where it does not slip, N.
   T grip(const State<T>& s) const {
-    return drops() ? (s.skin < 0 ? T(-1) : T(1)) * carried() * self().load.value : s.skin;
+    return drops() ? (s.skin < 0 ? T(-1) : T(1)) * carried() * load.value : s.skin;
   }
   /// The rate of its force where its slider lags: the skin stretches by what the pin is faster.
-  template <class Rate>
-  Rate slip_rate(T v, T acceleration) const {
+  ForceRate<T> slip_rate(T v, T acceleration) const {
     using std::abs;
-    const T stiffness = self().contact.stiffness, sense = self().does.sense;
-    const T faster = stiffness * gap(v) / (self().branch().slope * self().load.value);
+    const T stiffness = contact.stiffness, sense = does.sense;
+    const T faster = stiffness * gap(v) / (branch().slope * load.value);
     return {-stiffness * (v - sense * slide()), stiffness * (abs(v) + slide()),
             -stiffness * (acceleration - sense * faster)};
   }
   /// What its slope multiplies, at most.
   T fastest(T v) const {
     using std::abs;
-    return lags() ? self().branch().from + slid_ : abs(v) + abs(self().surface.value);
+    return lags() ? branch().from + slid_ : abs(v) + abs(surface.value);
   }
 
   bool breaks() const { return compliant() && breaks_; }
   /// Whether it has neither force nor static friction, so that it may slip either way.
   bool either_way() const { return compliant() && either_way_; }
   TouchOption<T> after_landing(T sense) const {
-    if constexpr (!Surface::plain) {
-      if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
-      return Touch::slip(sense, landing_.at, landing_.branch);
-    } else {
-      return Touch::slip(sense, Bound::none);
-    }
+    if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
+    return slip(sense, landing_.at, landing_.branch);
   }
 
   /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
   void begin_slider(State<T>& s, T speed) {
-    if constexpr (!Surface::plain) {
-      auto& does = self().does;
-      const Branch<T> range = self().branch();
-      const T asked = range.at(speed);
-      slid_ = speed;
-      s.skin = does.sense * asked * self().load.value;
-      if (range.slope < 0) {
-        landing_ = slider(does.sense, does.sense * speed).slower(does.branch, asked);
-        slid_ = landing_.speed;
-        does = after_landing(does.sense);
-        does.at = Bound::none;
-      }
-      s.slide = does.sense * slid_;
+    const Branch<T> range = branch();
+    const T asked = range.at(speed);
+    slid_ = speed;
+    s.skin = does.sense * asked * load.value;
+    if (range.slope < 0) {
+      landing_ = slider(does.sense, does.sense * speed).slower(does.branch, asked);
+      slid_ = landing_.speed;
+      does = after_landing(does.sense);
+      does.at = Bound::none;
     }
+    s.slide = does.sense * slid_;
   }
 
   /// Finds out what it may do.
   void ask_slider(const State<T>& s, T u) {
-    if constexpr (!Surface::plain) {
-      Touch& touch = self();
-      Bound& at = touch.at_;
-      breaks_ = false;
-      meets_ = touch.sliding() && !lags();
-      if (touch.sliding()) {
-        const Branch<T> range = touch.branch();
-        const T speed = touch.sense_ * (lags() ? s.slide : u);
-        const Bound before = at;
-        if (at == Bound::none && speed >= range.to) at = Bound::upper;
-        if (at == Bound::none && !(speed > range.from)) at = Bound::lower;
-        // A pin whose velocity has jumped takes along a slider that does not lag.
-        const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
-        breaks_ = meets_ && before == Bound::none && at != Bound::none &&
-                  jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
-        slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
-        touch.friction = range.at(lags() ? slid_ : range.from);
-        if (at == Bound::none) return;
-        if (at == Bound::upper || touch.branch_ > 0) {
-          const int beyond = touch.branch_ + (at == Bound::upper ? 1 : 0);
-          const T asked = touch.friction = touch.contact.branch(beyond).force;
-          const auto goes = slider(touch.sense_, u);
-          landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
-          touch.count = breaks_ ? 1 : 2;
-          if (at == Bound::upper || !landing_.grips || asked < touch.contact.static_limit) return;
-        }
+    Bound& at = at_;
+    breaks_ = false;
+    meets_ = sliding() && !lags();
+    if (sliding()) {
+      const Branch<T> range = branch();
+      const T speed = sense_ * (lags() ? s.slide : u);
+      const Bound came_to = at;
+      if (at == Bound::none && speed >= range.to) at = Bound::upper;
+      if (at == Bound::none && !(speed > range.from)) at = Bound::lower;
+      // A pin whose velocity has jumped takes along a slider that does not lag.
+      const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
+      breaks_ = meets_ && came_to == Bound::none && at != Bound::none &&
+                jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
+      slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
+      friction = range.at(lags() ? slid_ : range.from);
+      if (at == Bound::none) return;
+      if (at == Bound::upper || branch_ > 0) {
+        const int beyond = branch_ + (at == Bound::upper ? 1 : 0);
+        const T asked = friction = contact.branch(beyond).force;
+        const auto goes = slider(sense_, u);
+        landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
+        count = breaks_ ? 1 : 2;
+        if (at == Bound::upper || !landing_.grips || asked < contact.static_limit) return;
       }
-      touch.friction = touch.contact.branch(0).force;
-      touch.count = 1;
-      breaks_ = false;
-      if (touch.before == ContactState::absent) return;
-      at = Bound::none;
-      touch.rest_ = ContactState::elastic_stick;  // with the force that it has
-      const T most = touch.stick_limit();
-      either_way_ = !(most > 0) && s.skin == 0;
-      touch.sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
-      const T pulls = -touch.sense_ * s.skin;
-      if (pulls < most || touch.sense_ * u > 0) return;
-      at = Bound::upper;
-      breaks_ = pulls > most + rounding<T> * most + s.roundoff;
-      landing_ = slider(-touch.sense_, u)
-                     .faster(0, breaks_ ? pulls / touch.load.value : touch.contact.static_limit);
-      touch.count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
     }
+    friction = contact.branch(0).force;
+    count = 1;
+    breaks_ = false;
+    if (before == ContactState::absent) return;
+    at = Bound::none;
+    rest_ = ContactState::elastic_stick;  // with the force that it has
+    const T most = stick_limit();
+    either_way_ = !(most > 0) && s.skin == 0;
+    sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
+    const T pulls = -sense_ * s.skin;
+    if (pulls < most || sense_ * u > 0) return;
+    at = Bound::upper;
+    breaks_ = pulls > most + rounding<T> * most + s.roundoff;
+    landing_ = slider(-sense_, u).faster(0, breaks_ ? pulls / load.value : contact.static_limit);
+    count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
   }
 
+ protected:
+  using Base::at_, Base::branch_, Base::rest_, Base::sense_;
+
  private:
-  const Touch& self() const { return static_cast<const Touch&>(*this); }
-  Touch& self() { return static_cast<Touch&>(*this); }
-  bool compliant() const { return !Surface::plain && !self().contact.rigid(); }
+  bool compliant() const { return !contact.rigid(); }
   auto slider(T sense, T u) const {
-    return Slider(self().contact, [=](T) { return sense * u; });
+    return Slider(contact, [=](T) { return sense * u; });
   }
 
   /// Whether what it does is where its slider has come to at once.
   bool landed() const {
     if (!compliant()) return false;
-    const auto& does = self().does;
-    const bool rests = self().rest_ == ContactState::elastic_stick;
-    const bool elsewhere =
-        rests ? self().sliding() : self().elastic() || does.branch != self().branch_;
-    return breaks_ || does.at != self().at_ || elsewhere;
+    const bool rests = rest_ == ContactState::elastic_stick;
+    const bool elsewhere = rests ? sliding() : elastic() || does.branch != branch_;
+    return breaks_ || does.at != at_ || elsewhere;
   }
 
-  T slid_{0};  ///< the speed of the slider until now, …
-  std::conditional_t<Surface::plain, NoLanding, Landing<T>> landing_{};  ///< … where it comes to, …
+  T slid_{0};                               ///< the speed of the slider until now, …
+  Landing<T> landing_{};                    ///< … where it comes to, …
   bool either_way_{false}, breaks_{false};  ///< … whether it could not but go there, …
   bool meets_{false};                       ///< … and whether it had the speed of the pin
 };

@@ -17,29 +17,10 @@
 
 namespace pindrive {
 
-/// An input that goes on at its rate from the time at which it was set.
-template <class T>
-struct Held {
-  T since{0};                                  ///< s
-  Line<T> line{};                              ///< from then on
-  T ends{std::numeric_limits<T>::infinity()};  ///< when it has come to zero and stays there, s
-
-  Held() = default;
-  Held(T constant) noexcept : line{constant, T(0)} {}  // NOLINT: as of a Profile
-  Held(T begin, const Line<T>& from_there) noexcept : since(begin), line(from_there) {}
-
-  Line<T> from(T t) const {
-    if (t >= ends) return {};
-    return {line.at(t - since), line.rate};
-  }
-  T next_row(T t) const { return t < ends ? ends : std::numeric_limits<T>::infinity(); }
-  static constexpr bool constant() { return false; }
-};
-
 template <class T>
 class Stepper {
-  using Simulation = detail::Simulation<T, Contact<T>, Held<T>>;
-  using Option = typename detail::Touch<T, Contact<T>>::Option;
+  using Simulation = detail::Simulation<T>;
+  using Option = typename detail::Touch<T>::Option;
 
  public:
   /// All that it goes on with: a stepper made of it gives the same bits.
@@ -62,7 +43,7 @@ class Stepper {
 
   /// A release at the time `begin`, s. The duration of its inputs does not matter: it has no end. The drive's
   /// friction curves stay where they are.
-  Stepper(const Drive<T>& drive, const Inputs<T, Held<T>>& inputs, T begin = T(0))
+  Stepper(const Drive<T>& drive, const Inputs<T>& inputs, T begin = T(0))
       : drive_(drive),
         inputs_(without_end(inputs)),
         simulation_(drive_, inputs_, begin),
@@ -87,11 +68,11 @@ class Stepper {
   State state() const {
     State found = last_;
     found.now = now_;
-    found.mouse_velocity = inputs_.mouse_velocity;
-    found.plate_load = inputs_.plate_load;
-    found.across_velocity = inputs_.across_velocity;
-    found.force = inputs_.force;
-    found.finger_load = inputs_.finger_load;
+    found.mouse_velocity = inputs_.mouse_velocity.held();
+    found.plate_load = inputs_.plate_load.held();
+    found.across_velocity = inputs_.across_velocity.held();
+    found.force = inputs_.force.held();
+    found.finger_load = inputs_.finger_load.held();
     found.event = event_;
     return found;
   }
@@ -125,9 +106,9 @@ class Stepper {
   /// change that; so it does where the velocity across jumps. A value that differs from the input as it went
   /// on by rounding is the same.
   void set(const InputLines<T>& given) {
-    Held<T>&velocity = inputs_.mouse_velocity, &load = inputs_.plate_load;
-    Held<T>&across = inputs_.across_velocity, &force = inputs_.force;
-    Held<T>& touch = inputs_.finger_load;
+    Held<T>&velocity = inputs_.mouse_velocity.held(), &load = inputs_.plate_load.held();
+    Held<T>&across = inputs_.across_velocity.held(), &force = inputs_.force.held();
+    Held<T>& touch = inputs_.finger_load.held();
     const bool turns = differs(given.plate_velocity, velocity),
                loads = differs(given.plate_load, load);
     const bool drifts = differs(given.across_velocity, across),
@@ -181,9 +162,9 @@ class Stepper {
     if (rate < 0) load.ends = now - value / rate;
     return load;
   }
-  static Inputs<T, Held<T>> without_end(Inputs<T, Held<T>> inputs) {
+  static Inputs<T> without_end(Inputs<T> inputs) {
     inputs.duration = never;
-    for (Held<T>* load : {&inputs.plate_load, &inputs.finger_load})
+    for (Held<T>* load : {&inputs.plate_load.held(), &inputs.finger_load.held()})
       if (!(load->ends < never)) *load = load_from(load->since, load->line.value, load->line.rate);
     return inputs;
   }
@@ -252,7 +233,7 @@ class Stepper {
     if (abs(now_ - simulation_.time_) <= detail::rounding<T> * abs(now_)) {
       restore(last_);
       simulation_.time_ = now_;
-      simulation_.plate_.surface.rate = inputs_.mouse_velocity.line.rate;
+      simulation_.plate_.surface.rate = inputs_.mouse_velocity.held().line.rate;
       take_inputs(now_);
       simulation_.limit_ = 0;
       if (simulation_.stop_.rigid()) simulation_.stop_.released = false;  // its push may jump
@@ -268,7 +249,8 @@ class Stepper {
   void shift(const T& jump) {
     using std::abs;
     auto &plate = simulation_.plate_, &finger = simulation_.finger_;
-    plate.surface.value = moved(plate.surface.value, jump, inputs_.mouse_velocity.line.value);
+    plate.surface.value =
+        moved(plate.surface.value, jump, inputs_.mouse_velocity.held().line.value);
     auto& stop = simulation_.stop_;
     T& v = simulation_.state_.v;
     if (plate.stuck() && !stop.holds())
@@ -280,7 +262,7 @@ class Stepper {
     if (stop.begin(simulation_.state_)) return simulation_.begin_at_stop();
     finger.reached = detail::Bound::none;
     const T sense = finger.does.sense;
-    if (finger.sliding() && finger.contact.branches > 0 && !finger.contact.rigid()) return;
+    if (finger.sliding() && finger.contact.may_lag()) return;
     if (finger.sliding() && sense * v > 0) {
       finger.does =
           Option{finger.does.state, detail::Bound::none, finger.contact.branch_of(abs(v)), sense};
@@ -342,7 +324,7 @@ class Stepper {
 
   Drive<T> drive_;
   T far_{far_for(drive_)};  ///< s
-  Inputs<T, Held<T>> inputs_;
+  Inputs<T> inputs_;
   Simulation simulation_;
   T now_;          ///< s
   Mode before_{};  ///< until the last event

@@ -170,16 +170,6 @@ class EndStops {
   bool exactly_{false}, jumped_{false};
 };
 
-/// A drive that has none.
-struct NoStops {
-  template <class Stops>
-  explicit NoStops(const Stops&) {}
-  static constexpr StopState does = StopState::apart;
-  static constexpr bool holds() { return false; }
-  static constexpr bool pushes() { return false; }
-  static constexpr bool jumped() { return false; }
-};
-
 /// What happens to the stops between two modes, where a pin may have struck a rigid one.
 inline Transition change(StopState before, StopState after, bool struck) {
   if (struck) return touches(after) ? Transition::stick : Transition::cross;

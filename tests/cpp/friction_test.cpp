@@ -10,7 +10,7 @@ using pd::detail::Bound;
 
 namespace {
 
-using Touch = pd::detail::Touch<double, pd::Contact<double>>;
+using Touch = pd::detail::Touch<double>;
 using State = pd::detail::State<double>;
 
 constexpr double never = std::numeric_limits<double>::infinity();

@@ -13,8 +13,8 @@ namespace {
 using Drive = pd::Drive<double>;
 
 /// A pin at x that has the velocity of the plate.
-struct Carried : pd::detail::Selection<double, pd::Contact<double>> {
-  using Base = pd::detail::Selection<double, pd::Contact<double>>;
+struct Carried : pd::detail::Selection<double> {
+  using Base = pd::detail::Selection<double>;
   Carried(const Drive& drive, double x, pd::Line<double> plate, int at_limit = 0)
       : Base(drive, 0, x, plate.value) {
     limit_ = at_limit;

@@ -35,5 +35,17 @@ int main() {
   const auto cut = pd::simulate(drive, brief, [&](const auto& segment) { until = segment.end; });
   expect(cut.end == pd::End::moving && cut.until == 0.02 && until == 0.02,
          "a duration ends it there, to the bit");
+
+  // Without damping they would be events for ever.
+  pd::Drive<double> undamped = drive;
+  undamped.damping = 0;
+  pd::Inputs<double> unloaded{0.10, 5e-3, 0.10};
+  unloaded.plate_load = unloaded.finger_load = 0.0;
+  unloaded.force = 0.01;
+  const auto free = pd::simulate(undamped, unloaded, [&](const pd::Segment<double>& segment) {
+    seen =
+        segment.mode.plate == segment.mode.finger && segment.mode.plate == pd::ContactState::absent;
+  });
+  expect(free.end == pd::End::free && seen, "contacts that are never loaded are absent");
   return check::status();
 }

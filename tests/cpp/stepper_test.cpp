@@ -117,7 +117,7 @@ Values values_of(const pd::Stepper<double>& stepper) {
   return values_in(stepper.drive(), stepper.segment(), stepper.lines(), stepper.tau());
 }
 
-pd::Inputs<double, pd::Held<double>> start_of(const Case& c) {
+pd::Inputs<double> start_of(const Case& c) {
   const auto lines = c.from(0);
   return {{0, lines.plate_velocity}, c.displacement,
           c.velocities[0],           infinity,
@@ -210,8 +210,7 @@ void the_same_as_in_one_run() {
 
 /// A released pin that comes to rest on the finger.
 const pd::Drive<double> drive{0.010, 100, 0.40, {0.020, 0.020}, {0.005, 0.005}};
-const pd::Inputs<double, pd::Held<double>> release{
-    {0, {0.10, 0}}, 1.5e-3, 0.10, infinity, {0, {1, 0}}};
+const pd::Inputs<double> release{{0, {0.10, 0}}, 1.5e-3, 0.10, infinity, {0, {1, 0}}};
 
 void events() {
   std::vector<double> expected, found;
@@ -258,8 +257,8 @@ void at_the_stops() {
   }
   pd::Drive<double> stopped = drive;
   stopped.stops.travel = 1.5e-3;
-  const pd::Inputs<double, pd::Held<double>> held{
-      {0, {0.10, 0}}, 1.5e-3, 0, infinity, {0, {1, 0}}, NAN, {0, {0.3, 0}}};
+  const pd::Inputs<double> held{{0, {0.10, 0}}, 1.5e-3, 0, infinity, {0, {1, 0}}, NAN,
+                                {0, {0.3, 0}}};
   for (const double jump : {0.05, -0.05}) {
     pd::Stepper<double> stepper(stopped, held);
     stepper.step(0.01);
@@ -340,7 +339,7 @@ void derivatives() {
   const auto position = [&](const auto& p) {
     using T = std::decay_t<decltype(p[0])>;
     const pd::Drive<T> with{p[0], T(100), T(0.40), {T(0.020), T(0.020)}, {T(0.005), T(0.005)}};
-    const pd::Inputs<T, pd::Held<T>> start{T(0.10), p[1], T(0.10)};
+    const pd::Inputs<T> start{T(0.10), p[1], T(0.10)};
     pd::Stepper<T> stepper(with, start);
     stepper.step(T(0.004));
     stepper.set({{p[2], p[3]}, {T(1), T(0)}, {p[4], T(0)}, {p[5], p[6]}});
