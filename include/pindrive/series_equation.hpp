@@ -69,21 +69,21 @@ struct SeriesEquation {
       y[n] = skin_stiffness * v[n] / (skin_decay + turns);
     }
   }
-  /// The most that y is off over a step of length h, where f y is off by no more than `force`, x' by `velocity`
+  /// The most that y is off over a step of length h, where f y is off by no more than `pull`, x' by `faster`
   /// and the equation of y by `missed`: f grows from 0 only.
   template <class Real>
-  Real skin_error(Real h, Real force, Real velocity, Real missed) const {
+  Real skin_error(Real h, Real pull, Real faster, Real missed) const {
     using std::abs;
     constexpr Real never = std::numeric_limits<Real>::infinity();
     if (skin_stiffness == 0) return Real(0);
     const Real f = plain(skin_factor.value), f_end = f + plain(skin_factor.rate) * h;
     const Real stays = plain(skin_decay) + plain(skin_factor.rate);
     const Real least = f * f_end > 0 ? std::min(abs(f), abs(f_end)) : Real(0);
-    const Real by_force = least > 0 ? force / least : never;
+    const Real by_force = least > 0 ? pull / least : never;
     // Where y is off by the most, either it turns or what pulls it back has not yet.
     const bool falls_back = plain(skin_decay) > 0 && stays > 0 && f >= 0 && f_end >= 0;
     const Real by_rate =
-        falls_back ? (plain(skin_stiffness) * velocity + missed) / stays : never;
+        falls_back ? (plain(skin_stiffness) * faster + missed) / stays : never;
     return std::min(by_force, by_rate);
   }
 };
