@@ -12,8 +12,8 @@ namespace detail {
 template <class T>
 inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
-/// Skin that has no first mode as its load grows from zero grips first when the load has grown for this part
-/// of the time until its next row: some roundings of a time, so that its first rounds take time.
+/// Skin that has no first mode as its load grows from zero grips first after this part of the time of the next
+/// row, for each of the rounds that its load grows by a half in: some roundings of a time.
 template <class T>
 inline constexpr T first_grip = 64 * rounding<T>;
 

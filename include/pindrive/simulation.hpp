@@ -101,8 +101,10 @@ class Simulation : private Selection<T> {
 
   /// Flat, as calls would cost a plain release a tenth of its time.
   [[gnu::flatten]] void select() {
-    if (finger_.starts_nowhere(state_))
-      finger_.load.value = finger_.load.rate * first_grip<T> * row_;
+    if (const T rounds = finger_.starts_nowhere(state_); rounds > 0) {
+      finger_.load.rate = T(0);
+      row_ = std::min(row_, time_ + rounds * first_grip<T> * row_);
+    }
     if (!Selected::select()) outcome_.status = Status::inconsistent;
     finger_.land(state_);
   }

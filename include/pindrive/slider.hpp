@@ -283,6 +283,7 @@ class SlidingSkin : public TouchState<T> {
       const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
       breaks_ = meets_ && came_to == Bound::none && at != Bound::none &&
                 jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
+      meets_ = meets_ && !breaks_;
       slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
       friction = range.at(lags() ? slid_ : range.from);
       const T pulls = sense_ * s.skin, most = friction * load.value;
@@ -324,12 +325,12 @@ class SlidingSkin : public TouchState<T> {
   }
 
  public:
-  /// Whether its load grows from zero faster than skin can follow by a grip, but at speeds at which no slider
-  /// lasts: then it grips and slips the more often, the smaller the load is.
-  bool starts_nowhere(const State<T>& s) const {
-    if (!contact.may_lag() || load.value != 0 || !(load.rate > 0)) return false;
-    const T u = s.v < 0 ? -s.v : s.v;
-    return u > stretching(contact.static_limit) && slider(T(1), u).from_zero().grips;
+  /// How many times too fast the pin is for skin to grip as its load grows from zero, where no speed of its
+  /// slider lasts either: it then grips and slips the more often, the smaller the load is. Else 0.
+  T starts_nowhere(const State<T>& s) const {
+    if (!contact.may_lag() || load.value != 0 || !(load.rate > 0)) return T(0);
+    const T u = s.v < 0 ? -s.v : s.v, most = stretching(contact.static_limit);
+    return u > most && slider(T(1), u).from_zero().grips ? u / most : T(0);
   }
 
  protected:
