@@ -185,8 +185,7 @@ pindrive_error set_input(pd::Stepper<T>& stepper, const char* name, Change&& cha
   const auto& finger = stepper.drive().finger;
   const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
   if (line == &inputs.finger_load && !same && !finger.rigid())
-    return fail(PINDRIVE_UNSUPPORTED,
-                "finger_load must stay %.17g for a finger that is compliant",
+    return fail(PINDRIVE_UNSUPPORTED, "finger_load must stay %.17g for a finger that is compliant",
                 plain(before.value));
   stepper.set(inputs);
   return stepper.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper.status());

@@ -129,10 +129,9 @@ class CreepFlow : public SeriesStep<T> {
                          abs(plain(e.damping_rate) * v);
     const Real f = plain(e.skin_factor.value);
     const Real left = load * F * (1 - abs(t) / root);
-    return 1 /
-           (changes / left + k * w * root * root * root / (load * F) +
-            (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
-            abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
+    return 1 / (changes / left + k * w * root * root * root / (load * F) +
+                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+                abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
   }
 
   /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a below an order.
@@ -162,8 +161,7 @@ class CreepFlow : public SeriesStep<T> {
       const T v_p = line(e.plate_velocity, n);
       T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - line(e.force, n) +
                  e.mass * acceleration_[n];
-      if (n > 0)
-        others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (n > 0 && n < N) {
         const T free = (1 - d[0] * d[0]) / s[0];
         const T slope = e.plate_force * free + e.plate_slope * w;
@@ -226,13 +224,14 @@ class CreepFlow : public SeriesStep<T> {
     missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
               abs(b_change) * last(velocity, N - 1) +
               k * (last(position, N) + last(position, N + 1)) +
-              max(abs(f), abs(f + f_change)) * last(skin, N) +
-              abs(f_change) * last(skin, N - 1) + most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
+              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+              most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
               abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real steep = sqrt(1 + t[0] * t[0]);
-    const Real gamma = std::min(b, b + b_change) + least_load * F / (most_w * steep * steep * steep) +
+    const Real gamma = std::min(b, b + b_change) +
+                       least_load * F / (most_w * steep * steep * steep) +
                        std::min(S * load, S * (load + load_change));
     const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
     const Real left = gamma - k * h - K * grown;

@@ -132,8 +132,7 @@ class SeriesFlow : public SeriesStep<T> {
       x[n + 1] = part * v[n];
       T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
                  e.skin_factor.value * y[n] + (n < 2 ? force[n] : T(0));
-      if (n > 0)
-        forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (n > 0) forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
       if (n == N) return;
       v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
@@ -164,8 +163,7 @@ class SeriesFlow : public SeriesStep<T> {
                  (n == 0   ? e.force.value
                   : n == 1 ? e.force.rate * step
                            : T(0));
-      if (n > 0)
-        others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
+      if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       T product{0}, square{0};  // what d and ρ of this order are without u of the next
       for (int i = 1; i < n; ++i) {
         product -= r[i + 1] * d[n - i];
@@ -262,7 +260,8 @@ class SeriesFlow : public SeriesStep<T> {
     speed_bound = v_bound + root;
     const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
     // Of a slider beside a pin that hardly moves: what the rounding of the forces makes of its velocity.
-    const Real forces = decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
+    const Real forces =
+        decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&
            (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
            speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c)) &&

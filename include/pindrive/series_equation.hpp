@@ -82,8 +82,7 @@ struct SeriesEquation {
     const Real by_force = least > 0 ? pull / least : never;
     // Where y is off by the most, either it turns or what pulls it back has not yet.
     const bool falls_back = plain(skin_decay) > 0 && stays > 0 && f >= 0 && f_end >= 0;
-    const Real by_rate =
-        falls_back ? (plain(skin_stiffness) * faster + missed) / stays : never;
+    const Real by_rate = falls_back ? (plain(skin_stiffness) * faster + missed) / stays : never;
     return std::min(by_force, by_rate);
   }
 };

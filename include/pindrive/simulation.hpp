@@ -255,7 +255,9 @@ class Simulation : private Selection<T> {
     using std::abs;
     look_ahead();
     const T now = finger_.load.value;
-    return abs(value - now) <= rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_) ? now : value;
+    return abs(value - now) <= rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_)
+               ? now
+               : value;
   }
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
   /// Rows that differ by the rounding of a time are one: the last of them.

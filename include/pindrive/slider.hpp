@@ -274,7 +274,8 @@ class SlidingSkin : public TouchState<T> {
       const Branch<T> range = branch();
       const auto goes = slider(sense_, u);
       const T speed = lags() ? sense_ * s.slide : goes.pin(range.force);
-      if (meets_ && at != Bound::none && off(speed - (at == Bound::upper ? range.to : range.from), u))
+      if (meets_ && at != Bound::none &&
+          off(speed - (at == Bound::upper ? range.to : range.from), u))
         at = Bound::none;  // its load has changed its rate
       const Bound came_to = at;
       if (at == Bound::none && speed >= range.to) at = Bound::upper;

@@ -230,8 +230,8 @@ void bounds() {
     pd::SeriesState<double> start{1e-3 * uniform(random), 0.1 * uniform(random),
                                   0.1 * uniform(random)};
     if (e.skin_factor.value == 0 && e.skin_factor.rate != 0)
-      start.skin = (e.skin_stiffness * start.v - e.skin_drift) /
-                   (e.skin_decay + e.skin_factor.rate);
+      start.skin =
+          (e.skin_stiffness * start.v - e.skin_drift) / (e.skin_decay + e.skin_factor.rate);
     const pd::SeriesFlow<double> flow(e, start, 0.01);
     using L = long double;
     const auto wide = [](pd::Line<double> given) { return pd::Line<L>{given.value, given.rate}; };

@@ -133,8 +133,7 @@ class Draw {
     const bool rigid = chance(0.25);  // such a finger may press and lift
     double last = 0;
     if (rigid)
-      c.finger_load =
-          profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.2);
+      c.finger_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.2);
     if (chance(0.1)) c.across = across();
     if (chance(0.2)) stop(c, critical, length);
     // The steepest rise or fall has the slowest skin, the flattest the fastest.

@@ -355,7 +355,9 @@ class _Simulation:
     def stretching(self, contact: str) -> mpf:
         """How fast skin that slips stretches with its load."""
         law = self.law[contact]
-        return self.touch.slope(self.t) * law.forces[0] / law.stiffness if contact == "finger" else 0
+        return (
+            self.touch.slope(self.t) * law.forces[0] / law.stiffness if contact == "finger" else 0
+        )
 
     def grip(self, force: mpf) -> None:
         """Skin that has slipped holds, with a force."""
