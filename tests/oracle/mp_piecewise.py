@@ -370,7 +370,7 @@ class _Simulation:
             self.grip(force)
 
     def take_load(self) -> None:
-        """What skin does where its load has a row: its stretch goes on unless its load is too small."""
+        """What skin does at a row of its load: its stretch goes on unless the load is too small."""
         law, load = self.law["finger"], self.touch(self.t)
         if self.side["finger"] == 0:
             if law.stiffness * abs(self.stretch) > load * law.static:
