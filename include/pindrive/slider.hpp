@@ -39,7 +39,7 @@ class Slider {
 
   /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
   /// none does, it is infinitely fast until the skin asks no more than the last.
-  Landing<T> faster(int branch, T asked) const {
+  [[gnu::noinline]] Landing<T> faster(int branch, T asked) const {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
       const bool last = !(range.to < never);
@@ -68,7 +68,7 @@ class Slider {
 
   /// The first speed below the begin of a branch at which its curve carries no more than the friction asked of
   /// it; without one it grips.
-  Landing<T> slower(int branch, T asked) const {
+  [[gnu::noinline]] Landing<T> slower(int branch, T asked) const {
     for (int j = branch - 1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
       const bool start = same(asked, range.force);
@@ -97,7 +97,7 @@ class Slider {
 
   /// The largest speed that lasts as a load grows from zero, at which friction grows as the skin stretches; it
   /// grips if none does.
-  Landing<T> from_zero() const {
+  [[gnu::noinline]] Landing<T> from_zero() const {
     const auto misses = [&](T speed, T friction) { return pin(friction) - speed; };
     for (int j = speed_ > 0 ? contact_.branch_of(speed_) : -1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
@@ -264,7 +264,7 @@ class SlidingSkin : public TouchState<T> {
   }
 
   /// Finds out what it may do.
-  void ask_slider(const State<T>& s, T u) {
+  [[gnu::noinline]] void ask_slider(const State<T>& s, T u) {
     Bound& at = at_;
     breaks_ = either_way_ = meets_ = false;
     if (!contact.present()) return;
@@ -328,7 +328,7 @@ class SlidingSkin : public TouchState<T> {
  public:
   /// How many times too fast the pin is for skin to grip as its load grows from zero, where no speed of its
   /// slider lasts either: it then grips and slips the more often, the smaller the load is. Else 0.
-  T starts_nowhere(const State<T>& s) const {
+  [[gnu::noinline]] T starts_nowhere(const State<T>& s) const {
     if (!contact.may_lag() || load.value != 0 || !(load.rate > 0)) return T(0);
     const T u = s.v < 0 ? -s.v : s.v, most = stretching(contact.static_limit);
     return u > most && slider(T(1), u).from_zero().grips ? u / most : T(0);
