@@ -572,12 +572,12 @@ class Certifier {
       worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
       return;
     }
-    const T load = motion_.inputs().finger_load.from(before.begin).at(before.end - before.begin);
+    const T load = motion_.inputs().finger_load.from(before.end).value;
     const bool gripped = before.mode.finger == ContactState::elastic_stick;
     if (gripped)
       worst(result_.transitions, drive_.finger.static_limit * load - asked, force_scale_);
-    const T unmet =
-        std::max(load * most_from(gripped ? 0 : before.mode.finger_branch + 1) - asked, T(0));
+    const T most = load > 0 ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
+    const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, force_scale_);
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
   }

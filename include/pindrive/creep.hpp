@@ -96,7 +96,7 @@ class CreepFlow : public SeriesStep<T> {
     using std::sqrt;
     const T needed =
         (e.force.value - e.mass * acceleration_[0] - e.damping * e.plate_velocity.value -
-         e.stiffness * s.x - e.skin_factor * s.skin) /
+         e.stiffness * s.x - e.skin_factor.value * s.skin) /
         e.load.value;
     const T linear = (e.plate_slope + e.damping / e.load.value) * e.across.value;
     T t = t_;
@@ -124,12 +124,14 @@ class CreepFlow : public SeriesStep<T> {
     const Real w = plain(e.across.value), v = plain(e.plate_velocity.value) + w * t;
     const Real root = sqrt(1 + t * t), k = plain(e.stiffness);
     const Real changes = k * abs(v) + abs(plain(e.force.rate)) + abs(plain(e.load.rate)) * F +
-                         abs(plain(e.skin_factor)) * (abs(plain(e.skin_gain) * v) +
-                                                      abs(plain(e.skin_decay) * plain(s.skin)));
+                         abs(plain(e.skin_stiffness) * v) +
+                         abs(plain(e.skin_decay) * plain(s.skin)) + abs(plain(e.skin_drift)) +
+                         abs(plain(e.damping_rate) * v);
+    const Real f = plain(e.skin_factor.value);
     const Real left = load * F * (1 - abs(t) / root);
-    return 1 /
-           (changes / left + k * w * root * root * root / (load * F) + abs(plain(e.skin_decay)) +
-            abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
+    return 1 / (changes / left + k * w * root * root * root / (load * F) +
+                (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+                abs(plain(e.across.rate)) * k / (load * F) + sqrt(k / plain(e.mass)) / 64);
   }
 
   /// One round, in the time σ = τ/step: the series of t from that of a, and from it a new a below an order.
@@ -157,8 +159,9 @@ class CreepFlow : public SeriesStep<T> {
       T u = w * t[n] + (n > 0 ? w_rate * t[n - 1] : T(0));
       T friction = e.plate_force * d[n] + e.plate_slope * u;
       const T v_p = line(e.plate_velocity, n);
-      const T others =
-          e.stiffness * x[n] + e.skin_factor * y[n] - line(e.force, n) + e.mass * acceleration_[n];
+      T others = e.stiffness * x[n] + e.skin_factor.value * y[n] - line(e.force, n) +
+                 e.mass * acceleration_[n];
+      if (n > 0) others += step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (n > 0 && n < N) {
         const T free = (1 - d[0] * d[0]) / s[0];
         const T slope = e.plate_force * free + e.plate_slope * w;
@@ -175,8 +178,8 @@ class CreepFlow : public SeriesStep<T> {
       plate_force.c[n] = -(e.load.value * friction + load_rate * before);
       before = friction;
       x[n + 1] = T(step) / T(n + 1) * v[n];
+      e.follow(y, v, n, T(step));
       if (n == order) break;
-      y[n + 1] = T(step) / T(n + 1) * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }
     for (int n = 0; n < order; ++n) {
       const T a = T(n + 1) / T(step) * v[n + 1];
@@ -206,7 +209,9 @@ class CreepFlow : public SeriesStep<T> {
     using std::max;
     using std::sqrt;
     const Real h = span(), k = plain(e.stiffness), b = plain(e.damping);
-    const Real f = plain(e.skin_factor), g = plain(e.skin_gain), decay = plain(e.skin_decay);
+    const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
+    const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
+    const Real K = plain(e.skin_stiffness);
     const Real F = plain(e.plate_force), S = plain(e.plate_slope);
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real w = plain(e.across.value), w_end = w + plain(e.across.rate) * h;
@@ -216,21 +221,26 @@ class CreepFlow : public SeriesStep<T> {
     const Sums t = sums_of(inner(0).c), s = sums_of(inner(1).c), d = sums_of(inner(2).c);
     const Sums v = sums_of(velocity.c);
     const Real root = beyond(s, s) + beyond(t, t), direction = beyond(s, d) + d[0] * root;
-    missed += abs(b) * last(velocity, N) + k * (last(position, N) + last(position, N + 1)) +
-              abs(f) * last(skin, N) + most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
+    missed += max(abs(b), abs(b + b_change)) * last(velocity, N) +
+              abs(b_change) * last(velocity, N - 1) +
+              k * (last(position, N) + last(position, N + 1)) +
+              max(abs(f), abs(f + f_change)) * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+              most_load * (abs(S) * v[N] + F * (d[N] + direction)) +
               abs(load_change) * (abs(S) * v[N - 1] + F * (d[N - 1] - d[N]));
-    const Real missed_skin = abs(g) * last(velocity, N) + abs(decay) * last(skin, N);
+    const Real missed_skin =
+        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real steep = sqrt(1 + t[0] * t[0]);
-    const Real gamma = b + least_load * F / (most_w * steep * steep * steep) +
+    const Real gamma = std::min(b, b + b_change) +
+                       least_load * F / (most_w * steep * steep * steep) +
                        std::min(S * load, S * (load + load_change));
-    const Real grown = exp(max(Real(0), -decay) * h) * h;
-    const Real left = gamma - k * h - abs(f * g) * grown;
+    const Real grown = exp(max(Real(0), f < 0 ? -decay / f : Real(0)) * h) * h;
+    const Real left = gamma - k * h - K * grown;
     if (!(left > 0)) return false;
-    v_bound = (missed + abs(f) * grown * missed_skin) / left;
+    v_bound = (missed + grown * missed_skin) / left;
     x_bound = h * v_bound;
-    skin_bound = grown * (abs(g) * v_bound + missed_skin);
+    skin_bound = e.skin_error(h, grown * (K * v_bound + missed_skin), v_bound, missed_skin);
     speed_bound = v_bound + most_w * root;
-    return v_bound <= rounding_of(v) && (f == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
+    return v_bound <= rounding_of(v) && (K == 0 || skin_bound <= rounding_of(sums_of(skin.c)));
   }
   static Real rounding_of(const Sums& sums) { return 8 * unit * sums[0]; }
 
@@ -246,7 +256,7 @@ class CreepFlow : public SeriesStep<T> {
     const Real sizes = abs(plain(e.force.value)) + abs(plain(e.mass) * plain(acceleration_[0])) +
                        abs(plain(e.damping) * plain(start.v)) +
                        plain(e.stiffness) * abs(plain(start.x)) +
-                       abs(plain(e.skin_factor) * plain(start.skin));
+                       abs(plain(e.skin_factor.value) * plain(start.skin));
     const Real changes = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate * t_));
     return 16 * unit * sizes * plain(e.across.value) /
                (plain(e.load.value) * plain(e.plate_force)) +

@@ -29,7 +29,7 @@ struct Touch : SlidingSkin<T> {
   /// Whether nothing but its relative acceleration tells where it goes.
   bool rests(T v) const {
     if (does.at == Bound::none || oblique()) return false;
-    return elastic() ? v == 0 : !lags() || gap(v) == 0;
+    return elastic() ? v == this->level() : !lags() || gap(v) == 0;
   }
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(State<T>& s, bool stretched) {
@@ -39,7 +39,10 @@ struct Touch : SlidingSkin<T> {
     does.state = skin ? ContactState::elastic_stick : ContactState::stick;
     if (skin || u == 0) return;
     does = slip(u / size, Bound::none, contact.branch_of(size));
-    if (lags()) this->begin_slider(s, size);
+    if (lags())
+      this->begin_slider(s, size);
+    else if (!contact.rigid())
+      s.skin = this->skin_force(s, load.value);
   }
 
   /// Without a load for ever it is absent.
@@ -124,7 +127,7 @@ struct Touch : SlidingSkin<T> {
       rate = speed.force_rate(range, load);
       bend = speed.force_bend(range, load);
     } else {
-      rate = -range.slope * load.value * faster - does.sense * friction * load.rate;
+      rate = -range.slope * load.value * faster - does.sense * this->carried() * load.rate;
       bend = -2 * range.slope * load.rate * faster;
     }
     const T unsure = range.rounding * load.value * abs(faster);
@@ -189,10 +192,9 @@ struct Touch : SlidingSkin<T> {
       return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
     if (this->either_way()) return s.v == 0 && decides == 0;
-    const T inside = s.skin > 0 ? T(-1) : T(1);
-    if (s.v == 0) return inside * decides >= 0;
-    return inside * s.v > 0 || touches(contact.stiffness * inside * s.v,
-                                       contact.stiffness * inside * decides, s.roundoff);
+    const T stretches = contact.stiffness * sense_, faster = s.v - this->level();
+    if (faster == 0) return sense_ * decides >= 0;
+    return sense_ * faster > 0 || touches(stretches * faster, stretches * decides, s.roundoff);
   }
 
   ObliqueSlip<T> slides(T v, T acceleration) const {

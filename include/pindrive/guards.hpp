@@ -60,7 +60,7 @@ class Guards {
   /// Adds those of a contact in a mode, of speeds along the segment and of the force in an elastic stick.
   void add(const Touch<T>& side, const Segment<T>& segment, bool plate) {
     if (side.elastic()) {
-      const Path<T> most = Line<T>{side.stick_limit(), T(0)};
+      const Path<T> most = Line<T>{side.stick_limit(), side.contact.static_limit * side.load.rate};
       const int near = -sense(segment.finger_force);
       for (const int to : {near, -near})
         add(most + T(to) * segment.finger_force, Bound::none, plate, to);
@@ -68,7 +68,9 @@ class Guards {
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();
     const Path<T>& v = segment.flow.velocity;
-    const T to = side.does.sense, speed = to * (v.start - side.surface.value);
+    const T to = side.does.sense;
+    const T speed = to * (v.start - side.surface.value) -
+                    (side.contact.rigid() ? T(0) : side.stretching(range.force));
     const Path<T> above{side.does.at == Bound::lower ? T(0) : speed - range.from, to * v.value,
                         to * v.slope, to * (v.drift - side.surface.rate)};
     add_nearer(above, Bound::lower, plate, to > 0, v.start);

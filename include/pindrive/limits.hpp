@@ -12,6 +12,11 @@ namespace detail {
 template <class T>
 inline constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
 
+/// Skin that has no first mode as its load grows from zero grips first after this part of the time of the next
+/// row, for each of the rounds that its load grows by a half in: some roundings of a time.
+template <class T>
+inline constexpr T first_grip = 64 * rounding<T>;
+
 /// Events at one instant after which a motion is given up. Physics has two or three (a contact breaks
 /// away, another follows, a breakpoint is passed); more would never end.
 inline constexpr int standstill_limit = 100;

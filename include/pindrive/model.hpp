@@ -191,8 +191,8 @@ struct Inputs {
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
   Profile<T> force{T(0)};            ///< on the pin from outside, N
   Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
-  Profile<T> finger_load{T(1)};  ///< factor on the finger's friction; >= 0, constant where that is
-                                 ///< compliant or has a curve
+  Profile<T> finger_load{T(1)};      ///< factor on the finger's friction; >= 0, constant where that
+                                     ///< is compliant
 
   bool constant() const {
     return mouse_velocity.constant() && plate_load.constant() && force.constant() &&
@@ -215,6 +215,9 @@ enum class ContactState : signed char {
 inline bool slips(ContactState state) {
   return state == ContactState::slip_backward || state == ContactState::slip_forward ||
          state == ContactState::slip_oblique;
+}
+inline bool holds(ContactState state) {
+  return state == ContactState::stick || state == ContactState::elastic_stick;
 }
 inline int sign(ContactState state) {
   return state == ContactState::slip_backward ? -1 : state == ContactState::slip_forward ? 1 : 0;
@@ -251,7 +254,7 @@ struct Mode {
   bool both_stuck() const { return plate == finger && finger == ContactState::stick; }
 };
 
-/// What happens to a contact where a segment ends: sliding stops and it holds, it breaks loose, or
+/// What happens to a contact where a segment ends: it begins to hold, it breaks loose or lifts, or
 /// sliding reverses. Nothing where only an input has its next row or a friction curve its breakpoint.
 enum class Transition : signed char { none, stick, slip, cross };
 
@@ -268,9 +271,9 @@ bool held_by_stop(const Drive<T>& drive, const Mode& mode) {
 
 inline Transition change(ContactState before, ContactState after) {
   if (before == after) return Transition::none;
-  if (slips(before) == slips(after))
+  if (holds(before) == holds(after))
     return sign(before) == -sign(after) ? Transition::cross : Transition::none;
-  return slips(before) ? Transition::stick : Transition::slip;
+  return holds(after) ? Transition::stick : Transition::slip;
 }
 
 /// Whether the sliding velocity came to zero.

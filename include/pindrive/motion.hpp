@@ -114,7 +114,8 @@ class Motion {
   /// that returns.
   template <class Visitor>
   auto along(const Segment<T>& segment, Visitor&& visit) const {
-    const bool bilinear = drive_.plate.branches > 0 && !inputs_.plate_load.constant();
+    const bool bilinear = (drive_.plate.branches > 0 && !inputs_.plate_load.constant()) ||
+                          (drive_.finger.branches > 0 && !inputs_.finger_load.constant());
     if (!bilinear && !drive_.finger.may_lag() && segment.mode.plate != ContactState::slip_oblique)
       return visit(ClosedForm<T>(segment));
     return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);

@@ -71,6 +71,13 @@ struct Polynomial {
     for (int n = 0; n <= p.degree; ++n) p.c[n] *= factor;
     return p;
   }
+  /// Its degree is below the highest that there is.
+  friend Polynomial operator*(const Line<T>& line, Polynomial p) {
+    if (line.rate != 0) p.c[++p.degree] = T(0);
+    for (int n = p.degree; n >= 0; --n)
+      p.c[n] = line.value * p.c[n] + (n > 0 ? line.rate * p.span * p.c[n - 1] : T(0));
+    return p;
+  }
 };
 
 namespace detail {

@@ -64,9 +64,10 @@ class SeriesFlow : public SeriesStep<T> {
   static Real linear_rate(const SeriesEquation<T>& e) {
     using std::abs;
     using std::sqrt;
-    const Real m = plain(e.mass), coupling = plain(e.skin_factor) * plain(e.skin_gain);
+    const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
-           abs(plain(e.skin_decay)) + sqrt((plain(e.stiffness) + abs(coupling)) / m);
+           (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
+           sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
   }
   /// … and the one at which the direction of sliding turns.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
@@ -76,7 +77,7 @@ class SeriesFlow : public SeriesStep<T> {
     const Real m = plain(e.mass), friction = abs(plain(e.load.value) * plain(e.plate_force));
     const Real w = plain(e.across.value), u = plain(s.v) - plain(e.plate_velocity.value);
     const Real pull = plain(e.force.value) - plain(e.stiffness) * plain(s.x) -
-                      plain(e.damping) * plain(s.v) - plain(e.skin_factor) * plain(s.skin) -
+                      plain(e.damping) * plain(s.v) - plain(e.skin_factor.value) * plain(s.skin) -
                       plain(e.load.value) * plain(e.plate_slope) * u;
     const Real turns = abs(plain(e.plate_velocity.rate)) + abs(plain(e.across.rate));
     if (sets_out(e, s))
@@ -111,6 +112,7 @@ class SeriesFlow : public SeriesStep<T> {
     const T load_rate = e.load.rate * step;
     T before{0};  // F d + S u, of the order before
     for (int n = 0;; ++n) {
+      e.follow(y, v, n, T(step));
       const T u = u_[n] = n < 2 ? v[n] - v_p[n] : v[n];
       if (e.side != 0) {
         r[n] = T(e.side) * u;
@@ -128,13 +130,13 @@ class SeriesFlow : public SeriesStep<T> {
       before = friction;
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
-      const T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
-                       e.skin_factor * y[n] + (n < 2 ? force[n] : T(0));
+      T forces = plate_force.c[n] - e.damping * v[n] - e.stiffness * x[n] -
+                 e.skin_factor.value * y[n] + (n < 2 ? force[n] : T(0));
+      if (n > 0) forces -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       if (e.held) stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - forces;
       if (n == N) return;
       v[n + 1] = !e.held ? part * forces / e.mass : n == 0 ? e.surface.rate * step : T(0);
       if (n == 0 && !e.held && !isnan(start.acceleration)) v[1] = start.acceleration * step;
-      y[n + 1] = part * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }
   }
 
@@ -155,11 +157,13 @@ class SeriesFlow : public SeriesStep<T> {
     for (int n = 0;; ++n) {
       const T part = T(step) / T(n + 1);
       x[n + 1] = part * v[n];
+      e.follow(y, v, n, T(step));
       // All forces of this order but the plate's.
-      const T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor * y[n] +
-                       (n == 0   ? e.force.value
-                        : n == 1 ? e.force.rate * step
-                                 : T(0));
+      T others = -e.damping * v[n] - e.stiffness * x[n] - e.skin_factor.value * y[n] +
+                 (n == 0   ? e.force.value
+                  : n == 1 ? e.force.rate * step
+                           : T(0));
+      if (n > 0) others -= step * (e.damping_rate * v[n - 1] + e.skin_factor.rate * y[n - 1]);
       T product{0}, square{0};  // what d and ρ of this order are without u of the next
       for (int i = 1; i < n; ++i) {
         product -= r[i + 1] * d[n - i];
@@ -195,12 +199,11 @@ class SeriesFlow : public SeriesStep<T> {
       if (e.held)
         stick_force.c[n] = (n == 0 ? e.mass * e.surface.rate : T(0)) - others - plate_force.c[n];
       if (n == N) return;
-      y[n + 1] = part * (e.skin_gain * v[n] - e.skin_decay * y[n]);
     }
   }
 
   /// Bounds what the series leave out, from what they miss of the equation: the error e of a mode, with
-  /// 2 E² = m e_v² + k e_x² + (f/g) e_y², grows by no more than the energy that this puts in, since
+  /// 2 E² = m e_v² + k e_x² + (f e_y)²/K, grows by no more than the energy that this puts in, since
   /// friction's own slope takes energy but where it falls. Whether the bound is rounding.
   bool bound(const SeriesEquation<T>& e) {
     using detail::exp;
@@ -208,7 +211,9 @@ class SeriesFlow : public SeriesStep<T> {
     using std::max;
     using std::sqrt;
     const Real h = span(), m = plain(e.mass), k = plain(e.stiffness), b = plain(e.damping);
-    const Real f = plain(e.skin_factor), g = plain(e.skin_gain), decay = plain(e.skin_decay);
+    const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
+    const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
+    const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
     const Real F = abs(plain(e.plate_force)), S = plain(e.plate_slope);
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real most_load = max(abs(load), abs(load + load_change));
@@ -236,24 +241,29 @@ class SeriesFlow : public SeriesStep<T> {
     // What is left of the equation: the terms from the order N on.
     const Real missed =
         e.held ? Real(0)
-               : abs(b) * last(velocity, N) + k * (last(position, N) + last(position, N + 1)) +
-                     abs(f) * last(skin, N) + most_load * abs(S) * (u[N]) +
+               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
+                     abs(b_change) * last(velocity, N - 1) +
+                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
+                     abs(f_change) * last(skin, N - 1) + most_load * abs(S) * (u[N]) +
                      abs(load_change) * (abs(S) * (u[N - 1] - u[N]) + F * (d[N - 1] - d[N])) +
                      most_load * F * (d[N] + direction);
-    const Real missed_skin = abs(g) * last(velocity, N) + abs(decay) * last(skin, N);
-    const Real ratio = g != 0 ? f / g : Real(0);
-    const Real falls = b + std::min({Real(0), S * load, S * (load + load_change)});
-    const Real growth = exp(max({Real(0), -falls / m, -decay}) * h);
-    const Real error = h * growth * (missed / sqrt(m) + sqrt(ratio) * missed_skin);  // sqrt(2 E²)
+    const Real missed_skin =
+        K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
+    const Real falls =
+        std::min(b, b + b_change) + std::min({Real(0), S * load, S * (load + load_change)});
+    const Real growth = exp(max({Real(0), -falls / m, f < 0 ? -decay / f : Real(0)}) * h);
+    const Real error =
+        h * growth * (missed / sqrt(m) + (K > 0 ? missed_skin / sqrt(K) : Real(0)));  // sqrt(2 E²)
     v_bound = e.held ? Real(0) : error / sqrt(m);
     x_bound = std::min(h * v_bound, error / sqrt(k));
-    skin_bound = ratio > 0 ? error / sqrt(ratio) : Real(0);
+    skin_bound = e.skin_error(h, sqrt(K) * error, v_bound, missed_skin);
     speed_bound = v_bound + root;
     const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
     // Of a slider beside a pin that hardly moves: what the rounding of the forces makes of its velocity.
-    const Real forces = decay != 0 ? f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
+    const Real forces =
+        decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&
-           (ratio == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
+           (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
            speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c)) &&
            !(e.held && direction > 64 * unit);
   }

@@ -2,6 +2,7 @@
 /// begins to slide across.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,16 +22,18 @@ struct SeriesState {
 
 /// A mode without a closed form:
 ///
-///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   y' = g x' − h y,
+///     m x'' + b x' + k x = force + R − f y,   R = −λ (F d + S u),   u = x' − v_p,   (f y)' = K x' − D y − E,
 ///
-/// where d is the sign of u or, with a velocity w across, u / √(u² + w²); u and w are then never both 0.
-/// y is the state of a compliant finger of stiffness K: its force (f = 1, g = K, h = 0) while it sticks
-/// elastically; while it slips on a sloped branch, kinetic friction F_c + S_c (|y| − from), its sliding
-/// velocity (f = S_c, g = h = K/S_c), and its constant part is in `force`. A pin that is held moves as the
-/// surface that holds it, and a stick force makes up for what is missing.
+/// where d is the sign of u or, with a velocity w across, u / √(u² + w²); u and w are then never both 0, and
+/// b, λ and f are lines. y is the state of a compliant finger of stiffness K: its force (f = 1, D = E = 0) while
+/// it sticks elastically; while it slips under a load λ_f on a branch F_c + S_c |y|, its sliding velocity
+/// (f = S_c λ_f, D = K, E = ±F_c λ_f'), and its constant part is in `force`. Where f begins at 0, y begins at
+/// its one value that stays finite. A pin that is held moves as the surface that holds it, and a stick force
+/// makes up for what is missing.
 template <class T>
 struct SeriesEquation {
   T mass, damping, stiffness;          ///< the damping may be negative
+  T damping_rate{0};                   ///< N s/m per s
   Line<T> force{T(0), T(0)};           ///< inertia and all that is given over time, N
   Line<T> plate_velocity{T(0), T(0)};  ///< v_p, m/s
   Line<T> load{T(1), T(0)};            ///< λ >= 0
@@ -38,19 +41,50 @@ struct SeriesEquation {
   T plate_slope{0};                    ///< S, N s/m
   int side{0};                         ///< the sign of u; 0: the plate slides across too
   Line<T> across{T(0), T(0)};          ///< w, m/s
-  T skin_factor{0};                    ///< f: 1, or N s/m
-  T skin_gain{0}, skin_decay{0};       ///< g: N/m, or 1/s; h: 1/s
+  Line<T> skin_factor{T(0), T(0)};     ///< f: 1, or N s/m
+  T skin_stiffness{0}, skin_decay{0};  ///< K and D, N/m
+  T skin_drift{0};                     ///< E, N/s
   bool held{false};                    ///< by a surface of this velocity, m/s
   Line<T> surface{T(0), T(0)};
 
   /// The same with time counted from τ on.
   SeriesEquation from(T tau) const {
     SeriesEquation later = *this;
+    later.damping += damping_rate * tau;
     for (Line<T> SeriesEquation::* line :
          {&SeriesEquation::force, &SeriesEquation::plate_velocity, &SeriesEquation::load,
-          &SeriesEquation::across, &SeriesEquation::surface})
+          &SeriesEquation::across, &SeriesEquation::skin_factor, &SeriesEquation::surface})
       (later.*line).value = (this->*line).at(tau);
     return later;
+  }
+
+  /// The order n + 1 of y from those of y and x' up to n or, where f begins at 0, the order n, in the time
+  /// τ/step.
+  template <class Coefficients>
+  void follow(Coefficients& y, const Coefficients& v, int n, T step) const {
+    const T turns = skin_factor.rate * T(n + 1);
+    if (skin_factor.value != 0) {
+      const T stretches = skin_stiffness * v[n] - skin_decay * y[n] - (n == 0 ? skin_drift : T(0));
+      y[n + 1] = step / T(n + 1) * (stretches - turns * y[n]) / skin_factor.value;
+    } else if (n > 0 && skin_factor.rate != 0) {
+      y[n] = skin_stiffness * v[n] / (skin_decay + turns);
+    }
+  }
+  /// The most that y is off over a step of length h, where f y is off by no more than `pull`, x' by `faster`
+  /// and the equation of y by `missed`: f grows from 0 only.
+  template <class Real>
+  Real skin_error(Real h, Real pull, Real faster, Real missed) const {
+    using std::abs;
+    constexpr Real never = std::numeric_limits<Real>::infinity();
+    if (skin_stiffness == 0) return Real(0);
+    const Real f = plain(skin_factor.value), f_end = f + plain(skin_factor.rate) * h;
+    const Real stays = plain(skin_decay) + plain(skin_factor.rate);
+    const Real least = f * f_end > 0 ? std::min(abs(f), abs(f_end)) : Real(0);
+    const Real by_force = least > 0 ? pull / least : never;
+    // Where y is off by the most, either it turns or what pulls it back has not yet.
+    const bool falls_back = plain(skin_decay) > 0 && stays > 0 && f >= 0 && f_end >= 0;
+    const Real by_rate = falls_back ? (plain(skin_stiffness) * faster + missed) / stays : never;
+    return std::min(by_force, by_rate);
   }
 };
 

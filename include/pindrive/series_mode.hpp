@@ -22,11 +22,11 @@ struct InputLines {
   Line<T> force{};                  ///< on the pin from outside, N
   Line<T> finger_load{T(1), T(0)};  ///< >= 0
 
-  /// Whether the plate, which carries something, slides across too.
-  bool oblique() const {
-    const bool across = across_velocity.value != 0 || across_velocity.rate != 0;
-    return across && (plate_load.value != 0 || plate_load.rate != 0);
+  /// Whether a plate slides across too, and carries something.
+  static bool oblique(const Line<T>& load, const Line<T>& across) {
+    return (across.value != 0 || across.rate != 0) && (load.value != 0 || load.rate != 0);
   }
+  bool oblique() const { return oblique(plate_load, across_velocity); }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
     return {later(plate_velocity), later(plate_load), later(across_velocity), later(force),
@@ -61,15 +61,19 @@ class SeriesMode {
 
   /// Whether flow.hpp has a mode in closed form, so that no series is needed.
   static bool closed_form(const Drive<T>& drive, const Mode& mode, const Line<T>& plate_load,
-                          const Line<T>& across_velocity) {
-    if (slips(mode.plate)) {
-      if (across_velocity.value != 0 || across_velocity.rate != 0) return false;
-      if (plate_load.rate != 0 && drive.plate.branch(mode.plate_branch).slope != 0) return false;
-    }
-    return !lags(drive.finger, mode);
+                          const Line<T>& across_velocity, const Line<T>& finger_load) {
+    const auto bilinear = [](ContactState does, const Contact<T>& contact, int branch,
+                             const Line<T>& load) {
+      return slips(does) && load.rate != 0 && contact.branch(branch).slope != 0;
+    };
+    return !(slips(mode.plate) && InputLines<T>::oblique(plate_load, across_velocity)) &&
+           !bilinear(mode.plate, drive.plate, mode.plate_branch, plate_load) &&
+           !bilinear(mode.finger, drive.finger, mode.finger_branch, finger_load) &&
+           !lags(drive.finger, mode);
   }
   bool has_closed_form() const {
-    return closed_form(drive_, mode_, inputs_.plate_load, inputs_.across_velocity);
+    return closed_form(drive_, mode_, inputs_.plate_load, inputs_.across_velocity,
+                       inputs_.finger_load);
   }
 
   bool lags() const { return lags(drive_.finger, mode_); }
@@ -96,14 +100,17 @@ class SeriesMode {
       e.force.value -= friction * inputs_.finger_load.value;
       e.force.rate -= friction * inputs_.finger_load.rate;
     }
+    const Line<T>& load = inputs_.finger_load;
     if (lags()) {
-      e.skin_factor = finger().slope * inputs_.finger_load.value;
-      e.skin_gain = e.skin_decay = drive_.finger.stiffness / e.skin_factor;
+      e.skin_factor = {finger().slope * load.value, finger().slope * load.rate};
+      e.skin_stiffness = e.skin_decay = drive_.finger.stiffness;
+      e.skin_drift = along(mode_.finger, at_rest(finger())) * load.rate;
     } else if (mode_.finger == ContactState::elastic_stick) {
-      e.skin_factor = T(1);
-      e.skin_gain = drive_.finger.stiffness;
+      e.skin_factor.value = T(1);
+      e.skin_stiffness = drive_.finger.stiffness;
     } else if (slips(mode_.finger)) {
-      e.damping += finger().slope * inputs_.finger_load.value;
+      e.damping += finger().slope * load.value;
+      e.damping_rate = finger().slope * load.rate;
     }
     e.held = mode_.stuck() || held_by_stop(drive_, mode_);
     if (touches(mode_.stop) && !drive_.stops.rigid()) {
@@ -118,8 +125,10 @@ class SeriesMode {
   /// The force that stretches the skin, from the state of the skin; 0 of a rigid finger, N.
   T skin_force(T skin) const {
     if (drive_.finger.rigid()) return T(0);
-    if (lags()) return along(mode_.finger, at_rest(finger())) + finger().slope * skin;
-    return slips(mode_.finger) ? along(mode_.finger, finger().force) : skin;
+    if (!slips(mode_.finger)) return skin;
+    const T friction = lags() ? at_rest(finger()) : finger().force;
+    return inputs_.finger_load.value *
+           (along(mode_.finger, friction) + (lags() ? finger().slope * skin : T(0)));
   }
 
   /// Where the mode begins exactly: the bounds of the speeds, and the side of a stick force at its limit.
@@ -187,12 +196,16 @@ class SeriesMode {
       within(found, step.stick_force, most, at.limit, mode_.plate == ContactState::stick);
     }
     if (slips(mode_.plate)) between(found, step.speed, plate(), at.plate, true, inputs_.oblique());
-    if (slips(mode_.finger))
-      between(found, along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity), finger(),
-              at.finger, false, false);
+    if (slips(mode_.finger)) {
+      Polynomial<T> speed = along(mode_.finger, T(1)) * (lags() ? step.skin : step.velocity);
+      if (!lags() && !drive_.finger.rigid()) speed += Line<T>{-follows(finger().force), T(0)};
+      between(found, speed, finger(), at.finger, false, false);
+    }
     if (mode_.finger == ContactState::elastic_stick) {
       const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
-      within(found, step.skin, {drive_.finger.static_limit * inputs_.finger_load.value, T(0)},
+      within(found, step.skin,
+             {drive_.finger.static_limit * inputs_.finger_load.value,
+              drive_.finger.static_limit * inputs_.finger_load.rate},
              limit, false);
     }
     if (drive_.stops.present() && !held_by_stop(drive_, mode_)) stops(found, step, at);
@@ -208,6 +221,10 @@ class SeriesMode {
   }
   Branch<T> plate() const { return drive_.plate.branch(mode_.plate_branch); }
   Branch<T> finger() const { return drive_.finger.branch(mode_.finger_branch); }
+  /// The velocity at which the skin of a friction stretches as its load changes, m/s.
+  T follows(T friction) const {
+    return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
+  }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
 
   void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,

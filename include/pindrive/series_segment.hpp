@@ -91,7 +91,7 @@ class SeriesSegment {
     // known no better than by what these still carry.
     const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step_->velocity.derivative().at(tau) + drive.damping * state.v +
-                   finger.branch().slope * finger.load.value * state.slide;
+                   finger.branch().slope * finger.load.at(tau) * state.slide;
     const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
     if (known > 64 * (1 + drive.damping * still / state.roundoff) * state.x_size) return;

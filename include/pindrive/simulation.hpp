@@ -101,6 +101,10 @@ class Simulation : private Selection<T> {
 
   /// Flat, as calls would cost a plain release a tenth of its time.
   [[gnu::flatten]] void select() {
+    if (const T rounds = finger_.starts_nowhere(state_); rounds > 0) {
+      finger_.load.rate = T(0);
+      row_ = std::min(row_, time_ + rounds * first_grip<T> * row_);
+    }
     if (!Selected::select()) outcome_.status = Status::inconsistent;
     finger_.land(state_);
   }
@@ -116,7 +120,8 @@ class Simulation : private Selection<T> {
     segment.plate_velocity = plate_.surface;
     segment.creeps = false;
     series_.reset();
-    if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across)) {
+    if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
+                                    finger_.load)) {
       series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
                     continues() ? limit_ : 0, stop_.no_push(),
                     std::min(row_, inputs_.duration) - time_);
@@ -192,15 +197,13 @@ class Simulation : private Selection<T> {
     }
     const bool row = tau == row_ - time_;
     time_ = row ? row_ : time_ + tau;
-    const T across = plate_.across.at(tau);
-    if (inputs_.constant())
-      plate_.surface = inputs_.mouse_velocity.from(time_);
-    else
-      look_ahead();
+    const T across = plate_.across.at(tau), level = finger_.sliding() ? finger_.level() : T(0);
+    const T loaded = load_before(finger_.load.at(tau), finger_.load.rate);
     segment.end = time_;
     limit_ = 0;
     struck_ = false;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
+    T rest{0};  // velocity of what is on the finger
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
       if (meets_stop(guard, row)) continue;
@@ -213,18 +216,20 @@ class Simulation : private Selection<T> {
           state_.slide = side.does.sense * speed;
           continue;
         }
-        state_.v = side.surface.value + side.does.sense * speed;
+        state_.v = (guard.plate ? side.surface.value : level) + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
+        if (!guard.plate) rest = state_.v;
       } else if (side.elastic()) {
-        state_.skin = guard.side * finger_.stick_limit();
+        state_.skin = guard.side * drive_.finger.static_limit * loaded;
       } else if (!row) {
         limit_ = guard.side;
       }
     }
-    if (on_plate && on_finger) plate_.surface.value = T(0);
-    if (on_finger || on_plate) state_.v = on_finger ? T(0) : plate_.surface.value;
-    if (finger_.sliding() && !drive_.finger.rigid()) state_.skin = finger_.skin_force(state_);
+    if (on_plate && on_finger) plate_.surface.value = rest;
+    if (on_finger || on_plate) state_.v = on_finger ? rest : plate_.surface.value;
+    if (finger_.sliding() && !drive_.finger.rigid())
+      state_.skin = finger_.skin_force(state_, loaded);
     land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
     if (stop_.settles(state_) || struck_) begin_at_stop();
   }
@@ -249,6 +254,19 @@ class Simulation : private Selection<T> {
     limit_ = 0;
   }
 
+  /// Takes the inputs from here on; the finger's load until now, where it was this by its rate: it jumps, or it
+  /// is the same but for rounding.
+  T load_before(T value, T rate) {
+    using std::abs;
+    if (inputs_.constant())
+      plate_.surface = inputs_.mouse_velocity.from(time_);
+    else
+      look_ahead();
+    const T now = finger_.load.value;
+    return abs(value - now) <= rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_)
+               ? now
+               : value;
+  }
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
   /// Rows that differ by the rounding of a time are one: the last of them.
   void look_ahead() {

@@ -5,6 +5,7 @@
 /// speed of the pin; where its curve falls, no speed lasts.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,15 +26,20 @@ struct Landing {
   bool drops{false};      ///< or it slid so fast that the skin has become shorter
 };
 
-/// The landings of a slider on a curve. `pin(F)` is the speed that it has where its friction stays F.
-template <class T, class Pin>
+/// The landings of a slider on a curve, of a pin with a speed along the slip. Its skin stretches by `follows`
+/// for each newton of friction under a load of 1, as its load changes, m/s.
+template <class T>
 class Slider {
  public:
-  Slider(const Contact<T>& contact, Pin pin) : contact_(contact), pin_(pin) {}
+  Slider(const Contact<T>& contact, T speed, T follows)
+      : contact_(contact), speed_(speed), follows_(follows) {}
+
+  /// The speed that it has where its friction stays this, m/s.
+  T pin(T friction) const { return follows_ == 0 ? speed_ : speed_ - follows_ * friction; }
 
   /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
   /// none does, it is infinitely fast until the skin asks no more than the last.
-  Landing<T> faster(int branch, T asked) const {
+  [[gnu::noinline]] Landing<T> faster(int branch, T asked) const {
     for (int j = branch;; ++j) {
       const Branch<T> range = contact_.branch(j);
       const bool last = !(range.to < never);
@@ -42,14 +48,14 @@ class Slider {
         if (!(asked > range.force) || same(asked, range.force))
           return {j, range.from, range.force, Bound::lower};
         if (same(asked, most)) {
-          if (!(pin_(most) > range.to)) return {j, range.to, most, Bound::upper};
+          if (!(pin(most) > range.to)) return {j, range.to, most, Bound::upper};
         } else if (asked < most) {
           return {j, range.from + (asked - range.force) / range.slope, asked};
         }
       }
       const bool drops = range.force < asked && !same(asked, range.force);
       if (range.slope != 0 || (drops && !last)) continue;
-      const T speed = pin_(range.force);
+      const T speed = pin(range.force);
       if (speed < range.from && drops) {
         Landing<T> back = slower(j, range.force);
         back.drops = true;
@@ -62,7 +68,7 @@ class Slider {
 
   /// The first speed below the begin of a branch at which its curve carries no more than the friction asked of
   /// it; without one it grips.
-  Landing<T> slower(int branch, T asked) const {
+  [[gnu::noinline]] Landing<T> slower(int branch, T asked) const {
     for (int j = branch - 1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
       const bool start = same(asked, range.force);
@@ -71,7 +77,7 @@ class Slider {
         if (asked > most || same(asked, most)) return {j, range.to, most, Bound::upper};
         return {j, range.from + (asked - range.force) / range.slope, asked};
       }
-      const T speed = pin_(range.force);
+      const T speed = pin(range.force);
       const bool holds = j == 0 && asked < contact_.static_limit;
       if (range.slope > 0 && start && speed > range.from && !holds)
         return {j, range.from, range.force, Bound::lower};
@@ -81,6 +87,28 @@ class Slider {
       return {j, range.to, range.force, Bound::upper};
     }
     return {0, T(0), asked, Bound::none, true};
+  }
+  /// The same of one that has become slower at once, and would be at rest on a plateau.
+  Landing<T> gripping(const Landing<T>& rests) const {
+    Landing<T> grips = slower(rests.branch, rests.friction);
+    grips.drops = true;
+    return grips;
+  }
+
+  /// The largest speed that lasts as a load grows from zero, at which friction grows as the skin stretches; it
+  /// grips if none does.
+  [[gnu::noinline]] Landing<T> from_zero() const {
+    const auto misses = [&](T speed, T friction) { return pin(friction) - speed; };
+    for (int j = speed_ > 0 ? contact_.branch_of(speed_) : -1; j >= 0; --j) {
+      const Branch<T> range = contact_.branch(j);
+      const T left = misses(range.from, range.force);
+      const bool last = !(range.to < never);
+      if (range.slope < 0 || !(left > 0)) continue;
+      if (!last && misses(range.to, contact_.branch(j + 1).force) > 0) continue;
+      const T speed = std::min(range.from + left / (1 + follows_ * range.slope), range.to);
+      return {j, speed, range.at(speed)};
+    }
+    return {0, T(0), T(0), Bound::none, true};
   }
 
  private:
@@ -92,7 +120,7 @@ class Slider {
   }
 
   const Contact<T>& contact_;
-  Pin pin_;
+  T speed_, follows_;
 };
 
 /// What a contact may do.
@@ -156,19 +184,33 @@ class SlidingSkin : public TouchState<T> {
   bool lags() const { return contact.may_lag() && sliding() && branch().slope != 0; }
   /// The speed of its slider, which lags; along its slip.
   T slide() const { return landed() ? T(landing_.speed) : slid_; }
-  /// By how much the pin is faster than that.
-  T gap(T v) const { return meets_ && slide() == slid_ ? T(0) : does.sense * v - slide(); }
+  /// By how much the pin is faster than that, beside what the skin stretches as its load grows.
+  T gap(T v) const {
+    if (meets_ && slide() == slid_) return T(0);
+    return does.sense * v - stretching(carried()) - slide();
+  }
+  /// The rate at which the stretch of a friction follows the load, m/s.
+  T stretching(T of) const {
+    return load.rate == 0 || contact.rigid() ? T(0) : load.rate * of / contact.stiffness;
+  }
+  /// The velocity of a pin at which what a contact does at an end of its range stays there, m/s.
+  T level() const {
+    if (contact.rigid()) return surface.value;
+    return elastic() ? -sense_ * stretching(contact.static_limit)
+                     : does.sense * stretching(branch().force);
+  }
   /// Whether its skin has become shorter at once.
   bool drops() const { return landed() && landing_.drops; }
 
-  /// What it stretches its skin with as it slips, N.
-  T skin_force(const State<T>& s) const {
+  /// What it stretches its skin with as it slips under a load, N.
+  T skin_force(const State<T>& s, T loaded) const {
     const Branch<T> range = branch();
     const T sense = does.sense;
-    return sense * range.at(lags() ? sense * s.slide : range.from) * load.value;
+    return sense * range.at(lags() ? sense * s.slide : range.from) * loaded;
   }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {
+    if (does.state == ContactState::absent) s.skin = T(0);
     if (drops()) s.skin = grip(s);
     if (lags()) s.slide = does.sense * slide();
   }
@@ -184,7 +226,10 @@ class SlidingSkin : public TouchState<T> {
   ForceRate<T> slip_rate(T v, T acceleration) const {
     using std::abs;
     const T stiffness = contact.stiffness, sense = does.sense;
-    const T faster = stiffness * gap(v) / (branch().slope * load.value);
+    const T slope = branch().slope;
+    const T faster = load.value == 0
+                         ? sense * stiffness * acceleration / (stiffness + 2 * slope * load.rate)
+                         : stiffness * gap(v) / (slope * load.value);
     return {-stiffness * (v - sense * slide()), stiffness * (abs(v) + slide()),
             -stiffness * (acceleration - sense * faster)};
   }
@@ -198,6 +243,7 @@ class SlidingSkin : public TouchState<T> {
   /// Whether it has neither force nor static friction, so that it may slip either way.
   bool either_way() const { return compliant() && either_way_; }
   TouchOption<T> after_landing(T sense) const {
+    if (lifted()) return {};
     if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
     return slip(sense, landing_.at, landing_.branch);
   }
@@ -218,13 +264,19 @@ class SlidingSkin : public TouchState<T> {
   }
 
   /// Finds out what it may do.
-  void ask_slider(const State<T>& s, T u) {
+  [[gnu::noinline]] void ask_slider(const State<T>& s, T u) {
     Bound& at = at_;
-    breaks_ = false;
+    breaks_ = either_way_ = meets_ = false;
+    if (!contact.present()) return;
+    if (load.value == 0 && !takes_load(s, u)) return;
     meets_ = sliding() && !lags();
-    if (sliding()) {
+    if (sliding() && load.value != 0) {
       const Branch<T> range = branch();
-      const T speed = sense_ * (lags() ? s.slide : u);
+      const auto goes = slider(sense_, u);
+      const T speed = lags() ? sense_ * s.slide : goes.pin(range.force);
+      if (meets_ && at != Bound::none &&
+          off(speed - (at == Bound::upper ? range.to : range.from), u))
+        at = Bound::none;  // its load has changed its rate
       const Bound came_to = at;
       if (at == Bound::none && speed >= range.to) at = Bound::upper;
       if (at == Bound::none && !(speed > range.from)) at = Bound::lower;
@@ -232,13 +284,21 @@ class SlidingSkin : public TouchState<T> {
       const T jumps = at == Bound::upper ? speed - range.to : range.from - speed;
       breaks_ = meets_ && came_to == Bound::none && at != Bound::none &&
                 jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
+      meets_ = meets_ && !breaks_;
       slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
       friction = range.at(lags() ? slid_ : range.from);
+      const T pulls = sense_ * s.skin, most = friction * load.value;
+      if (std::abs(plain(pulls - most)) > 64 * rounding<T> * plain(pulls + most) + s.roundoff) {
+        breaks_ = true;  // its load has jumped
+        meets_ = false;
+        landing_ = pulls > most ? goes.faster(branch_, pulls / load.value)
+                                : goes.slower(branch_ + 1, pulls / load.value);
+        return;
+      }
       if (at == Bound::none) return;
       if (at == Bound::upper || branch_ > 0) {
         const int beyond = branch_ + (at == Bound::upper ? 1 : 0);
         const T asked = friction = contact.branch(beyond).force;
-        const auto goes = slider(sense_, u);
         landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
         count = breaks_ ? 1 : 2;
         if (at == Bound::upper || !landing_.grips || asked < contact.static_limit) return;
@@ -247,18 +307,31 @@ class SlidingSkin : public TouchState<T> {
     friction = contact.branch(0).force;
     count = 1;
     breaks_ = false;
-    if (before == ContactState::absent) return;
     at = Bound::none;
     rest_ = ContactState::elastic_stick;  // with the force that it has
-    const T most = stick_limit();
-    either_way_ = !(most > 0) && s.skin == 0;
-    sense_ = (either_way_ ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
+    const T most = stick_limit(), grows = stretching(contact.static_limit);
+    const bool empty = !(most > 0) && s.skin == 0;
+    either_way_ = empty && !(grows > 0);
+    sense_ = (empty ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
     const T pulls = -sense_ * s.skin;
-    if (pulls < most || sense_ * u > 0) return;
+    const bool exceeds = pulls > most + rounding<T> * most + s.roundoff;
+    if (!(exceeds && load.rate != 0) && (pulls < most || sense_ * u > -grows)) return;
     at = Bound::upper;
-    breaks_ = pulls > most + rounding<T> * most + s.roundoff;
-    landing_ = slider(-sense_, u).faster(0, breaks_ ? pulls / load.value : contact.static_limit);
+    breaks_ = exceeds;
+    const auto goes = slider(-sense_, u);
+    landing_ = goes.faster(0, breaks_ ? pulls / load.value : contact.static_limit);
+    if (landing_.drops && landing_.at == Bound::lower && load.rate < 0)  // nor does it slip on
+      landing_ = goes.gripping(landing_);
     count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
+  }
+
+ public:
+  /// How many times too fast the pin is for skin to grip as its load grows from zero, where no speed of its
+  /// slider lasts either: it then grips and slips the more often, the smaller the load is. Else 0.
+  [[gnu::noinline]] T starts_nowhere(const State<T>& s) const {
+    if (!contact.may_lag() || load.value != 0 || !(load.rate > 0)) return T(0);
+    const T u = s.v < 0 ? -s.v : s.v, most = stretching(contact.static_limit);
+    return u > most && slider(T(1), u).from_zero().grips ? u / most : T(0);
   }
 
  protected:
@@ -266,8 +339,29 @@ class SlidingSkin : public TouchState<T> {
 
  private:
   bool compliant() const { return !contact.rigid(); }
-  auto slider(T sense, T u) const {
-    return Slider(contact, [=](T) { return sense * u; });
+  bool lifted() const { return load.value == 0 && !(load.rate > 0); }
+  Slider<T> slider(T sense, T u) const {
+    return {contact, sense * u, contact.rigid() ? T(0) : load.rate / contact.stiffness};
+  }
+  bool off(T distance, T u) const {
+    using std::abs;
+    const T size = abs(u) + abs(stretching(contact.branch(branch_).force));
+    return abs(distance) > 64 * rounding<T> * size;
+  }
+
+  /// What it does where its load is zero: it lifts, slides on as the load grows, or grips. Whether it is at the
+  /// limit of that grip.
+  bool takes_load(const State<T>& s, T u) {
+    landing_ = {};
+    breaks_ = true;
+    at_ = Bound::none;
+    if (!lifted()) {
+      sense_ = u < 0 ? T(-1) : T(1);
+      landing_ = slider(sense_, u).from_zero();
+      breaks_ = !landing_.grips || s.skin != 0 || sense_ * u != stretching(contact.static_limit);
+    }
+    landing_.drops = s.skin != 0;
+    return !breaks_;
   }
 
   /// Whether what it does is where its slider has come to at once.

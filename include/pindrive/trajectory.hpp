@@ -172,7 +172,8 @@ class BySeries {
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
     const Branch<T> branch = drive.finger.branch(mode.finger_branch);
     const bool lags = SeriesMode<T>(drive, mode, {}).lags();
-    Polynomial<T> force = -branch.slope * load.value * (lags ? step_.skin : step_.velocity);
+    Polynomial<T> force = Line<T>{-branch.slope * load.value, -branch.slope * load.rate} *
+                          (lags ? step_.skin : step_.velocity);
     const T at_rest = -along(mode.finger, branch.force - branch.slope * branch.from);
     force += Line<T>{at_rest * load.value, at_rest * load.rate};
     return force;

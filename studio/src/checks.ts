@@ -149,13 +149,12 @@ export function checkWithinTravel(values: Found): void {
   throw new Refusal("displacement", words, `${floatRepr(displacement)} m`);
 }
 
-/** Refuses a load that changes on a finger with a stiffness or a curve. */
+/** Refuses a load that changes on a finger with a stiffness. */
 export function checkFingerLoad(values: Found): void {
   const load = values["motion.finger_load"];
   if (!Array.isArray(load) || load.every(([, y]) => y === load[0]![1])) return;
-  const rigid = values["finger.stiffness"] == null;
-  if (rigid && (frictionOf(values, "finger").curve?.length ?? 0) < 2) return;
-  const words = `constant for a finger with ${rigid ? "a curve" : "a stiffness"}`;
+  if (values["finger.stiffness"] == null) return;
+  const words = "constant for a finger with a stiffness";
   throw new Refusal("finger_load", words, `a Profile of ${load.length} rows`);
 }
 

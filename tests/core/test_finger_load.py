@@ -22,6 +22,18 @@ CASES = {
     "curved plate, its load changes too": forced.case(
         replace(DRIVE, plate=CURVE), finger_load=LIFTS, load=[[0.0, 1.0], [0.03, 3.0], [0.05, 0.5]]
     ),
+    "curved finger": forced.case(replace(DRIVE, finger=CURVE), finger_load=LIFTS),
+    "both curved, both loads change": forced.case(
+        replace(DRIVE, finger=CURVE, plate=CURVE),
+        finger_load=LIFTS,
+        load=[[0.0, 1.0], [0.03, 3.0], [0.05, 0.5]],
+    ),
+    "curved finger, held, then released": forced.case(
+        replace(DRIVE, finger=CURVE),
+        finger_load=[[0.0, 6.0], [0.02, 6.0], [0.05, 0.0]],
+        velocity=0.0,
+        force=[[0.0, 0.0]],
+    ),
     "held, then released": forced.case(
         DRIVE, finger_load=[[0.0, 6.0], [0.02, 6.0], [0.05, 0.0]], velocity=0.0, force=[[0.0, 0.0]]
     ),
@@ -68,6 +80,15 @@ def test_a_lifted_finger_is_no_finger() -> None:
     assert np.array_equal(lifted, alone)
 
 
+def test_rows_of_a_constant_load_are_the_load() -> None:
+    drive = replace(DRIVE, finger=CURVE)
+    rows = Profile([0.0, 0.01, 0.05], [1.5, 1.5, 1.5])
+    one, other = (simulate(drive, Release(0.06, 0.002, finger_load=f)) for f in (rows, 1.5))
+    t = np.linspace(0.0, 0.2, 201)
+    assert np.abs(one.position(t) - other.position(t)).max() < 1e-16
+    assert [e.kind for e in one.events] == [e.kind for e in other.events]
+
+
 @pytest.mark.parametrize("name", ["finger_load", "finger_load[1].value", "finger_load[5].time"])
 def test_the_derivative_along_a_finger_load(name: str) -> None:
     row, column = (int(name[12]), name[15:]) if "[" in name else (-1, "value")
@@ -103,9 +124,6 @@ BAD: dict[str, Callable[[], object]] = {
     ),
     "finger_load must be constant for a finger with a stiffness, got a Profile of 6 rows": (
         lambda: simulate(forced.DRIVE, Release(0.06, finger_load=LIFT))
-    ),
-    "finger_load must be constant for a finger with a curve, got a Profile of 6 rows": (
-        lambda: simulate(replace(DRIVE, finger=CURVE), Release(0.06, finger_load=LIFT))
     ),
     "finger_load must be 1; `simulate` follows another, got a Profile": (
         lambda: simulate_batch(DRIVE, Release(0.06, finger_load=LIFT), mass=[0.01])

@@ -71,8 +71,14 @@ void beside_taylor() {
     e.plate_slope = i % 3 == 0 ? 0.2 * uniform(random) : 0;
     e.force.rate = 0.2 * uniform(random);
     if (i % 2 == 0) {
-      e.skin_factor = 1;
-      e.skin_gain = 300;
+      e.skin_factor = {1, 0};
+      e.skin_stiffness = 300;
+    }
+    if (i % 5 == 0) {  // a slider, and a damper, under a load that changes
+      e.skin_factor = {0.2, 2 * uniform(random)};
+      e.skin_stiffness = e.skin_decay = 300;
+      e.skin_drift = 0.5 * uniform(random);
+      e.damping_rate = 5 * uniform(random);
     }
     const pd::SeriesState<double> start{2e-3 * uniform(random), 0.1 * uniform(random), 0};
     const auto whole = follow(e, start, 0.05, false), reduced = follow(e, start, 0.05, true);

@@ -22,7 +22,7 @@ auto landings(const std::array<double, N>& u, const std::array<double, N>& f,
   const int count = pd::branches_of(u.data(), f.data(), static_cast<int>(N), branches.data());
   static pd::Contact<double> contact;
   contact = {f[0], 1.5, 1000.0, branches.data(), count};
-  return pd::detail::Slider(contact, [=](double) { return pin; });
+  return pd::detail::Slider<double>(contact, pin, 0.0);
 }
 
 void faster_and_slower() {

@@ -73,7 +73,6 @@ class Draw {
     if (chance(0.15))
       c.force = profile([&] { return chance(0.3) ? 0 : tidy(force_ * uniform(-1, 1)); }, last, 0.3);
     c.duration = last + period_ * uniform(0.3, long_ ? 12 : 2);
-    // A finger that presses and lifts is rigid and without a curve.
     const auto touch = [&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); };
     if (coulomb && chance(0.2))
       c.finger_load = std::isinf(c.skin) ? profile(touch, last, 0.3) : Rows{{0}, {touch()}};
@@ -82,7 +81,8 @@ class Draw {
     if (family_ == Family::oblique || (family_ == Family::any && oblique)) c.across = across();
     if (family_ == Family::stops || (family_ == Family::any && chance(0.1)))
       stop(c, critical, length);
-    if (family_ == Family::skin) skin(c, critical, length);
+    if (family_ == Family::skin || (family_ == Family::any && chance(0.1)))
+      skin(c, critical, length);
     return c;
   }
 
@@ -119,7 +119,7 @@ class Draw {
       c.displacement = c.travel * (chance(0.3) ? 1 : uniform(-1, 1));
   }
 
-  /// A friction curve on skin, from soft to stiff, now and then beside stops or under a hand across. It may
+  /// A friction curve on skin or on a rigid finger under a load over time, from soft to stiff, now and then beside stops or under a hand across. It may
   /// rise, fall or stay, and have no static friction.
   void skin(Case& c, double critical, double length) {
     c.skin = c.stiffness * decade(-1, 4);
@@ -130,6 +130,10 @@ class Draw {
         c.curve[1].value[i] = c.curve[1].value[i - 1];
     c.limit[1] = c.curve[1].value[0] * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
     c.finger_load = {{0}, {chance(0.7) ? 1 : tidy(uniform(0, 2))}};
+    const bool rigid = chance(0.25);  // such a finger may press and lift
+    double last = 0;
+    if (rigid)
+      c.finger_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.2);
     if (chance(0.1)) c.across = across();
     if (chance(0.2)) stop(c, critical, length);
     // The steepest rise or fall has the slowest skin, the flattest the fastest.
@@ -139,7 +143,8 @@ class Draw {
       if (rise > 0) flattest = std::min(flattest, rise / (c.curve[1].at[i] - c.curve[1].at[i - 1]));
     }
     const double load = c.finger_load.value[0];
-    if (load == 0) return;
+    if (rigid) c.skin = never;
+    if (load == 0 || rigid) return;
     c.duration = std::min({c.duration, 3 * period_, 2e3 * flattest * load / c.skin});
     // Where it falls, skin slips and grips the more often the less the friction falls by.
     double least = c.limit[1];

@@ -10,8 +10,9 @@ leading coefficients of its guards are positive.
 Inputs are a mapping of SI values: mass, stiffness, damping, displacement, velocity (None: that of
 the plate), skin_stretch (None: as the start asks), mouse_velocity and load as rows (time, value),
 plate and finger as mappings with curve (rows of speed and force), static, and stiffness (None:
-rigid); and, unless there is none, force, rows of an external force, and finger_load, rows of a
-factor on the friction of a rigid finger without a curve.
+rigid; of skin under a load that changes the curve has one row, and the load is above zero); and,
+unless there is none, force, rows of an external force, and finger_load, rows of a factor on the
+friction of the finger.
 """
 
 from __future__ import annotations
@@ -154,6 +155,7 @@ class _Simulation:
         self.side: Sides = {c: int(sign(gaps[c])) for c in self.law}
         self.band = {c: law.band(abs(gaps[c])) for c, law in self.law.items()}
         self.stretch = mpf(skin_stretch or 0)  # of gripping skin
+        self.force_before = mpf(0)  # on skin that slips, before a row
         if "finger" in self.law and "finger" not in self.rigid and skin_stretch is not None:
             self.side["finger"] = 0
         level = [c for c in self.rigid if self.side[c] == 0]
@@ -181,6 +183,7 @@ class _Simulation:
         h = min(self.step(), knot - self.t)
         x = self.series(h)
         guards = [g for g in self.guards(x, h) if not g.idle]
+        touched = self.touched(h)
         unit = h * self.frequency / REACH
 
         def doubt(reason: str, s: mpf) -> None:
@@ -193,6 +196,8 @@ class _Simulation:
         end = knot if s == 1 and h == knot - self.t else self.t + s * h
         if s > 0:
             self.record(x, h)
+            if "finger" in self.law:
+                self.force_before = horner(touched, s) * self.law["finger"].forces[0]
             velocity = derivative(x)
             if self.side.get("finger") == 0 and "finger" not in self.rigid:
                 self.stretch += horner(x, s) - self.x
@@ -215,7 +220,7 @@ class _Simulation:
         return REACH / max(sqrt(stiffness / self.m), abs(damping) / self.m)
 
     def scaled(self, contact: str) -> mpf:
-        return self.load(self.t) if contact == "plate" else mpf(1)
+        return (self.load if contact == "plate" else self.touch)(self.t)
 
     def lines(self, h: mpf) -> tuple[Poly, Poly]:
         """Mouse velocity and load over the step."""
@@ -254,7 +259,9 @@ class _Simulation:
                 stiffness += finger.stiffness
                 push = plus(push, [finger.stiffness * (self.x - self.stretch)])
             else:
-                damping += finger.slopes[self.band["finger"]]
+                slope = finger.slopes[self.band["finger"]]
+                damping += self.touch(self.t) * slope
+                growing += self.touch.slope(self.t) * slope * h
                 force = -self.side["finger"] * finger.at_zero(self.band["finger"])
                 push = plus(push, times(force, self.touched(h)))
         drag, spring, unit = damping * h / self.m, stiffness * h * h / self.m, h * h / self.m
@@ -303,7 +310,7 @@ class _Simulation:
         for contact, law in self.law.items():
             side, band = self.side[contact], self.band[contact]
             if side:
-                speed = times(mpf(side), u[contact])
+                speed = plus(times(mpf(side), u[contact]), [-self.stretching(contact)])
                 kind = "down" if band else "level"
                 above = plus(speed, [-law.speeds[band]])
                 found.append(Guard(contact, kind, above, self.speed))
@@ -330,18 +337,49 @@ class _Simulation:
             elif contact in self.rigid:
                 level = [c for c in self.rigid if c in level or c == contact]
             elif law and guard.kind == "level":  # the skin grips again
-                self.v = mpf(0)
-                self.stretch = self.side[contact] * law.forces[0] / law.stiffness
-                self.side[contact] = 0
+                self.v = self.side[contact] * self.stretching(contact)
+                self.grip(self.touch(self.t) * law.forces[0])
             elif law:  # the skin slips
                 self.side[contact] = int(sign(self.stretch))
                 self.band[contact] = law.band(abs(self.v))
+                self.go_on(self.touch(self.t) * law.forces[0])
+        if "finger" in self.law and "finger" not in self.rigid and self.t in self.knots:
+            self.take_load()
         if "plate" in level:
             self.v = self.mouse(self.t)
         if "finger" in level:
             self.v = mpf(0)
         self.settle(level, was)
         self.note(was)
+
+    def stretching(self, contact: str) -> mpf:
+        """How fast skin that slips stretches with its load."""
+        law = self.law[contact]
+        return (
+            self.touch.slope(self.t) * law.forces[0] / law.stiffness if contact == "finger" else 0
+        )
+
+    def grip(self, force: mpf) -> None:
+        """Skin that has slipped holds, with a force."""
+        self.stretch = self.side["finger"] * force / self.law["finger"].stiffness
+        self.side["finger"] = 0
+
+    def go_on(self, force: mpf) -> None:
+        """Skin slips on, unless its slider would turn: then it holds."""
+        if self.side["finger"] * self.v < self.stretching("finger"):
+            self.grip(force)
+
+    def take_load(self) -> None:
+        """What skin does at a row of its load: its stretch goes on unless the load is too small."""
+        law, load = self.law["finger"], self.touch(self.t)
+        if self.side["finger"] == 0:
+            if law.stiffness * abs(self.stretch) > load * law.static:
+                self.side["finger"] = int(sign(self.stretch))
+                self.go_on(load * law.forces[0])
+        elif self.force_before < load * law.forces[0]:
+            self.grip(self.force_before)
+        else:
+            self.go_on(load * law.forces[0])
 
     def settle(self, level: list[str], was: Sides) -> None:
         """Choose the sides of the contacts at the pin's velocity: the first that are possible."""

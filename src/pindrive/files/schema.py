@@ -255,7 +255,7 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     problems.check(check_within_travel, values[start[0]], travel, stiffness, keys=start)
     load = over_time(values["motion.finger_load"])
     assert load is not None  # it is 1 unless given
-    load_keys = ("motion.finger_load", "finger.stiffness", "finger.curve")
+    load_keys = ("motion.finger_load", "finger.stiffness")
     problems.check(check_finger_load, load, finger, keys=load_keys)
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")

@@ -47,7 +47,7 @@ class Release:
             duration.
         finger_load: factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
-            `Profile`. One that changes needs a rigid finger without a friction curve.
+            `Profile`. One that changes needs a rigid finger.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -116,10 +116,10 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
 
 
 def check_finger_load(load: float | Profile, finger: Contact) -> None:
-    """Refuse a load that changes on a finger with a stiffness or a curve."""
-    if not isinstance(load, Profile) or not load.changes or (finger.rigid and not finger.curved):
+    """Refuse a load that changes on a finger with a stiffness."""
+    if not isinstance(load, Profile) or not load.changes or finger.rigid:
         return
-    required = "constant for a finger with " + ("a curve" if finger.rigid else "a stiffness")
+    required = "constant for a finger with a stiffness"
     raise ValueError(refusal("finger_load", required, f"a Profile of {len(load.times)} rows"))
 
 
