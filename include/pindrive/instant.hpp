@@ -24,7 +24,7 @@ class Instant {
     position_ = at_stop ? side(mode.stop) * drive.stops.travel : drive.stops.within(state.x);
     const Line<T> surface = at_stop ? Line<T>{} : e.surface;
     velocity_ = e.held ? surface.value : state.v;
-    const T skin = e.skin_factor * (lags ? state.slide : state.skin);
+    const T skin = e.skin_factor.value * (lags ? state.slide : state.skin);
     const T pull = e.force.value - e.damping * velocity_ - e.stiffness * position_ - skin;
     const T plate = slips(mode.plate) ? plate_slip(e, pull) : T(0);
     acceleration_ = e.held ? surface.rate : (pull + plate) / e.mass;
