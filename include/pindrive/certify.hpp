@@ -617,8 +617,14 @@ class Certifier {
     const Segment<T>& segment = stage.segment;
     if (!brief_) instant_ = segment.begin;
     Numbers s = state(stage, T(0));
+    // A plate's direction may turn in no more time than that.
+    const bool oblique = segment.mode.plate == ContactState::slip_oblique;
+    const auto turned = [&] {
+      return abs(state(stage, stage.span).plate_force - s.plate_force) > T(1e-10) * force_scale_;
+    };
     brief_ = segment.end - segment.begin <= T(1e-11) * x_scale_ / v_scale_ &&
-             !(within_limit(stage, s) > 8 * detail::rounding<T> * force_scale_);
+             !(within_limit(stage, s) > 8 * detail::rounding<T> * force_scale_) &&
+             !(oblique && turned());
     const auto began = [&](ContactState does, ContactState& was, T& since) {
       const bool slides_on = was == ContactState::slip_oblique && slips(does);
       if (does != was && !slides_on) since = segment.begin;
@@ -630,7 +636,6 @@ class Certifier {
     if (brief_ || held_by_stop(drive_, segment.mode)) return;
     const T still = T(1e-12) * v_scale_;
     // Where both sliding velocities are zero, a plate's direction is that in which the pin sets out, or stays.
-    const bool oblique = segment.mode.plate == ContactState::slip_oblique;
     const T drags = stage.plate_velocity.rate, turns = detail::hypot(drags, stage.across.rate);
     if (oblique && turns > 0 && abs(s.v - stage.plate_velocity.value) <= still &&
         abs(stage.across.value) <= still)

@@ -133,12 +133,11 @@ struct Touch : SlidingSkin<T> {
     const T unsure = range.rounding * load.value * abs(faster);
     return {rate, abs(rate) + unsure / rounding<T>, bend};
   }
-  /// What the rounding of the velocities makes of its force, N: much where it hardly slides across.
+  /// What the rounding of this velocity of the pin makes of its force, N: much where it hardly slides across.
   T unsure(T v) const {
     using std::abs;
-    if (!oblique()) return T(0);
-    return rounding<T> * (abs(v) + abs(surface.value)) *
-           abs(slides(v, surface.rate).steepness(branch(), load));
+    if (!oblique() || v == 0) return T(0);
+    return rounding<T> * abs(v * slides(v, surface.rate).steepness(branch(), load));
   }
   /// How large the terms are that it brings into a sum of forces, N.
   T size(T v) const {
@@ -181,7 +180,9 @@ struct Touch : SlidingSkin<T> {
       const T closing = speed.closing(), known = speed.rounding_of(surface.value);
       const T parting = speed.parting(second);
       const bool turns = closing == 0 || touches(closing, parting, known);
-      const T faster = !turns ? closing : parting != 0 ? parting : speed.u.value * third;
+      T faster = closing;
+      if (turns) faster = parting != 0 ? parting : speed.u.value * third;
+      if (faster == 0) faster = second * second;  // it begins to turn
       return (does.at == Bound::lower ? faster : -faster) >= 0;
     }
     const T decides = first != 0 ? first : second != 0 ? second : third;
