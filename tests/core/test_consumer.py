@@ -84,6 +84,7 @@ def test_the_core_stands_alone() -> None:
         "cstring",
         "iterator",
         "limits",
+        "optional",
         "type_traits",
         "utility",
     }

@@ -377,15 +377,15 @@ std::array<Dual, 7> numbers_of(const pd::Instant<Dual>& now, bool rigid) {
           rigid ? Dual(0) : now.stretch_rate()};
 }
 std::array<Dual, 7> numbers_of(const pd::Stepper<Dual>& stepper) {
-  const auto& drive = stepper.drive();
+  const auto& given = stepper.drive();
   const auto& segment = stepper.segment();
   const auto lines = stepper.lines();
   const Dual tau = stepper.tau();
-  return pd::visit_trajectory(drive, segment, lines, [&](const auto& t) -> std::array<Dual, 7> {
-    const auto friction = pd::friction_along(t, drive, segment, [&] { return lines; }, tau);
-    const bool rigid = drive.finger.rigid();
-    const Dual skin = rigid ? Dual(1) : drive.finger.stiffness;
-    return {drive.stops.within(t.at(t.position(), tau)),
+  return pd::visit_trajectory(given, segment, lines, [&](const auto& t) -> std::array<Dual, 7> {
+    const auto friction = pd::friction_along(t, given, segment, [&] { return lines; }, tau);
+    const bool rigid = given.finger.rigid();
+    const Dual skin = rigid ? Dual(1) : given.finger.stiffness;
+    return {given.stops.within(t.at(t.position(), tau)),
             t.at(t.velocity(), tau),
             t.at(t.acceleration(), tau),
             friction.plate,

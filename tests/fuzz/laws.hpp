@@ -178,7 +178,7 @@ struct Cut {
     // No farther than a rigid stop, nor than the skin can hold.
     const double reach = std::isinf(rest.stop_stiffness) ? rest.travel : never;
     const double grip = rest.limit[1] * rest.finger_load.value[0] / rest.skin;
-    const auto within = [](double value, double most) { return std::clamp(value, -most, most); };
+    const auto within = [](double value, double end) { return std::clamp(value, -end, end); };
     return {moved, within(x + part * most[0], reach), held ? v : v + part * most[1],
             within(stretch + part * most[0], grip)};
   }
