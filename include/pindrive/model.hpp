@@ -31,8 +31,8 @@ struct Branch {
 };
 
 /// The branches between the rows (speed, force) of a friction curve, at most count + 1; none for the
-/// one row of Coulomb friction. Rows on one line, to rounding, make one branch. The last slope goes
-/// on; where it falls, until the force is zero: friction never pushes.
+/// one row of Coulomb friction. Rows on one line, to rounding, make one branch, and a slope that is
+/// rounding is none. The last slope goes on; where it falls, until the force is zero: friction never pushes.
 template <class T>
 int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches) {
   using std::abs;
@@ -42,9 +42,10 @@ int branches_of(const T* speeds, const T* forces, int count, Branch<T>* branches
   int made = 0;
   for (int i = 0; i + 1 < count; ++i) {
     const T width = speeds[i + 1] - speeds[i];
-    const T slope = (forces[i + 1] - forces[i]) / width;
+    T slope = (forces[i + 1] - forces[i]) / width;
     const T rounding =
         unit * (forces[i] + forces[i + 1] + abs(slope) * (speeds[i] + speeds[i + 1])) / width;
+    if (abs(slope) <= unit * (forces[i] + forces[i + 1]) / width) slope -= plain(slope);
     const bool bends =
         made == 0 || abs(slope - branches[made - 1].slope) > rounding + branches[made - 1].rounding;
     if (bends) branches[made++] = {speeds[i], never, forces[i], slope, rounding};
