@@ -214,8 +214,7 @@ class Selection {
       if (!side.rests(state_.v)) return acceleration_;
       const T force = own - stick_force(side, of_other);
       const bool releases = side.before == ContactState::stick && continues();
-      if (!tangential_ &&
-          (abs(force) <= state_.roundoff + plate_.unsure(state_.v) || releases)) {
+      if (!tangential_ && (abs(force) <= state_.roundoff + plate_.unsure(state_.v) || releases)) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }

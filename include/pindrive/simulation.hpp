@@ -15,6 +15,12 @@
 #include "pindrive/series_oblique.hpp"
 #include "pindrive/series_segment.hpp"
 
+#ifdef __OPTIMIZE_SIZE__
+#define PINDRIVE_FLAT
+#else
+#define PINDRIVE_FLAT [[gnu::flatten]]
+#endif
+
 namespace pindrive {
 template <class T>
 class Stepper;
@@ -99,8 +105,8 @@ class Simulation : private Selection<T> {
     finger_.begin(state_, given);
   }
 
-  /// Flat, as calls would cost a plain release a tenth of its time.
-  [[gnu::flatten]] void select() {
+  /// Flat, as calls would cost a plain release a tenth of its time; but not where size was asked for.
+  PINDRIVE_FLAT void select() {
     if (const T rounds = finger_.starts_nowhere(state_); rounds > 0) {
       finger_.load.rate = T(0);
       row_ = std::min(row_, time_ + rounds * first_grip<T> * row_);
@@ -297,3 +303,5 @@ class Simulation : private Selection<T> {
 };
 
 }  // namespace pindrive::detail
+
+#undef PINDRIVE_FLAT
