@@ -79,8 +79,9 @@ class SeriesSegment {
   void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {
     using std::abs;
     using std::sqrt;
-    if (!used()) return;
-    const SeriesState<T> now = step_->at(tau);
+    if (!step_) return;
+    const SeriesStep<T>& step = *step_;
+    const SeriesState<T> now = step.at(tau);
     state.x = now.x;
     state.v = now.v;
     state.x_size = std::max(state.x_size, abs(state.x));
@@ -90,7 +91,7 @@ class SeriesSegment {
     // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
     // known no better than by what these still carry.
     const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
-    const T pull = drive.mass * step_->velocity.derivative().at(tau) + drive.damping * state.v +
+    const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
                    finger.branch().slope * finger.load.at(tau) * state.slide;
     const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
