@@ -24,6 +24,10 @@ struct Touch : SlidingSkin<T> {
   using Base::slip, Base::sliding, Base::elastic, Base::branch, Base::stick_limit;
 
   bool may_stick() const { return rest_ == ContactState::stick; }
+  /// Of what stuck under a force, the likelier slip is asked first: it matters where the law allows both.
+  void breaks_under(T force) {
+    if (sense_ == 0) sense_ = force < 0 ? T(-1) : T(1);
+  }
   bool stuck() const { return does.state == ContactState::stick; }
   bool oblique() const { return does.state == ContactState::slip_oblique; }
   /// Whether nothing but its relative acceleration tells where it goes.

@@ -102,6 +102,12 @@ class Selection {
   bool slips() {
     const bool finger = finger_first();
     Side &first = finger ? finger_ : plate_, &second = finger ? plate_ : finger_;
+    for (Side* side : {&first, &second}) {
+      Side& other = side == &first ? second : first;
+      if (!side->may_stick()) continue;
+      if (!other.may_stick()) other.does = other.option(0);
+      side->breaks_under(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
+    }
     for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
       for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
         first.does = first.option(k);

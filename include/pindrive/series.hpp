@@ -84,8 +84,10 @@ class SeriesFlow : public SeriesStep<T> {
       return (e.held ? turns : (abs(pull) + friction) / m + turns) / turns * linear_rate(e);
     const Real speed = hypot(u, w), along = u / speed, across = w / speed;
     // What friction takes from the pull, and how fast it turns with the velocity.
-    const Real left = abs(pull - friction * along) + friction * across * across;
-    return (e.held ? turns : left / m + turns) / speed;
+    // The plate accelerates too.
+    const Real apart = pull - m * plain(e.plate_velocity.rate);
+    const Real left = abs(apart - friction * along) + friction * across * across;
+    return (e.held ? turns : left / m + abs(plain(e.across.rate))) / speed;
   }
 
   /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.

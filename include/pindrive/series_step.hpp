@@ -84,13 +84,14 @@ class SeriesStep {
   }
 
   /// Leaves out the last terms that are rounding of what they are added to, as a short step needs fewer: of
-  /// the velocity those that are rounding of the acceleration.
+  /// the velocity and of skin those that are rounding of their rates.
   void trim() {
     using std::abs;
     int needed = 1;
     Real dropped{0};
     for (const Polynomial<T>* p : {&velocity, &skin, &speed, &plate_force, &stick_force}) {
-      const auto size = [&](int n) { return abs(plain(p->c[n])) * (p == &velocity ? n : 1); };
+      const bool by_rate = p == &velocity || p == &skin;
+      const auto size = [&](int n) { return abs(plain(p->c[n])) * (by_rate ? n : 1); };
       Real total{0}, tail{0};
       for (int n = 0; n <= N; ++n) total += size(n);
       int n = N;
