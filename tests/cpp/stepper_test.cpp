@@ -482,7 +482,7 @@ pd::Inputs<T> started(const pd::InputLines<T>& l, T x, T v) {
 void at_an_instant() {
   Random random(29);
   Instants instants;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < cases(2000); ++i) {
     Case c(random);
     std::vector<pd::Branch<double>> curve(5);
     pd::Contact<double>& finger = c.drive.finger;
@@ -547,7 +547,7 @@ void at_an_instant() {
       instants.setting_out, instants.lagging);
   expect(instants.worst < 1e-12, "an instant has the derivatives of the event loop");
   expect(std::min({instants.held, instants.by_both, instants.at_stop, instants.oblique,
-                   instants.setting_out, instants.lagging}) > 10,
+                   instants.setting_out, instants.lagging}) > cases(20),
          "in every kind of mode");
 }
 
