@@ -328,8 +328,8 @@ class SlidingSkin : public TouchState<T> {
  public:
   /// How many times too fast the pin is for skin to grip as its load grows from zero, where no speed of its
   /// slider lasts either: it then grips and slips the more often, the smaller the load is. Else 0.
-  [[gnu::noinline]] T starts_nowhere(const State<T>& s) const {
-    if (!contact.may_lag() || load.value != 0 || !(load.rate > 0)) return T(0);
+  T starts_nowhere(const State<T>& s) const {
+    if (load.value != 0 || !(load.rate > 0) || !contact.may_lag()) return T(0);
     const T u = s.v < 0 ? -s.v : s.v, most = stretching(contact.static_limit);
     return u > most && slider(T(1), u).from_zero().grips ? u / most : T(0);
   }
