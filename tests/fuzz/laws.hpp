@@ -127,13 +127,30 @@ inline double mirror_residual(const pd::Motion<double>& motion, const Case& c) {
 
 // ---- cut in two ----------------------------------------------------------------------------------
 
+/// Every row of a drive's inputs, in order of time.
+inline std::vector<double> all_rows(const Case& c) {
+  std::vector<double> times;
+  for (const Rows* rows : {&c.mouse_velocity, &c.plate_load, &c.force, &c.across, &c.finger_load})
+    times.insert(times.end(), rows->at.begin(), rows->at.end());
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+/// The last of the rows that are one with a row, to the rounding of its time: what is one must stay so where
+/// times are counted from a later instant, and their rounding is less.
+inline double as_one(const std::vector<double>& rows, double t) {
+  for (const double row : rows)
+    if (row > t && row - t <= 4 * std::numeric_limits<double>::epsilon() * t) t = row;
+  return t;
+}
+
 /// An input from a time on.
-inline Rows from(const Rows& rows, double t) {
+inline Rows from(const Rows& rows, double t, const std::vector<double>& all) {
   if (rows.at.size() == 1) return rows;
   Rows later{{0}, {Given::profile(rows).from(t).value}};
   for (std::size_t i = 0; i < rows.at.size(); ++i) {
     if (!(rows.at[i] > t)) continue;
-    later.at.push_back(rows.at[i] - t);
+    later.at.push_back(as_one(all, rows.at[i]) - t);
     later.value.push_back(rows.value[i]);
   }
   return later;
@@ -155,9 +172,10 @@ struct Cut {
     tau = 0.61803398874989 * (std::min(segment->end, whole.duration) - segment->begin);
     time = segment->begin + tau;
     tau = time - segment->begin;
+    const std::vector<double> all = all_rows(whole);
     for (Rows* rows :
          {&rest.mouse_velocity, &rest.plate_load, &rest.force, &rest.across, &rest.finger_load})
-      *rows = from(*rows, time);
+      *rows = from(*rows, time, all);
     rest.duration = whole.duration - time;
     const Place now = place(motion, *segment, tau);
     const pd::Mode mode = segment->mode;
