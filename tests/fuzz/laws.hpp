@@ -58,13 +58,15 @@ inline Place place(const pd::Motion<double>& motion, double t) {
   const auto at = motion.locate(t, pd::Side::right);
   return place(motion, *at.segment, at.tau);
 }
-/// The largest position and velocity as its segments begin, and half through them.
+/// The largest position and velocity as its segments begin and at times ever closer to that, as what springs back
+/// may be fastest soon.
 inline Place size(const pd::Motion<double>& motion, double duration) {
   Place most{};
   for (const auto& segment : motion) {
-    const double half = (std::min(segment.end, duration) - segment.begin) / 2;
+    const double span = std::min(segment.end, duration) - segment.begin;
     motion.along(segment, [&](const auto& along) {
-      for (const double tau : {0.0, half}) {
+      for (const double part : {0.0, 1.0 / 512, 1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2}) {
+        const double tau = part * span;
         most[0] = std::max(most[0], std::abs(along.at(along.position(), tau)));
         most[1] = std::max(most[1], std::abs(along.at(along.velocity(), tau)));
       }
