@@ -95,6 +95,13 @@ def test_the_core_stands_alone() -> None:
         assert not re.search(r"\b(new|(?<!= )delete|malloc|throw|try)\b", code), name
 
 
+def test_each_header_has_a_test_file() -> None:
+    headers = {path.stem for path in ROOT.glob("include/pindrive/*.hpp")}
+    tested = {path.stem.removesuffix("_test") for path in ROOT.glob("tests/cpp/*_test.cpp")}
+    assert headers
+    assert headers <= tested, sorted(headers - tested)
+
+
 def test_add_subdirectory(tmp_path: Path) -> None:
     build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
     check(tmp_path / "build" / "consumer")
