@@ -220,7 +220,8 @@ class Selection {
       if (!side.rests(state_.v)) return acceleration_;
       const T force = own - stick_force(side, of_other);
       const bool releases = side.before == ContactState::stick && continues();
-      if (!tangential_ && (abs(force) <= state_.roundoff + plate_.unsure(state_.v) || releases)) {
+      const bool none = abs(force) <= state_.roundoff + plate_.unsure(state_.v);
+      if (!tangential_ && (none || releases || turns_at_once(side, force))) {
         tangential_ = true;
         acceleration_ = side.surface.rate;
       }
@@ -245,6 +246,14 @@ class Selection {
       return side.goes_inside(state_, T(0), none ? T(0) : jerk, -needed.curvature);
     };
     return leaves(plate_, finger_, at_plate) && leaves(finger_, plate_, at_finger);
+  }
+
+  /// Whether the force that takes a sliding speed off a breakpoint turns within the rounding of the time.
+  bool turns_at_once(const Side& side, T force) const {
+    using std::abs;
+    if (side.may_stick() || side.lags() || !side.sliding()) return false;
+    const T rate = force_rate().value;
+    return force * rate < 0 && 2 * abs(force) <= rounding<T> * time_ * abs(rate);
   }
 
   /// Whether a pin that sets out goes on as the stops do.
