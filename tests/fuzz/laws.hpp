@@ -190,11 +190,12 @@ struct Cut {
       stretch = -motion.friction(*segment, tau).finger / whole.skin;
   }
 
-  /// What follows; moved by a part of the sizes of the motion where it can be, and damped by as much more
-  /// than it is, as what strikes a stop forgets where it came from.
+  /// What follows; moved by a part of the sizes of the motion where it can be, and damped and pulled by as much
+  /// more than it is, as what strikes a stop or comes to rest forgets where it came from.
   Followed follow(const Place& most, double part) const {
     Case moved = rest;
     moved.damping += part * std::sqrt(rest.mass * rest.stiffness);
+    for (double& force : moved.force.value) force += part * rest.stiffness * most[0];
     // No farther than a rigid stop, nor than the skin can hold.
     const double reach = std::isinf(rest.stop_stiffness) ? rest.travel : never;
     const double grip = rest.limit[1] * rest.finger_load.value[0] / rest.skin;
