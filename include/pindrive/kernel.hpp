@@ -166,7 +166,7 @@ class Round {
       progress_.numbers.plate_peak =
           select(on, larger(progress_.numbers.plate_peak, r_.sp), progress_.numbers.plate_peak);
     }
-    // Let go again, it repeats what followed the first time.
+    // Released again, it repeats what followed the first time.
     V& released = progress_.standing.released;
     give_up(on & (released == V(1.0)));
     released = select(on, V(1.0), released);

@@ -123,23 +123,31 @@ class Motion {
 
   /// Position, velocity or acceleration, after τ in a segment.
   T value(const Segment<T>& segment, T tau, Quantity quantity) const {
-    const T found =
-        along(segment, [&](const auto& t) { return t.at(quantity_of(t, quantity), tau); });
-    return quantity == Quantity::position ? drive_.stops.within(found) : found;
+    return along(segment, [&](const auto& t) { return value_of(t, tau, quantity); });
   }
   Friction<T> friction(const Segment<T>& segment, T tau) const {
-    return along(segment, [&](const auto& t) {
-      const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };
-      return friction_along(t, drive_, segment, lines, tau);
-    });
+    return along(segment, [&](const auto& t) { return friction_of(t, segment, tau); });
   }
-
   /// Force of the end stops on the pin, N.
   T stop_force(const Segment<T>& segment, T tau) const {
     if (!touches(segment.mode.stop)) return T(0);
-    return along(segment, [&](const auto& t) {
-      return stop_force_along(t, drive_, segment, inputs_.force.from(segment.begin), tau);
-    });
+    return along(segment, [&](const auto& t) { return stop_force_of(t, segment, tau); });
+  }
+
+  /// The same of the quantities of a segment, which `along` hands over.
+  template <class Trajectory>
+  T value_of(const Trajectory& t, T tau, Quantity quantity) const {
+    const T found = t.at(quantity_of(t, quantity), tau);
+    return quantity == Quantity::position ? drive_.stops.within(found) : found;
+  }
+  template <class Trajectory>
+  Friction<T> friction_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
+    const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };
+    return friction_along(t, drive_, segment, lines, tau);
+  }
+  template <class Trajectory>
+  T stop_force_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
+    return stop_force_along(t, drive_, segment, inputs_.force.from(segment.begin), tau);
   }
   /// What elastic stops store, J; also while they come back behind a pin.
   T stop_energy(T x) const {

@@ -6,6 +6,7 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -101,17 +102,39 @@ std::unique_ptr<CoreMotion<Dual>> differentiate(Numbers at, Numbers along) {
 
 // ---- what Python asks for ------------------------------------------------------------------------
 
-/// f(segment, τ) at each time.
+/// Calls visit(i, quantities of its segment, segment, τ) at each time; times in a row that lie in one
+/// segment share its quantities.
+template <class T, class GoOn, class Visitor>
+void each_time(const CoreMotion<T>& motion, const Times& times, bool right, GoOn go_on,
+               Visitor&& visit) {
+  const auto view = motion.view();
+  const auto side = right ? pd::Side::right : pd::Side::left;
+  const auto place = [&](std::size_t i) { return view.locate(times.data()[i], side); };
+  const std::size_t count = times.size();
+  if (!count) return;
+  auto here = place(0);
+  for (std::size_t i = 0; i < count;) {
+    const auto& segment = *here.segment;
+    const bool more = view.along(segment, [&](const auto& quantities) {
+      do {
+        visit(i, quantities, segment, here.tau);
+        if (!go_on()) return false;
+        if (++i < count) here = place(i);
+      } while (i < count && here.segment == &segment);
+      return true;
+    });
+    if (!more) return;
+  }
+}
+
+/// f(view, quantities of its segment, segment, τ) at each time.
 template <class T, class Function>
 Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool right, Function&& f) {
   return to_array(interruptible([&](auto go_on) {
     std::vector<double> values(times.size());
     const auto view = motion.view();
-    const auto side = right ? pd::Side::right : pd::Side::left;
-    for (std::size_t i = 0; i < values.size() && go_on(); ++i) {
-      const auto [segment, tau] = view.locate(times.data()[i], side);
-      values[i] = result(f(*segment, tau));
-    }
+    each_time(motion, times, right, go_on,
+              [&](std::size_t i, const auto&... at) { values[i] = result(f(view, at...)); });
     return values;
   }));
 }
@@ -119,40 +142,76 @@ Array<double> at_times(const CoreMotion<T>& motion, const Times& times, bool rig
 /// The position, velocity or acceleration.
 template <class T, pd::Quantity quantity>
 Array<double> evaluate(const CoreMotion<T>& motion, const Times& times, bool right) {
-  const auto view = motion.view();
-  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
-    return view.value(segment, tau, quantity);
-  });
+  return at_times(motion, times, right,
+                  [](const auto& view, const auto& along, const auto&, T tau) {
+                    return view.value_of(along, tau, quantity);
+                  });
 }
 
 template <class T, T pd::Friction<T>::* contact>
 Array<double> force(const CoreMotion<T>& motion, const Times& times, bool right) {
-  const auto view = motion.view();
-  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
-    return view.friction(segment, tau).*contact;
-  });
+  return at_times(motion, times, right,
+                  [](const auto& view, const auto& along, const auto& segment, T tau) {
+                    return view.friction_of(along, segment, tau).*contact;
+                  });
 }
 
 /// Force of the end stops on the pin.
 template <class T>
 Array<double> stop_force(const CoreMotion<T>& motion, const Times& times, bool right) {
-  const auto view = motion.view();
-  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
-    return view.stop_force(segment, tau);
-  });
+  return at_times(motion, times, right,
+                  [](const auto& view, const auto& along, const auto& segment, T tau) {
+                    return view.stop_force_of(along, segment, tau);
+                  });
 }
 
 /// Stretch of a compliant finger's skin, or how fast it grows.
+template <bool rate, class T, class Trajectory>
+T stretch_of(const pd::Motion<T>& view, const Trajectory& along, T tau) {
+  const auto& force = along.finger_force();
+  const T stiffness = view.drive().finger.stiffness;
+  return -(rate ? along.at(along.derivative(force), tau) : along.at(force, tau)) / stiffness;
+}
+
 template <class T, bool rate>
 Array<double> stretch(const CoreMotion<T>& motion, const Times& times, bool right) {
-  const T stiffness = motion.drive().finger.stiffness;
+  return at_times(motion, times, right,
+                  [](const auto& view, const auto& along, const auto&, T tau) {
+                    return stretch_of<rate>(view, along, tau);
+                  });
+}
+
+/// All of these at each time, by their names; without those that the drive does not have.
+nb::dict columns(const CoreMotion<double>& motion, const Times& times, bool right) {
+  enum { position, velocity, acceleration, plate, finger, stop, skin, skin_rate, count };
+  const char* const names[count] = {"position",     "velocity",   "acceleration", "plate_force",
+                                    "finger_force", "stop_force", "stretch",      "stretch_rate"};
   const auto view = motion.view();
-  return at_times(motion, times, right, [&](const pd::Segment<T>& segment, T tau) {
-    return view.along(segment, [&](const auto& along) {
-      const auto& force = along.finger_force();
-      return -(rate ? along.at(along.derivative(force), tau) : along.at(force, tau)) / stiffness;
-    });
+  const bool compliant = !view.drive().finger.rigid(), stops = view.drive().stops.present();
+  const auto has = [&](int i) { return i < stop || (i == stop ? stops : compliant); };
+  auto found = interruptible([&](auto go_on) {
+    std::array<std::vector<double>, count> values;
+    for (int i = 0; i < count; ++i)
+      if (has(i)) values[i].resize(times.size());
+    each_time(motion, times, right, go_on,
+              [&](std::size_t i, const auto& along, const auto& segment, double tau) {
+                const auto friction = view.friction_of(along, segment, tau);
+                values[position][i] = view.value_of(along, tau, pd::Quantity::position);
+                values[velocity][i] = view.value_of(along, tau, pd::Quantity::velocity);
+                values[acceleration][i] = view.value_of(along, tau, pd::Quantity::acceleration);
+                values[plate][i] = friction.plate;
+                values[finger][i] = friction.finger;
+                if (stops) values[stop][i] = view.stop_force_of(along, segment, tau);
+                if (!compliant) return;
+                values[skin][i] = stretch_of<false>(view, along, tau);
+                values[skin_rate][i] = stretch_of<true>(view, along, tau);
+              });
+    return values;
   });
+  nb::dict table;
+  for (int i = 0; i < count; ++i)
+    if (has(i)) table[names[i]] = to_array(std::move(found[i]));
+  return table;
 }
 
 /// One column of the list of segments.
@@ -306,6 +365,7 @@ NB_MODULE(_core, m) {
   using Motion = CoreMotion<double>;
   bind<double>(m, "Motion", "A simulated motion and its segments.")
       .def("certificate", &certificate, "duration"_a)
+      .def("columns", &columns, "times"_a, "right"_a, "What there is at each time, by name.")
       .def("duration", &duration, "band"_a)
       .def("crossings", &crossings, "quantity"_a, "level"_a, "until"_a, "most"_a,
            "Times and directions; position, velocity or acceleration is 0, 1 or 2.")

@@ -35,6 +35,9 @@ class Motion:
 
     def certificate(self, duration: float) -> dict: ...
 
+    def columns(self, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], right: bool) -> dict:
+        """What there is at each time, by name."""
+
     def duration(self, band: float) -> float: ...
 
     def crossings(self, quantity: int, level: float, until: float, most: int) -> tuple:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from command import GOOD, run
@@ -139,6 +140,28 @@ def test_the_bound_on_the_acceleration_holds_where_the_damping_changes() -> None
             ratios.append(np.abs(motion.acceleration(t)).max() / bound)
     assert max(ratios) <= 1.0 + 1e-12
     assert np.median(ratios) > 0.9, "a bound that says something"
+
+
+def test_steps_of_a_series_are_not_asked_for_their_acceleration(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Their bounds are known: of pins that never stop slipping only positions are evaluated."""
+    body = drive(0.05, NOTHING, Contact(curve=[(0.0, 0.05), (0.02, 0.01), (0.2, 0.2)]))
+    load = Profile([0.0, 0.2], [1.0, 0.1])
+    pair = [simulate(body, Release(0.3, x, plate_load=load), duration=0.2) for x in (2e-3, 1e-3)]
+    series = [~np.isnan(motion.acceleration_bounds) for motion in pair]
+    assert all(steps.all() and steps.sum() > 3 for steps in series)
+    asked: list[int] = []
+
+    def counted(motion: Motion, t: NDArray[np.float64], side: str = "right") -> NDArray[np.float64]:
+        asked.append(np.size(t))
+        return np.zeros(np.shape(t))
+
+    expected = closest(*pair)
+    monkeypatch.setattr(Motion, "acceleration", counted)
+    monkeypatch.setattr(Motion, "velocity", counted)
+    assert closest(*pair) == expected
+    assert sum(asked) == 0
 
 
 # ---- laws ----------------------------------------------------------------------------------------

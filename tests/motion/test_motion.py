@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive, Motion, Release, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, simulate
 
 DRIVE = Drive(
     mass=0.010, stiffness=100.0, damping=0.32, plate=Contact(0.022, 0.0265), finger=Contact(0.005)
@@ -29,6 +30,42 @@ def test_a_time_gives_a_float_and_times_an_array_of_their_shape(motion: Motion) 
         grid = np.linspace(0.0, 0.2, 12).reshape(3, 4)
         assert np.array_equal(of(grid.T), of(grid).T), "an array that is not in C order"
         assert of([0.01, 0.02]).tolist() == [of(0.01), of(0.02)]
+
+
+@pytest.mark.parametrize(
+    ("changes", "others"),
+    [
+        ({}, set()),
+        ({"finger": Contact(0.02, 0.03, stiffness=300.0)}, {"stretch", "stretch_rate"}),
+        ({"travel": 2e-3}, {"stop_force"}),
+        ({"travel": 1e-3, "stop_stiffness": 2e3}, {"stop_force"}),
+        ({"plate": Contact(curve=((0.0, 0.03), (0.1, 0.02)))}, set()),
+    ],
+)
+def test_all_columns_at_once_are_each_by_itself(changes: dict[str, Any], others: set[str]) -> None:
+    """Bit for bit, at times in any order; under a load that changes some segments are series."""
+    load = Profile([0.0, 0.05], [1.0, 0.3])
+    motion = simulate(replace(DRIVE, **changes), Release(0.06, 2e-3, plate_load=load))
+    ends = [segment.end for segment in motion.segments]
+    ordered = np.union1d(np.linspace(0.0, motion.duration, 97), np.minimum(ends, motion.duration))
+    for t in (ordered, np.random.default_rng(5).permutation(ordered), ordered[:1], ordered[:0]):
+        found = motion.columns(t)
+        expected = {
+            "position": motion.position(t),
+            "velocity": motion.velocity(t),
+            "acceleration": motion.acceleration(t),
+            "plate_force": motion.force("plate", t),
+            "finger_force": motion.force("finger", t),
+            "stop_force": motion.force("stop", t),
+            "stretch": motion.stretch(t),
+            "stretch_rate": motion.stretch_rate(t),
+        }
+        assert found.keys() == {*expected} - {"stop_force", "stretch", "stretch_rate"} | others
+        for name, column in found.items():
+            assert np.array_equal(column, expected[name]), name
+        one_by_one = [[motion.position(float(time)), motion.velocity(float(time))] for time in t]
+        both = np.reshape(one_by_one, (-1, 2)).T
+        assert np.array_equal(np.stack([found["position"], found["velocity"]]), both)
 
 
 def test_the_limits_at_an_event_are_those_from_its_sides(motion: Motion) -> None:
@@ -72,8 +109,9 @@ def test_a_bad_release_is_refused(changes: dict[str, Any], message: str) -> None
 
 @pytest.mark.parametrize("time", [-1e-9, math.nan, math.inf, [0.0, -1.0], "soon"])
 def test_a_bad_time_is_refused(motion: Motion, time: Any) -> None:
-    with pytest.raises(ValueError):
-        motion.position(time)
+    for of in (motion.position, motion.columns):
+        with pytest.raises(ValueError, match="t must be"):
+            of(time)
 
 
 def test_a_time_beyond_what_is_known_is_refused() -> None:

@@ -225,6 +225,14 @@ def test_lines_of_text_are_apart_by_slashes_and_words_do_not_overlap() -> None:
     title = panel(figure, "print").get_title(loc="left")
     assert title == r'printed: text "5 \$ Ü / 6 \$"'
     assert collisions(figure) == []
+    top, above = (panel(figure, name)._left_title.get_window_extent() for name in ("seen", "print"))  # type: ignore[attr-defined]
+    (head,) = figure.texts
+    between = [
+        (panel(figure, "felt").xaxis.label.get_window_extent(), top),
+        (head.get_window_extent(), above),
+    ]
+    for upper, lower in between:
+        assert upper.y0 - lower.y1 > figure.dpi / 25.4, "a millimetre between words"
 
 
 def test_reliefs_share_a_scale_and_name_their_speeds() -> None:

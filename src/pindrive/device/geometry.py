@@ -20,8 +20,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot, inf, pi
-from typing import TYPE_CHECKING, Any, Final
+from math import hypot, inf, nan, pi
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -200,32 +200,42 @@ class _Pieces:
         return np.unique(np.concatenate([[0.0], ends[ends < duration], [duration]]))
 
     @cached_property
-    def _coefficients(self) -> dict[str, NDArray[Any]]:
-        """Of each piece c and κ over m, the slope g of its force over m, whether it is stuck.
+    def _segments(self) -> NDArray[np.int64]:
+        """The segment of which each piece is a part, or a later round."""
+        segments, period = self.motion.segments, self.motion.ending.period
+        middle, known = 0.5 * (self.knots[:-1] + self.knots[1:]), segments[-1].end
+        if known < inf:
+            later = known - period + np.mod(middle - known, period)
+            middle = np.where(middle < known, middle, later)
+        return np.searchsorted([segment.begin for segment in segments], middle, "right") - 1
 
-        And what |x''| stays below, NaN where these say it.
+    @cached_property
+    def _bounds(self) -> NDArray[np.float64]:
+        """What |x''| of each piece stays below, m/s²; NaN of a closed form."""
+        return self.motion.acceleration_bounds[self._segments]
+
+    @cached_property
+    def _closed_forms(self) -> NDArray[np.float64]:
+        """Of each piece in closed form c and κ over m, the slope g of its force over m, swings.
+
+        Shape (4, pieces), the last 0 where the pin is stuck; all NaN of a step of a series.
         """
         motion, drive = self.motion, self.motion.drive
-        begin, end = self.knots[:-1], self.knots[1:]
+        closed = np.flatnonzero(np.isnan(self._bounds))
+        begin, end = self.knots[closed], self.knots[closed + 1]
         middle = 0.5 * (begin + end)
-        segments = motion.segments
-        known, period = segments[-1].end, motion.ending.period
-        in_first = (
-            middle
-            if known == inf
-            else np.where(middle < known, middle, known - period + np.mod(middle - known, period))
-        )
-        which = np.searchsorted([segment.begin for segment in segments], in_first, "right") - 1
-        plate = np.array([segment.plate == 0 for segment in segments])[which]
-        finger = np.array([segment.finger == 0 for segment in segments])[which]
+        modes = [motion.segments[i] for i in self._segments[closed]]
+        finger = np.array([mode.finger == 0 for mode in modes], np.bool_)
+        stuck = np.array([mode.plate == 0 for mode in modes], np.bool_)
         rigid = drive.finger.rigid
+        if rigid:
+            stuck |= finger
         stiffness = drive.stiffness + np.where(finger & (not rigid), drive.finger.stiffness, 0.0)
+        velocity = motion.velocity(middle)
+        damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
         if drive.stop_stiffness is not None:  # elastic end stops, where they push
             pushed = motion.force("stop", middle) != 0.0
             stiffness = stiffness + np.where(pushed, drive.stop_stiffness, 0.0)
-        velocity = motion.velocity(middle)
-        damping = drive.damping + _slope(drive.finger.curve, np.abs(velocity))
-        if drive.stop_stiffness is not None:
             damping = damping + np.where(pushed, drive.stop_damping or 0.0, 0.0)
         if drive.plate.curved:  # under a load that stays: else there is a bound
             load = motion.release.plate_load
@@ -238,27 +248,24 @@ class _Pieces:
             for of in (motion.acceleration, motion.velocity, motion.position)
         ]
         slope = (changes[0] + c * changes[1] + k * changes[2]) / (end - begin)
-        return {
-            "c": c,
-            "k": k,
-            "g": slope,
-            "stuck": plate | (finger & rigid),
-            "bound": motion.acceleration_bounds[which],
-        }
+        found = np.full((4, len(self._bounds)), nan)
+        found[:, closed] = c, k, slope, ~stuck
+        return found
 
     def largest_acceleration(
         self, t: NDArray[np.float64], lasts: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """A bound on |x''| from `t` on for as long as `lasts`, s, within a piece, m/s²."""
         i = np.searchsorted(self.knots, t, "right") - 1
-        c, k, g, stuck, bound = (
-            self._coefficients[name][i] for name in ("c", "k", "g", "stuck", "bound")
-        )
+        found = self._bounds[i]
+        closed = np.isnan(found)
+        t, lasts, i = t[closed], lasts[closed], i[closed]
+        c, k, g, swings = self._closed_forms[:, i]
         now = self.motion.acceleration(t)
         jerk = g - c * now - k * self.motion.velocity(t)
         growth = np.exp(np.maximum(-c, 0.0) * lasts)
-        closed = np.where(stuck, np.abs(now), np.hypot(now, jerk / np.sqrt(k)) * growth)
-        return np.where(np.isnan(bound), closed, bound)
+        found[closed] = np.where(swings, np.hypot(now, jerk / np.sqrt(k)) * growth, np.abs(now))
+        return found
 
 
 def _slope(

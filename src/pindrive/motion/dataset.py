@@ -24,18 +24,7 @@ def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.floa
 
     Right-hand limits, SI; what the motion does not have left out.
     """
-    found = {
-        "time": t,
-        "position": motion.position(t),
-        "velocity": motion.velocity(t),
-        "acceleration": motion.acceleration(t),
-        "plate_force": motion.force("plate", t),
-        "finger_force": motion.force("finger", t),
-    }
-    if motion.drive.travel is not None:
-        found["stop_force"] = motion.force("stop", t)
-    if not motion.drive.finger.rigid:
-        found |= {"stretch": motion.stretch(t), "stretch_rate": motion.stretch_rate(t)}
+    found = {"time": t, **motion.columns(t)}
     given = motion.release.mouse_velocity
     if isinstance(given, Profile) and given.changes:
         found["plate_velocity"] = motion.plate_velocity(t)

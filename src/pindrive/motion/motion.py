@@ -166,6 +166,14 @@ class Motion(lazy.NotebookHtml):
         """How fast the skin of a compliant finger stretches, m/s."""
         return self._evaluate(self._core.stretch_rate, t, side)
 
+    def columns(self, t: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """All of these at the times t (s, shape (n,)) at once, right-hand limits, by their names.
+
+        The forces are "plate_force" and "finger_force", with end stops "stop_force"; of a rigid
+        finger there is no stretch.
+        """
+        return self._core.columns(np.ascontiguousarray(self._known(t, "t")), True)
+
     def plate_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """The plate's velocity v_p(t) in the housing, m/s, in the shape of t."""
         times = _times(t)

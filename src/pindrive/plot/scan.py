@@ -37,6 +37,8 @@ WIDE: Final = 1.7
 MOST: Final = 99.0
 """Percent of the tactile image within the scale of colours."""
 LABELS: Final = {"lag_on": "lag on", "lag_off": "lag off"}
+APART: Final = 1.5
+"""What is empty between words of neighbouring rows, mm: the layout lets them touch."""
 BAR: Final = 0.022
 """Width of the scale of colours, a part of the page's."""
 TALLEST: Final = 1000.0
@@ -89,12 +91,12 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         figure.set_layout_engine(
             "constrained", h_pad=0.03, w_pad=0.03, rect=(0.012, 0.0, 0.98, 1.0)
         )
-        rows = figure.add_gridspec(2, 1, height_ratios=(pages, 100.0))
+        rows = figure.add_gridspec(4, 1, height_ratios=(APART, pages, APART, 100.0))
         if wide:
-            cells = rows[0].subgridspec(2, 2, width_ratios=(1.0, BAR))
+            cells = rows[1].subgridspec(2, 2, width_ratios=(1.0, BAR))
             places = cells[0, 0], cells[1, 0], cells[:, 1]
         else:
-            cells = rows[0].subgridspec(1, 3, width_ratios=(1.0, 1.0, 2.0 * BAR))
+            cells = rows[1].subgridspec(1, 3, width_ratios=(1.0, 1.0, 2.0 * BAR))
             places = cells[0, 0], cells[0, 1], cells[0, 2]
         printed = figure.add_subplot(places[0], label="print")
         felt = figure.add_subplot(places[1], label="felt", sharex=printed, sharey=printed)
@@ -110,9 +112,9 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         else:
             felt.set_ylabel("")
             felt.tick_params(labelleft=False)
-        handles = [*_key(scan, [felt]), *draw_history(judgement, chosen, figure, rows[1])]
+        handles = [*_key(scan, [felt]), *draw_history(judgement, chosen, figure, rows[3])]
         lines = -(-len(handles) // KEY_COLUMNS)
-        figure.set_figheight((pages + 106.0 + 4.0 * lines) / 25.4)
+        figure.set_figheight((pages + 106.0 + 2.0 * APART + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
         figure.head(_title(judgement))
     return figure
