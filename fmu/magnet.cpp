@@ -15,7 +15,6 @@ namespace {
 using pindrive::detail::exp;
 using pindrive::detail::expm1;
 using pindrive::detail::log;
-using pindrive::detail::log1p;
 using pindrive_c::check;
 using pindrive_c::fail;
 
@@ -83,7 +82,15 @@ pindrive_error Magnet::read(const Given& given) {
   residual_ = number("magnet.residual");
   allow("magnet.residual", residual_, residual_ >= 0 && residual_ < hold_force_,
         "at least 0 and less than the full pull");
-  if (!error && given.has("magnet.lift")) error = read_closing(given, number("magnet.gap"));
+  if (given.has("magnet.lift")) {
+    const double lift = number("magnet.lift"), force = number("magnet.closing_force");
+    allow("magnet.lift", lift, lift >= 0 && lift < infinity, "at least 0 and finite");
+    opened_ = number("magnet.gap") / (number("magnet.gap") + lift);
+    edge_ = saturation_ * std::sqrt((force - residual_) / (hold_force_ - residual_));
+    allow("magnet.closing_force", force,
+          force > residual_ && force < pull_of(opened_) && edge_ < opened_,
+          "more than the residual pull and less than that with the open gap");
+  }
   deviation_ = number("magnet.deviation", 1e-4);
   allow("magnet.deviation", deviation_, deviation_ >= 1e-8 && deviation_ <= 0.1,
         "from 1e-8 to 0.1");
@@ -146,20 +153,6 @@ pindrive_error Magnet::read_coil(const Given& given) {
     steps_.push_back(step);
   }
   return PINDRIVE_OK;
-}
-
-/// When the gap closes and opens; without a lift it stays closed.
-pindrive_error Magnet::read_closing(const Given& given, double gap) {
-  const double lift = given.of("magnet.lift").value;
-  const double force = given.of("magnet.closing_force").value;
-  if (const pindrive_error error =
-          check("magnet.lift", lift, lift >= 0 && lift < infinity, "at least 0 and finite"))
-    return error;
-  opened_ = gap / (gap + lift);
-  edge_ = saturation_ * std::sqrt((force - residual_) / (hold_force_ - residual_));
-  const bool closes = force > residual_ && force < pull_of(opened_) && edge_ < opened_;
-  return check("magnet.closing_force", force, closes,
-               "more than the residual pull and less than that of full current with the open gap");
 }
 
 /// The flux linkages at which rows of the pull are due as it rises from 0 or falls from 1.
@@ -279,7 +272,7 @@ Magnet::Piece Magnet::piece() const {
   target *= inductance;
   constant *= inductance;
   const bool crosses = closed ? start > edge_ && edge_ > target : start < edge_ && edge_ < target;
-  const double lasts = crosses ? constant * log1p((start - edge_) / (edge_ - target)) : infinity;
+  const double lasts = crosses ? constant * log((start - target) / (edge_ - target)) : infinity;
   return {target, constant, inductance, state_.since + lasts};
 }
 

@@ -58,7 +58,6 @@ class Magnet {
 
   pindrive_error read(const Given& given);
   pindrive_error read_coil(const Given& given);
-  pindrive_error read_closing(const Given& given, double gap);
   void make_levels();
   void make_rows();
   void make_rows_between(const Piece& piece);
