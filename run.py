@@ -77,7 +77,8 @@ _WITHOUT_TABLES = (
 )  # none is thrown through
 FMU_COMPILE_FOR = {
     "so": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
-    "dll": _FEWER_FUNCTIONS,  # there the functions of FMI alone are exported, and unwinding needs its tables
+    # There the functions of FMI alone are exported, and unwinding needs its tables.
+    "dll": _FEWER_FUNCTIONS,
     "dylib": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
 }
 FMU_LINK_FOR = {
