@@ -67,13 +67,18 @@ FMU_COMPILE = (
     *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
     *("-fomit-frame-pointer", "-fno-stack-protector"),
 )
+_FEWER_FUNCTIONS = (  # each has its entry in the tables of Windows
+    *("-fno-slp-vectorize", "-Xclang", "-fmerge-functions"),
+    *("-Xclang", "-mllvm", "-Xclang", "-inline-threshold=8"),
+)
 _WITHOUT_TABLES = (
     "-fno-unwind-tables",
     "-fno-asynchronous-unwind-tables",
 )  # none is thrown through
 FMU_COMPILE_FOR = {
     "so": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
-    "dll": (),  # there the functions of FMI alone are exported, and unwinding needs its tables
+    # There the functions of FMI alone are exported, and unwinding needs its tables.
+    "dll": _FEWER_FUNCTIONS,
     "dylib": ("-fPIC", "-fvisibility=hidden", *_WITHOUT_TABLES),
 }
 FMU_LINK_FOR = {

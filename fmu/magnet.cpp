@@ -20,12 +20,13 @@ using pindrive_c::fail;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The constants and formulas of pindrive.device.coil, heating and electromagnet.
+// The constants and formulas of pindrive.device.coil, closing, heating and electromagnet.
 constexpr double magnetic_constant = 1.25663706127e-6, copper = 1 / 58e6, copper_rise = 3.93e-3;
 constexpr double pi = 0x1.921fb54442d18p+1;
 constexpr double at_once = 0.01;  // how soon after a switching the pull is exact
 
-double current_after(double start, double target, double constants) {
+/// A flux linkage that tends to `target`, so many time constants later.
+double flux_after(double start, double target, double constants) {
   const double left = exp(-constants);
   return target == 1 ? 1 - (1 - start) * left : target + (start - target) * left;
 }
@@ -62,7 +63,8 @@ pindrive_error Magnet::read(const Given& given) {
     allow(name, value, value > 0 && value < infinity, "above 0 and finite");
   };
   steps_.clear();
-  heat_capacity_ = 0;
+  heat_capacity_ = edge_ = 0;
+  opened_ = 1;
   if (given.has("magnet.turns")) {
     error = read_coil(given);
   } else {
@@ -80,6 +82,15 @@ pindrive_error Magnet::read(const Given& given) {
   residual_ = number("magnet.residual");
   allow("magnet.residual", residual_, residual_ >= 0 && residual_ < hold_force_,
         "at least 0 and less than the full pull");
+  if (given.has("magnet.lift")) {
+    const double lift = number("magnet.lift"), force = number("magnet.closing_force");
+    allow("magnet.lift", lift, lift >= 0 && lift < infinity, "at least 0 and finite");
+    opened_ = number("magnet.gap") / (number("magnet.gap") + lift);
+    edge_ = saturation_ * std::sqrt((force - residual_) / (hold_force_ - residual_));
+    allow("magnet.closing_force", force,
+          force > residual_ && force < pull_of(opened_) && edge_ < opened_,
+          "more than the residual pull and less than that with the open gap");
+  }
   deviation_ = number("magnet.deviation", 1e-4);
   allow("magnet.deviation", deviation_, deviation_ >= 1e-8 && deviation_ <= 0.1,
         "from 1e-8 to 0.1");
@@ -144,7 +155,7 @@ pindrive_error Magnet::read_coil(const Given& given) {
   return PINDRIVE_OK;
 }
 
-/// The currents at which rows of the pull are due as it rises from 0 or falls from 1.
+/// The flux linkages at which rows of the pull are due as it rises from 0 or falls from 1.
 void Magnet::make_levels() {
   const auto curvature = [](double c) {
     const double e = 1 - c;
@@ -195,13 +206,16 @@ double Magnet::next_switching() const {
 
 double Magnet::next() const {
   const double row = state_.row + 1 < rows_.size() ? rows_[state_.row + 1].time : infinity;
-  return std::min(row, next_switching());
+  return std::min({row, piece().end, next_switching()});
 }
 
 void Magnet::pass(double until) {
   for (double time = next(); time <= until; time = next()) {
-    if (time < next_switching()) {
+    const double switching = next_switching(), crossing = piece().end;
+    if (time < std::min(switching, crossing)) {
       ++state_.row;
+    } else if (crossing < switching) {
+      change(state_.on != 0, state_.level, crossing);
     } else if (!steps_.empty()) {
       change(true, steps_[++state_.step].pull, time);
     } else {
@@ -211,11 +225,11 @@ void Magnet::pass(double until) {
   }
 }
 
-/// Switches it: the pull goes on from its line, the current from what it is.
+/// Switches it, or closes or opens its gap: the pull goes on from its line, the flux from what it is.
 void Magnet::change(bool on, double level, double time) {
-  const double pulling = this->pull(time), flowing = current(time), warm = warming(time);
+  const double pulling = this->pull(time), linked = flux(time), warm = warming(time);
   state_.since = time;
-  state_.current = flowing;
+  state_.flux = linked;
   state_.pull = pulling;
   state_.warming = warm;
   state_.on = on ? 1 : 0;
@@ -227,7 +241,7 @@ void Magnet::change(bool on, double level, double time) {
 pindrive_error Magnet::go_back(const CoilState& state) {
   const auto part = [](double number) { return number >= 0 && number <= 1; };
   const auto finite = [](auto... numbers) { return (std::isfinite(numbers) && ...); };
-  if (!part(state.current) || !part(state.level) || !(state.warming >= 0) ||
+  if (!part(state.flux) || !part(state.level) || !(state.warming >= 0) ||
       !finite(state.since, state.pull, state.warming, state.commanded, state.period))
     return fail(PINDRIVE_BAD_VALUE, "the bytes must be those of a state of this unit");
   state_ = state;
@@ -242,24 +256,40 @@ double Magnet::resistance() const {
   return heat_capacity_ > 0 ? 1 + copper_rise * state_.warming : 1;
 }
 
-/// The current to which it tends since the last switching, and its time constant.
-Magnet::Circuit Magnet::circuit() const {
-  const double r = resistance();
-  if (state_.on) return {1 / r * state_.level, rise_constant_ / r};
-  if (r == 1) return {0, fall_constant_};
-  return {0, fall_constant_ * (own_resistance_ + outer_resistance_) /
-                 (r * own_resistance_ + outer_resistance_)};
+/// Just where the gap closes or opens, the flux's way tells which it does.
+Magnet::Piece Magnet::piece() const {
+  const double start = state_.flux, r = resistance();
+  double target = 0, constant = fall_constant_;
+  if (state_.on) {
+    target = 1 / r * state_.level;
+    constant = rise_constant_ / r;
+  } else if (r != 1) {
+    constant = fall_constant_ * (own_resistance_ + outer_resistance_) /
+               (r * own_resistance_ + outer_resistance_);
+  }
+  const bool closed = start > edge_ || (start == edge_ && target > edge_);
+  const double inductance = closed ? 1 : opened_;
+  target *= inductance;
+  constant *= inductance;
+  const bool crosses = closed ? start > edge_ && edge_ > target : start < edge_ && edge_ < target;
+  const double lasts = crosses ? constant * log((start - target) / (edge_ - target)) : infinity;
+  return {target, constant, inductance, state_.since + lasts};
 }
 
-double Magnet::current(double time) const {
-  const auto [target, constant] = circuit();
-  return current_after(state_.current, target, (time - state_.since) / constant);
+/// Where the gap closes or opens it is that linkage to the bit, which piece() relies on.
+double Magnet::flux(double time) const {
+  const Piece piece = this->piece();
+  if (time == piece.end) return edge_;
+  return flux_after(state_.flux, piece.target, (time - state_.since) / piece.constant);
 }
+
+double Magnet::current(double time) const { return flux(time) / piece().inductance; }
 
 double Magnet::warming(double time) const {
   if (heat_capacity_ == 0) return 0;
-  const auto [target, constant] = circuit();
-  const double lasts = time - state_.since, swing = state_.current - target;
+  const Piece piece = this->piece();
+  const double constant = piece.constant, target = piece.target / piece.inductance;
+  const double lasts = time - state_.since, swing = state_.flux / piece.inductance - target;
   const double cooling = 1 / (cooling_resistance_ * heat_capacity_);
   const double heating = power_ * resistance() / heat_capacity_;
   const double shares[] = {target * target, 2 * target * swing, swing * swing};
@@ -272,8 +302,8 @@ double Magnet::warming(double time) const {
   return found;
 }
 
-double Magnet::pull_of(double current) const {
-  const double part = current / saturation_;
+double Magnet::pull_of(double flux) const {
+  const double part = flux / saturation_;
   return residual_ + (hold_force_ - residual_) * std::min(part * part, 1.0);
 }
 
@@ -291,20 +321,19 @@ double Magnet::pull(double time) const {
 
 /// Rows linear between which the pull is nowhere further from the exact one than the deviation.
 void Magnet::make_rows() {
-  const Circuit circuit = this->circuit();
-  const auto [target, constant] = circuit;
-  const double start = state_.current;
+  const Piece piece = this->piece();
+  const double start = state_.flux, target = piece.target, constant = piece.constant;
   rows_.assign(1, {state_.since, state_.pull});
   if (start == target) return;
-  if (target != 0 && target != 1) return make_rows_between(start, circuit);
+  if (target != 0 && target != 1) return make_rows_between(piece);
   double last = 0;
-  const auto add = [&, constant = constant](double after, double current) {
-    rows_.push_back({state_.since + constant * after, pull_of(current)});
+  const auto add = [&](double after, double flux) {
+    rows_.push_back({state_.since + constant * after, pull_of(flux)});
     last = after;
   };
   const bool rises = target == 1;
   const double moment = at_once * saturation_ * tolerance_;
-  const double soon = current_after(start, target, moment);
+  const double soon = flux_after(start, target, moment);
   add(moment, soon);
   for (const double level : rises ? rising_ : falling_) {
     if (rises ? level <= soon : level >= soon) continue;
@@ -314,17 +343,17 @@ void Magnet::make_rows() {
   add(last + 1, target);
 }
 
-/// The same where the current tends to another than none or the full one.
-void Magnet::make_rows_between(double start, Circuit circuit) {
-  const auto [target, constant] = circuit;
+/// The same where the flux tends to another than none or the full one.
+void Magnet::make_rows_between(const Piece& piece) {
+  const double start = state_.flux, target = piece.target, constant = piece.constant;
   const double sigma = saturation_, swing = start - target;
   const double kink =
       (start > sigma) != (target > sigma) ? log(swing / (sigma - target)) : infinity;
   double x = at_once * sigma * tolerance_;
-  const auto add = [&, constant = constant](double after, double current) {
-    rows_.push_back({state_.since + constant * after, pull_of(current)});
+  const auto add = [&](double after, double flux) {
+    rows_.push_back({state_.since + constant * after, pull_of(flux)});
   };
-  const auto due = [&, target = target] { add(x, target + swing * exp(-x)); };
+  const auto due = [&] { add(x, target + swing * exp(-x)); };
   for (due();; due()) {
     const double left = exp(-x), c = target + swing * left;
     if (x < kink && c >= sigma) {  // saturated until then, or forever

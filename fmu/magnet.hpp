@@ -10,13 +10,14 @@
 
 namespace pindrive_fmu {
 
-/// What of it changes: its last switching, and how far it has been followed since.
+/// What of it changes: its last switching, or closing or opening of its gap, and how far it has been
+/// followed since.
 struct CoilState {
-  double since{0};        ///< when it was switched, s
-  double current{0};      ///< then, a part of the full one
-  double pull{0};         ///< then, N
-  double warming{0};      ///< then, above 20 °C, K
-  double level{1};        ///< the voltage across it while it is on, a part of the full one
+  double since{0};    ///< when that was, s
+  double flux{0};     ///< the flux linkage then, a part of that of the full current, the gap closed
+  double pull{0};     ///< then, N
+  double warming{0};  ///< then, above 20 °C, K
+  double level{1};    ///< the voltage across it while it is on, a part of the full one
   double commanded{0};    ///< when it was commanded on, s, if it is
   double period{0};       ///< of pulses: the number of the one that goes on, or comes next
   std::uint64_t step{0};  ///< of the voltage: which of its rows holds
@@ -49,20 +50,23 @@ class Magnet {
   struct Row {
     double time, pull;
   };
-  struct Circuit {
-    double target, constant;
+  /// How the flux linkage goes on while the voltage stays, and the gap closed or open.
+  struct Piece {
+    double target, constant, inductance;  ///< the last over that of the closed gap
+    double end;                           ///< when the gap closes or opens, s; infinity: never
   };
 
   pindrive_error read(const Given& given);
   pindrive_error read_coil(const Given& given);
   void make_levels();
   void make_rows();
-  void make_rows_between(double start, Circuit circuit);
+  void make_rows_between(const Piece& piece);
   void change(bool on, double level, double time);
   double next_switching() const;
-  Circuit circuit() const;
+  Piece piece() const;
+  double flux(double time) const;
   double resistance() const;
-  double pull_of(double current) const;
+  double pull_of(double flux) const;
   double rate() const;
 
   bool present_{false};
@@ -71,9 +75,11 @@ class Magnet {
   double frequency_{0}, duty_{1};  // of pulses
   double own_resistance_{0}, outer_resistance_{0}, power_{0}, cooling_resistance_{0};
   double heat_capacity_{0};  // 0: the temperature is not followed
+  double edge_{0};           // the flux linkage beyond which the gap is closed
+  double opened_{1};         // the inductance while it is open over that while it is closed
   std::vector<Row> steps_;   // of the voltage: a part of the full one
   std::vector<double> rising_, falling_;
-  std::vector<Row> rows_;  // of the pull since the last switching
+  std::vector<Row> rows_;  // of the pull since then
   CoilState state_;
 };
 

@@ -15,7 +15,7 @@ from fmu_unit import Unit, unpacked
 from pindrive import Page, Profile, Release, Scan, load_device, scan, simulate
 from pindrive.device.current import CoilState, Commands
 from pindrive.files.device import DeviceFile
-from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of, write_fmu
+from pindrive.files.fmu import ELSEWHERE, inputs_of, variables_of
 from pindrive.files.keys import NUMBERS
 from pindrive.motion.release import INPUTS
 
@@ -30,6 +30,7 @@ supply_voltage = "1 V"
 release_resistance = "2 ohm"
 saturation_field = "0.5 T"
 """
+OPENING = 'lift = "0.05 mm"\nclosing_force = "100 mN"\n'
 MAGNETS = {
     "times": 'hold_force = "1 N"\nresidual = "20 mN"\nsaturation = 0.8',
     "pulses": 'hold_force = "1 N"\npwm_frequency = "400 Hz"\npwm_duty = 0.6',
@@ -37,6 +38,13 @@ MAGNETS = {
     "steps": COIL + 'voltage = [["0 ms", "1 V"], ["6 ms", "0.4 V"], ["15 ms", "0.2 V"]]',
     "warm": COIL + 'heat_capacity = "0.4 mJ/K"\ntemperature_rise = "20 K"',
     "warm pulses": COIL + 'heat_capacity = "0.4 mJ/K"\npwm_frequency = "300 Hz"\npwm_duty = 0.7',
+    "closing": COIL + OPENING + 'residual = "20 mN"',
+    "closing steps": COIL
+    + OPENING
+    + 'voltage = [["0 ms", "1 V"], ["6 ms", "0.5 V"], ["15 ms", "0.2 V"]]',
+    "closing warm pulses": COIL
+    + OPENING
+    + 'heat_capacity = "0.4 mJ/K"\npwm_frequency = "300 Hz"\npwm_duty = 0.7',
 }
 DEVICE = """
 [device]
@@ -90,6 +98,8 @@ def test_commands_lead_to_what_a_scan_has(
     (pin,) = scanned_page.pins
     hand = pin.release.mouse_velocity
     assert isinstance(hand, Profile) and len(pin.commands.times) >= 4
+    crossings = pin.current.starts == device.device.magnet.closing.flux
+    assert crossings.sum() >= 4 or "closing" not in magnet
     archive = folder / f"fmi{version}.fmu"
     unit = Unit(*unpacked(device, archive, version)).begin(mouse_velocity=0.0)
     assert validate_fmu(str(archive)) == []
@@ -213,7 +223,7 @@ FILES = (
         finger=f'touch_force = "1 N"\ncoefficient_curve = {COEFFICIENTS_CURVE}',
     ),
     DEVICE.format(magnet=MAGNETS["times"] + '\npwm_frequency = "1 kHz"\npwm_duty = 0.5'),
-    DEVICE.format(magnet=MAGNETS["steps"] + '\nheat_capacity = "1 J/K"'),
+    DEVICE.format(magnet=MAGNETS["closing steps"] + '\nheat_capacity = "1 J/K"'),
 )
 
 
@@ -260,7 +270,7 @@ def test_a_parameter_does_what_the_key_does(version: int, tmp_path: Path) -> Non
     """Set by an importer or in the device file: the same motion."""
     device, _ = scanned("times", tmp_path)
     path = tmp_path / "steps.toml"
-    path.write_text(DEVICE.format(magnet=MAGNETS["warm"]), "utf-8")
+    path.write_text(DEVICE.format(magnet=MAGNETS["warm"] + "\n" + OPENING), "utf-8")
     changes: list[tuple[DeviceFile, dict[str, float]]] = [
         (
             device,
@@ -289,6 +299,8 @@ def test_a_parameter_does_what_the_key_does(version: int, tmp_path: Path) -> Non
                 "magnet.saturation_field": 0.4,
                 "magnet.release_resistance": 5.0,
                 "magnet.heat_capacity": 1e-3,
+                "magnet.lift": 3e-5,
+                "magnet.closing_force": 0.05,
             },
         ),
     ]
@@ -345,15 +357,20 @@ def test_derivatives_along_what_presses(
     assert "position is an output" in capsys.readouterr().out
 
 
-def test_a_gap_that_opens_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("force", [0.02, 0.3])
+def test_a_gap_that_never_opens_or_never_closes_is_refused(
+    force: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As a device file with it is: at the residual pull, and beyond that with the open gap."""
     path = tmp_path / "device.toml"
-    text = next(text for text in FILES if COIL in text)
-    opening = COIL + 'lift = "0.05 mm"\nclosing_force = "20 mN"\n'
-    path.write_text(text.replace(COIL, opening), "utf-8")
-    with pytest.raises(
-        ValueError, match=r"^magnet.lift must be left out for an FMU, which .* 5e-05 m$"
-    ):
-        write_fmu(load_device(path), tmp_path / "unit.fmu")
+    path.write_text(DEVICE.format(magnet=MAGNETS["closing"]), "utf-8")
+    device = load_device(path)
+    unit = Unit(*unpacked(device, tmp_path / "pin.fmu", 3))
+    with pytest.raises(FMICallException):
+        unit.begin(magnet__closing_force=force)
+    assert "magnet.closing_force must be more than the residual pull" in capsys.readouterr().out
+    with pytest.raises(ValueError, match="closing_force must be"):
+        load_device(path, {"magnet.closing_force": force})
 
 
 def test_damaged_states_are_refused(tmp_path: Path) -> None:

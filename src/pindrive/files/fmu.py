@@ -26,7 +26,6 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Quantity
-from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
 
@@ -80,8 +79,6 @@ ELSEWHERE: Final = {
     "magnet.outer_diameter": "says whether the device can be built",
     "magnet.height": "says whether the device can be built",
     "magnet.temperature_rise": "judges the warming, does not change it",
-    "magnet.lift": "a unit of a magnet whose gap opens is refused",
-    "magnet.closing_force": "a unit of a magnet whose gap opens is refused",
     "control": "what commands the magnet is the importer's",
     "array": "the unit is one pin of it",
     "scan": "how a hand reads: the importer moves the plate",
@@ -223,15 +220,10 @@ def write_fmu(device: DeviceFile, path: Path, version: int = 3) -> None:
         version: of FMI, one of `VERSIONS`.
 
     Raises:
-        ValueError: another version; the gap of the magnet opens, which a unit does not follow;
-            this installation has no library for an FMU.
+        ValueError: another version; this installation has no library for an FMU.
     """
     if version not in VERSIONS:
         raise ValueError(f"version must be one of {', '.join(map(str, VERSIONS))}, got {version}")
-    lift = device.values().get("magnet.lift")
-    if lift is not None:
-        required = "left out for an FMU, which does not follow a gap that opens"
-        raise ValueError(refusal("magnet.lift", required, f"{lift!r} m"))
     libraries = dict(_libraries(version))
     if not libraries:
         raise ValueError("fmu: this installation has no library for an FMU; install pindrive again")
