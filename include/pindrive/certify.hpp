@@ -286,7 +286,8 @@ class Certifier {
     if (stage.segment.mode.plate != ContactState::slip_oblique) return T(0);
     const T u = s.v - stage.plate_velocity.at(s.tau), w = stage.across.at(s.tau);
     const T speed = hypot(u, w), time = stage.segment.begin + s.tau;
-    const T strength = stage.load.at(s.tau) * kinetic(drive_.plate, speed);
+    const T load = std::max(stage.load.at(s.tau), T(0));  // less by rounding where it ends
+    const T strength = load * kinetic(drive_.plate, speed);
     const T moves = v_scale_ + time * (abs(s.a) + abs(stage.plate_velocity.rate));
     if (!(speed > 0)) return T(0);
     const T turns = w / speed;

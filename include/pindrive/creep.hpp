@@ -52,8 +52,8 @@ class CreepFlow : public SeriesStep<T> {
           abs(off) > 4 * abs(v - before) + 64 * unit * (abs(v) + abs(off)) + unsure(e, start))
         return;
       before = v;
-      // The first one has as much of a as tells whether it is near.
-      expand(e, start, step, round == 0 ? 1 : N);
+      // The first one has as much of a as tells whether it is near, and its rate, which changes it next.
+      expand(e, start, step, round == 0 ? 2 : N);
       if (round == 0) continue;
       const Real left = farthest / step;
       Real part = within_step ? left : std::min(this->suggested_part(), left);

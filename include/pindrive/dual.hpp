@@ -46,6 +46,7 @@ struct Dual {
   friend constexpr bool operator>=(Dual a, Dual b) { return a.value >= b.value; }
 
   friend constexpr T plain(Dual a) { return a.value; }
+  friend constexpr bool vanishes(Dual a) { return a.value == 0 && a.slope == 0; }
   friend bool isfinite(Dual a) { return std::isfinite(a.value); }
   friend bool isnan(Dual a) { return std::isnan(a.value); }
   friend Dual floor(Dual a) { return std::floor(a.value); }

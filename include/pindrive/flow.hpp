@@ -298,6 +298,14 @@ struct Flow {
   }
 };
 
+namespace detail {
+/// Whether a number is zero, whatever it is differentiated along.
+template <class T>
+bool vanishes(T number) {
+  return number == 0;
+}
+}  // namespace detail
+
 /// A force on the pin in one mode: constant − drag x' − stiffness (x − x₀), N.
 template <class T>
 struct Force {
@@ -306,11 +314,12 @@ struct Force {
   T rounding{0};  ///< how well the drag is known, N s/m
 
   Path<T> along(const Flow<T>& flow) const {
+    using detail::vanishes;
     Path<T> path = constant;
-    if (drag != 0) path = path + (-drag) * flow.velocity;
+    if (!vanishes(drag)) path = path + (-drag) * flow.velocity;
     Path<T> moved = flow.position;
     moved.start = T(0);
-    if (stiffness != 0) path = path + (-stiffness) * moved;
+    if (!vanishes(stiffness)) path = path + (-stiffness) * moved;
     return path;
   }
 };

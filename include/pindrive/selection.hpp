@@ -108,13 +108,21 @@ class Selection {
       if (!other.may_stick()) other.does = other.option(0);
       side->breaks_under(stick_force(*side, other.may_stick() ? T(0) : other.force(state_)));
     }
-    for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
-      for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
-        first.does = first.option(k);
-        second.does = second.option(l);
-        if (sets_out()) return true;
-      }
+    for (const bool kept : {false, true})
+      for (int k = first.may_stick() ? 1 : 0; k < first.count; ++k)
+        for (int l = second.may_stick() ? 1 : 0; l < second.count; ++l) {
+          first.does = first.option(k);
+          second.does = second.option(l);
+          if ((keeps(first, second) || keeps(second, first)) == kept && sets_out()) return true;
+        }
     return false;
+  }
+  /// Whether what stuck could carry the pin beside a slip of the other: it slips only where nothing else goes.
+  bool keeps(const Side& side, const Side& other) const {
+    using std::abs;
+    if (side.before != ContactState::stick || !side.may_stick() || other.may_stick()) return false;
+    const T force = stick_force(side, other.force(state_));
+    return limit_ == 0 && side.stick_limit() - abs(force) > state_.roundoff;
   }
 
   /// Whether the push of a stop is exactly zero: it came to that, and no force jumps.

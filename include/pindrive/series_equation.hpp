@@ -10,6 +10,12 @@
 
 namespace pindrive {
 
+/// Whether a plate of this load, which moves like this across the axis, slides across too and carries something.
+template <class T>
+bool carries_across(const Line<T>& load, const Line<T>& across) {
+  return (across.value != 0 || across.rate != 0) && (load.value != 0 || load.rate != 0);
+}
+
 /// The pin, and what is known of its skin: see SeriesEquation.
 template <class T>
 struct SeriesState {

@@ -22,11 +22,7 @@ struct InputLines {
   Line<T> force{};                  ///< on the pin from outside, N
   Line<T> finger_load{T(1), T(0)};  ///< >= 0
 
-  /// Whether a plate slides across too, and carries something.
-  static bool oblique(const Line<T>& load, const Line<T>& across) {
-    return (across.value != 0 || across.rate != 0) && (load.value != 0 || load.rate != 0);
-  }
-  bool oblique() const { return oblique(plate_load, across_velocity); }
+  bool oblique() const { return carries_across(plate_load, across_velocity); }
   InputLines from(T tau) const {
     const auto later = [&](const Line<T>& line) { return Line<T>{line.at(tau), line.rate}; };
     return {later(plate_velocity), later(plate_load), later(across_velocity), later(force),
@@ -66,7 +62,7 @@ class SeriesMode {
                              const Line<T>& load) {
       return slips(does) && load.rate != 0 && contact.branch(branch).slope != 0;
     };
-    return !(slips(mode.plate) && InputLines<T>::oblique(plate_load, across_velocity)) &&
+    return !(slips(mode.plate) && carries_across(plate_load, across_velocity)) &&
            !bilinear(mode.plate, drive.plate, mode.plate_branch, plate_load) &&
            !bilinear(mode.finger, drive.finger, mode.finger_branch, finger_load) &&
            !lags(drive.finger, mode);

@@ -72,8 +72,7 @@ template <class Side, class T>
 bool asks_across(Side& side, T u, Bound& at) {
   using detail::hypot;
   const auto& contact = side.contact;
-  const bool across = side.across.value != 0 || side.across.rate != 0;
-  if (!across || (side.load.value == 0 && side.load.rate == 0)) {
+  if (!carries_across(side.load, side.across)) {
     if (!side.oblique()) return false;
     at = Bound::none;  // that of another speed
     side.does = {ContactState::stick, Bound::none, 0, T(0)};

@@ -90,12 +90,13 @@ class SeriesSegment {
     state.slide = now.skin;
     // A pin and a slider whose velocities have faded into the rounding of the position are at rest, which is
     // known no better than by what these still carry.
-    const T still = rounding<T> * state.x_size * sqrt(drive.stiffness / drive.mass);
+    const T size = std::max(abs(state.x), abs(step.position.c[0]));
+    const T still = rounding<T> * size * sqrt(drive.stiffness / drive.mass);
     const T pull = drive.mass * step.velocity.derivative().at(tau) + drive.damping * state.v +
                    finger.branch().slope * finger.load.at(tau) * state.slide;
     const T known = 2 * abs(pull) / (rounding<T> * drive.stiffness);
     if (finger.does.branch != 0 || abs(state.v) > still || abs(state.slide) > still) return;
-    if (known > 64 * (1 + drive.damping * still / state.roundoff) * state.x_size) return;
+    if (known > 64 * (1 + drive.damping * still / state.roundoff) * size) return;
     state.v = state.slide = T(0);
     state.x_size = std::max(state.x_size, known);
   }

@@ -393,6 +393,36 @@ static void stepping(void) {
 }
 
 /* A force keeps the pin at a rigid stop, then throws it to the other one. */
+/* What a load of the plate that is zero does to the plate's force, of which friction at the speed comes. */
+static void along_no_load(void) {
+  const double speeds[2] = {0, 0.2}, forces[2] = {0.02, 0.06}, little = 1e-3;
+  pindrive_drive *drive = the_drive(), *rate = pindrive_drive_rate_new(drive);
+  pindrive_release *release = the_release(), *still;
+  pindrive_stepper *stepper = NULL, *along = NULL;
+  double force = NAN, slope = NAN;
+  pindrive_drive_set_curve(drive, "plate", speeds, forces, 2);
+  pindrive_drive_free(rate);
+  rate = pindrive_drive_rate_new(drive);
+  pindrive_release_set(release, "velocity", 0.05);
+  pindrive_release_set(release, "plate_load", 0);
+  still = pindrive_release_rate_new(release);
+  expect(pindrive_stepper_differentiate(drive, release, rate, still, 0, &along) == PINDRIVE_OK,
+         "derivatives at no load");
+  expect(pindrive_stepper_set_along(along, "plate_load", 1, 0) == PINDRIVE_OK, "along it");
+  expect(pindrive_stepper_evaluate(along, PINDRIVE_PLATE_FORCE, &slope) == PINDRIVE_OK, "a slope");
+  pindrive_release_set(release, "plate_load", little);
+  expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "at a little load");
+  expect(pindrive_stepper_evaluate(stepper, PINDRIVE_PLATE_FORCE, &force) == PINDRIVE_OK, "force");
+  expect(fabs(slope - force / little) < 1e-12, "it is that of a difference");
+  expect(fabs(slope - 0.03) < 1e-15, "and friction at the sliding speed");
+  pindrive_stepper_free(stepper);
+  pindrive_stepper_free(along);
+  pindrive_drive_free(rate);
+  pindrive_drive_free(drive);
+  pindrive_release_free(still);
+  pindrive_release_free(release);
+}
+
 static void at_stops(void) {
   pindrive_drive *drive = the_drive();
   pindrive_release *release = pindrive_release_new();
@@ -437,6 +467,7 @@ int main(void) {
   stopping();
   a_batch();
   stepping();
+  along_no_load();
   at_stops();
   pindrive_motion_free(NULL);
   pindrive_drive_free(NULL);

@@ -16,6 +16,7 @@ CASES: dict[tuple[str, int], dict[str, int]] = {
     ("skin", 15): {"finger slip": 1, "finger stick": 1, "plate slip": 1, "plate stick": 1},
     ("skin", 20): {"finger slip": 5, "finger stick": 4, "plate slip": 1, "plate stick": 1,
                    "plate cross": 1},
+    ("load", 70): {"finger cross": 1, "plate stick": 1, "plate slip": 1},
     ("oblique", 3): {"finger slip": 1, "finger stick": 1},
     ("oblique", 7): {"finger cross": 1},
     ("oblique", 8): {"finger cross": 1, "finger stick": 1},

@@ -211,16 +211,18 @@ class _Simulation:
     def step(self) -> mpf:
         if any(self.side[c] == 0 for c in self.rigid):
             return self.duration  # the series ends with its square
-        stiffness, damping = self.k, self.b
+        stiffness, damping, growing = self.k, self.b, mpf(0)
         for contact, law in self.law.items():
             if self.side[contact]:
-                damping += self.scaled(contact) * law.slopes[self.band[contact]]
+                slope = law.slopes[self.band[contact]]
+                load = self.load if contact == "plate" else self.touch
+                damping += load(self.t) * slope
+                growing += load.slope(self.t) * slope
             elif contact not in self.rigid:
                 stiffness += law.stiffness
-        return REACH / max(sqrt(stiffness / self.m), abs(damping) / self.m)
-
-    def scaled(self, contact: str) -> mpf:
-        return (self.load if contact == "plate" else self.touch)(self.t)
+        # Of the largest rate on the way: h (rate + grows h) = REACH.
+        rate, grows = max(sqrt(stiffness / self.m), abs(damping) / self.m), abs(growing) / self.m
+        return 2 * REACH / (rate + sqrt(rate * rate + 4 * REACH * grows))
 
     def lines(self, h: mpf) -> tuple[Poly, Poly]:
         """Mouse velocity and load over the step."""
