@@ -107,10 +107,7 @@ class Simulation : private Selection<T> {
 
   /// Flat, as calls would cost a plain release a tenth of its time; but not where size was asked for.
   PINDRIVE_FLAT void select() {
-    if (const T rounds = finger_.starts_nowhere(state_); rounds > 0) {
-      finger_.load.rate = T(0);
-      row_ = std::min(row_, time_ + rounds * first_grip<T> * row_);
-    }
+    row_ = finger_.keeps_off_zero(state_, time_, row_);
     if (!Selected::select()) outcome_.status = Status::inconsistent;
     finger_.land(state_);
   }
