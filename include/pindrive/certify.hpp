@@ -122,11 +122,12 @@ class Certifier {
     Quantity x_rate, acceleration, finger_rate;
     std::array<Watch<Guard>, 6> watches;
     int count{0};
+    T slider_unsure{0};  ///< m/s
   };
 
   /// The motion at an instant.
   struct Numbers {
-    T tau, x, v, a, plate_force, finger_force;
+    T tau, x, v, a, plate_force, finger_force, finger_rate;
   };
   template <class Trajectory>
   struct State : Numbers {
@@ -193,8 +194,8 @@ class Certifier {
       const int others = stage.count;
       slipping(drive_.finger, mode.finger, mode.finger_branch,
                along.velocity() + 1 / drive_.finger.stiffness * stage.finger_rate);
-      for (int i = others; i < stage.count; ++i)
-        stage.watches[i].known = slider_unsure(stage);
+      stage.slider_unsure = slider_unsure(stage);
+      for (int i = others; i < stage.count; ++i) stage.watches[i].known = stage.slider_unsure;
     } else {
       slipping(drive_.finger, mode.finger, mode.finger_branch, along.velocity());
     }
@@ -217,7 +218,7 @@ class Certifier {
     const auto now = along.moment(tau);
     return {{tau, along.at(along.position(), now), along.at(along.velocity(), now),
              along.at(stage.acceleration, now), along.at(along.plate_force(), now),
-             along.at(along.finger_force(), now)},
+             along.at(along.finger_force(), now), along.at(stage.finger_rate, now)},
             now};
   }
 
@@ -521,18 +522,22 @@ class Certifier {
       const T pull = end * stop_force(stage, s) - unsure(stage, s);
       worst(result_.force_bound, std::max(pull, T(0)), force_scale_);
     }
-    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
+    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load,
+                             T unsure) {
       if (does == ContactState::slip_oblique)
         raise(errors.friction, oblique_error(u, stage.across.at(s.tau), force, load));
       else if (slips(does))
-        raise(errors.friction, force + sign(does) * load * kinetic(law, abs(u)));
+        raise(errors.friction,
+              std::max(abs(force + sign(does) * load * kinetic(law, abs(u))) - unsure, T(0)));
       else if (does == ContactState::stick)
         raise(errors.sticking, u);
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
-            stage.load.at(s.tau));
+            stage.load.at(s.tau), T(0));
+    const T pressed = stage.finger_load.at(s.tau);
+    const T slope = drive_.finger.branches > 0 ? abs(drive_.finger.branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1)).slope) : T(0);
     contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force,
-            stage.finger_load.at(s.tau));
+            pressed, pressed * slope * stage.slider_unsure);
   }
 
   /// The sliding velocity on the finger.
@@ -592,12 +597,9 @@ class Certifier {
     }
     if (!soft()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
-    const Line<T> pressed = motion_.inputs().finger_load.from(before.begin);
-    const T loaded = pressed.at(before.end - before.begin);
-    // A load is known to the rounding of the time, and what is in proportion to it.
-    const T time = detail::rounding<T> * before.end;
-    T known = slips(before.mode.finger) && loaded > 0 ? time * abs(pressed.rate) * (asked / loaded) : T(0);
     if (event.finger != Transition::slip) {
+      const bool changes = motion_.inputs().finger_load.from(before.begin).rate != 0;
+      const T known = changes ? detail::rounding<T> * before.end * abs(left.finger_rate) : T(0);
       const T jump = abs(left.finger_force - right.finger_force);
       worst(result_.continuity, std::max(jump - known, T(0)), force_scale_);
       return;
@@ -609,7 +611,7 @@ class Certifier {
             force_scale_);
     const bool lifts = !(load > 0) || lifts_off(before.mode, left.v, before.end);
     const T most = !lifts ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
-    const T unmet = std::max(most - asked - known, T(0));
+    const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, force_scale_);
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
   }

@@ -209,6 +209,12 @@ class SlidingSkin : public TouchState<T> {
     const T sense = does.sense;
     return sense * range.at(lags() ? sense * s.slide : range.from) * loaded;
   }
+  /// Goes on with its force where its load is known to the rounding of the time only: it was `before`.
+  void keeps_force(State<T>& s, T before) const {
+    if (!lags() || before == load.value || !(load.value > 0)) return;
+    const Branch<T> range = branch();
+    s.slide += does.sense * range.at(does.sense * s.slide) * (before / load.value - 1) / range.slope;
+  }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {
     if (does.state == ContactState::absent) s.skin = T(0);
