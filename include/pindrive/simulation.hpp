@@ -194,18 +194,16 @@ class Simulation : private Selection<T> {
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool row = tau == row_ - time_;
     const T end = row ? row_ : time_ + tau;
-    // A slider that gets ever faster as its load falls moves by much in the rounding of the time.
-    const T lasts = finger_.lags() && finger_.load.rate != 0 ? end - time_ : tau;
+    const T lasts = finger_.rounds_time() ? end - time_ : tau;
     series_.move(state_, drive_, finger_, lasts);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
       state_.move(segment, finger_.elastic());
     }
-    time_ = end;
+    segment.end = time_ = end;
     const T across = plate_.across.at(tau), level = finger_.sliding() ? finger_.level() : T(0);
     const T loaded = load_before(finger_.load.at(lasts), finger_.load.rate);
-    segment.end = time_;
     limit_ = 0;
     struck_ = false;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();

@@ -104,7 +104,8 @@ class Slider {
       const Branch<T> range = contact_.branch(j);
       const T left = misses(range.from, range.force);
       const bool last = !(range.to < never);
-      if (range.slope < 0 || !(left > 0)) continue;
+      if (range.slope < 0 || left < 0 || (left == 0 && j == 0)) continue;
+      if (left == 0) return {j, range.from, range.force, Bound::lower};
       if (!last && misses(range.to, contact_.branch(j + 1).force) > 0) continue;
       const T speed = std::min(range.from + left / (1 + follows_ * range.slope), range.to);
       return {j, speed, range.at(speed)};
@@ -209,6 +210,9 @@ class SlidingSkin : public TouchState<T> {
     const T sense = does.sense;
     return sense * range.at(lags() ? sense * s.slide : range.from) * loaded;
   }
+  /// Whether it moves by much in the rounding of a time, as a slider does that gets ever faster while its load
+  /// falls: it then goes on by the time that is kept.
+  bool rounds_time() const { return lags() && load.rate != 0; }
   /// Goes on with its force where its load is known to the rounding of the time only: it was `before`.
   void keeps_force(State<T>& s, T before) const {
     if (!lags() || before == load.value || !(load.value > 0)) return;
@@ -249,10 +253,14 @@ class SlidingSkin : public TouchState<T> {
   bool breaks() const { return compliant() && breaks_; }
   /// Whether it has neither force nor static friction, so that it may slip either way.
   bool either_way() const { return compliant() && either_way_; }
-  TouchOption<T> after_landing(T sense) const { return after(landing_, sense); }
   /// Of what has come to the begin of a branch at the speed of the pin, the last: that it turns back.
   bool turns_back(int index) const { return compliant() && meets_other_ && index == count - 1; }
-  TouchOption<T> after_turning_back(T sense) const { return after(other_, sense); }
+  TouchOption<T> after_landing(T sense, int index = 0) const {
+    if (lifted()) return {};
+    const Landing<T>& there = turns_back(index) ? other_ : landing_;
+    if (there.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
+    return slip(there.turns ? -sense : sense, there.at, there.branch);
+  }
 
   /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
   void begin_slider(State<T>& s, T speed) {
@@ -377,11 +385,6 @@ class SlidingSkin : public TouchState<T> {
 
  private:
   bool compliant() const { return !contact.rigid(); }
-  TouchOption<T> after(const Landing<T>& landing, T sense) const {
-    if (lifted()) return {};
-    if (landing.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
-    return slip(landing.turns ? -sense : sense, landing.at, landing.branch);
-  }
   bool lifted() const { return load.value == 0 && !(load.rate > 0); }
   Slider<T> slider(T sense, T u) const {
     return {contact, sense * u, contact.rigid() ? T(0) : load.rate / contact.stiffness};
@@ -404,6 +407,7 @@ class SlidingSkin : public TouchState<T> {
       breaks_ = !landing_.grips || s.skin != 0 || sense_ * u != stretching(contact.static_limit);
     }
     landing_.drops = s.skin != 0;
+    if (landing_.at == Bound::lower) comes_to_rest(slider(sense_, u), sense_, u);
     return !breaks_;
   }
 
