@@ -122,9 +122,6 @@ BAD: dict[str, Callable[[], object]] = {
         finger=Contact(coefficient=0.5),
         touch_force="-10 mN",
     ),
-    "finger_load must be constant for a finger with a stiffness, got a Profile of 6 rows": (
-        lambda: simulate(forced.DRIVE, Release(0.06, finger_load=LIFT))
-    ),
     "finger_load must be 1; `simulate` follows another, got a Profile": (
         lambda: simulate_batch(DRIVE, Release(0.06, finger_load=LIFT), mass=[0.01])
     ),

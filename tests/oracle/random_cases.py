@@ -3,7 +3,7 @@
     cd tests && ../.venv/bin/python -m oracle.random_cases load 200 1
 
 KIND is `load`, a friction curve at the plate under a load that changes; `skin`, a friction curve on
-a compliant finger; or `oblique`, a hand that wobbles across the axis. A draw whose answer is
+a compliant finger; `skin_load`, compliant skin under a load that changes; or `oblique`, a hand that wobbles across the axis. A draw whose answer is
 ill-conditioned is discarded. The seeds that are off are named, if any are.
 """
 
@@ -50,6 +50,7 @@ def drawn(
 KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
     "load": under_load,
     "skin": partial(drawn, slider_draws.draw, mp_slider.solve),
+    "skin_load": partial(drawn, slider_draws.draw_load, mp_slider.solve),
     "oblique": partial(drawn, oblique_draws.draw, mp_oblique.solve),
 }
 
