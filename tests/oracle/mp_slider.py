@@ -94,7 +94,7 @@ class _Skin:
         moves = [abs(v) for _, v in self.mouse.rows]
         self.speed = max(*moves, abs(self.v), sqrt(self.k / self.m) * abs(self.x))
         self.force = max(self.static, self.limit)
-        self.presses = self.touch.slope(self.t)
+        self.presses, self.gone = self.touch.slope(self.t), False
         self.path = Path()
 
     # -- a step --------------------------------------------------------------------------------
@@ -228,18 +228,23 @@ class _Skin:
         if self.t > 0 and before == self.touch.slope(self.t) and len(self.touch.rows) == 1:
             return
         if load == 0:
-            if self.t > 0 and not same(abs(self.q), mpf(0)):
-                self.event("finger", "slip")
-            self.q, self.side = mpf(0), 0
-            if self.lifted:
-                return
-            speed = abs(self.v) - self.follows(self.branch.base)
             if len(self.curve) > 1 or self.branch.slope:
                 raise DoubtError("a curve without load")
-            if speed > 0:
-                self.side = int(sign(self.v))
-            if self.t > 0 and was == 0 and not self.side:
-                self.event("finger", "stick")
+            drops = bool(abs(self.q) > DOUBT * self.force)
+            fast = abs(self.v) > self.follows(self.branch.base)
+            self.q, self.side = mpf(0), int(sign(self.v)) if fast and not self.lifted else 0
+            gone, self.gone = self.gone, self.lifted
+            if self.t == 0 or (gone and self.side):
+                return
+            if drops or (self.lifted and not gone and was == 0):
+                self.event("finger", "slip")
+            elif not self.lifted and (gone or self.side != was):
+                kinds = {0: "slip", -self.side: "cross"}
+                self.event("finger", "stick" if self.side == 0 else kinds[was])
+            return
+        if self.gone:
+            self.gone = False
+            self.event("finger", "stick")
             return
         asked, drops = abs(self.q) / load, False
         if self.side == 0:
