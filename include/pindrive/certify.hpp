@@ -310,7 +310,8 @@ class Certifier {
     T most{0};
     for (const T tau : {T(0), stage.span}) {
       const auto now = along.moment(tau);
-      const T faster = along.at(stage.acceleration, now) + along.at(bend, now) / drive_.finger.stiffness;
+      const T faster =
+          along.at(stage.acceleration, now) + along.at(bend, now) / drive_.finger.stiffness;
       most = std::max(most, abs(faster));
     }
     most *= detail::rounding<T> * (stage.segment.begin + stage.span);
@@ -409,8 +410,8 @@ class Certifier {
     const T known = std::max(unsure(stage, from), unsure(stage, to));
     for (int i = 0; i < stage.count; ++i) {
       const auto& [guard, law, scale, slid] = stage.watches[i];
-      const T least = lowest(guard, unseen * scale) +
-                      (law == &Certificate<T>::force_bound ? known : slid);
+      const T least =
+          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : slid);
       if (!(least >= 0)) worst(result_.*law, least, scale);
     }
     laws(stage, from, errors);
@@ -535,9 +536,14 @@ class Certifier {
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
             stage.load.at(s.tau), T(0));
     const T pressed = stage.finger_load.at(s.tau);
-    const T slope = drive_.finger.branches > 0 ? abs(drive_.finger.branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1)).slope) : T(0);
-    contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force,
-            pressed, pressed * slope * stage.slider_unsure);
+    const T slope =
+        drive_.finger.branches > 0
+            ? abs(drive_.finger
+                      .branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1))
+                      .slope)
+            : T(0);
+    contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force, pressed,
+            pressed * slope * stage.slider_unsure);
   }
 
   /// The sliding velocity on the finger.

@@ -217,7 +217,8 @@ class SlidingSkin : public TouchState<T> {
   void keeps_force(State<T>& s, T before) const {
     if (!lags() || before == load.value || !(load.value > 0)) return;
     const Branch<T> range = branch();
-    s.slide += does.sense * range.at(does.sense * s.slide) * (before / load.value - 1) / range.slope;
+    s.slide +=
+        does.sense * range.at(does.sense * s.slide) * (before / load.value - 1) / range.slope;
   }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {
@@ -371,8 +372,9 @@ class SlidingSkin : public TouchState<T> {
     }
     if (load.rate > 0) return row;
     const T ends = load.at(row - time);
-    const T follows = lags() ? 1 / branch().slope
-                      : contact.static_limit > 0 ? u / contact.static_limit : T(0);
+    const T follows = lags()                     ? 1 / branch().slope
+                      : contact.static_limit > 0 ? u / contact.static_limit
+                                                 : T(0);
     if (ends > rounding<T> * load.value + known * -load.rate ||
         load.value > known * (contact.stiffness * follows - load.rate))
       return row;

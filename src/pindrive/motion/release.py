@@ -8,7 +8,6 @@ from typing import Final
 
 from pindrive.motion.core_numbers import CoreNumbers, Rows
 from pindrive.motion.drive import (
-    Contact,
     Drive,
     check_stretch,
     check_within_travel,
