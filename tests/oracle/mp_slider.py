@@ -216,7 +216,7 @@ class _Skin:
 
     @property
     def lifted(self) -> bool:
-        return self.touch(self.t) == 0 and self.touch.slope(self.t) == 0
+        return bool(self.touch(self.t) == 0 and self.touch.slope(self.t) == 0)
 
     def follows(self, force: mpf) -> mpf:
         """Speed at which the stretch of a friction grows with the load."""

@@ -3,8 +3,9 @@
     cd tests && ../.venv/bin/python -m oracle.random_cases load 200 1
 
 KIND is `load`, a friction curve at the plate under a load that changes; `skin`, a friction curve on
-a compliant finger; `skin_load`, compliant skin under a load that changes; or `oblique`, a hand that wobbles across the axis. A draw whose answer is
-ill-conditioned is discarded. The seeds that are off are named, if any are.
+a compliant finger; `skin_load`, a compliant finger under a load that changes; or `oblique`, a hand
+that wobbles across the axis. A draw whose answer is ill-conditioned is discarded. The seeds that
+are off are named, if any are.
 """
 
 from __future__ import annotations

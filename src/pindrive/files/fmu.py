@@ -164,7 +164,7 @@ def _given(name: str, row: Quantity, value: float) -> Variable:
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     """The inputs that its unit has, without their rates: those of a release.
 
-    The load of the plate is what the magnet makes of its command, where the file describes the magnet.
+    The plate load is what the magnet makes of its command, where the file describes the magnet.
     """
     return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
 
