@@ -198,9 +198,6 @@ pindrive_error pindrive_c::check(const pindrive_drive& drive, const pindrive_rel
     error = check("skin_stretch", release.skin_stretch, finite_or(release.skin_stretch, none),
                   "finite, or NaN");
   if (error) return error;
-  if (release.finger_load.size() > 1 && std::isfinite(drive.finger.stiffness))
-    return fail(PINDRIVE_UNSUPPORTED,
-                "finger_load must have one value for a finger that is compliant");
   const double skin = release.skin_stretch;
   const double most = drive.finger.static_limit * release.finger_load[0].second;
   if (std::isnan(skin)) return PINDRIVE_OK;

@@ -124,8 +124,7 @@ PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, cons
 
 /* Gives a release "mouse_velocity", "plate_load", "force", "across_velocity" or "finger_load" over time:
  * values[i] at times[i] (s, increasing, count >= 1), linear between, constant outside. Two rows of a load
- * or a force at one time are a step: from that time on the later one holds. A finger_load that changes
- * needs a rigid finger. */
+ * or a force at one time are a step: from that time on the later one holds. */
 PINDRIVE_API pindrive_error pindrive_release_set_profile(pindrive_release *release,
                                                          const char *name, const double *times,
                                                          const double *values, size_t count);
@@ -349,7 +348,7 @@ PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 
 /* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
  * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
- * fallen to zero stays there. A finger_load that changes needs a rigid finger. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
+ * fallen to zero stays there. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
  * velocity, to the plate too, unless a rigid end stop takes it along. Where the velocity across jumps the pin keeps its velocity as well, and the
  * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
  * it is a number, which does not change along the direction. */

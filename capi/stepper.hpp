@@ -159,13 +159,7 @@ pindrive_error Followed<T>::set_input(const char* name, Change&& change) {
         "a stepper has no input %.40s, but mouse_velocity, plate_load, across_velocity, force, "
         "finger_load",
         name);
-  const pd::Line<T> before = *line;
   change(*line);
-  const auto& finger = stepper_.drive().finger;
-  const bool same = plain(line->value) == plain(before.value) && plain(line->rate) == 0;
-  if (line == &inputs.finger_load && !same && !finger.rigid())
-    return fail(PINDRIVE_UNSUPPORTED, "finger_load must stay %.17g for a finger that is compliant",
-                plain(before.value));
   stepper_.set(inputs);
   return stepper_.status() == pd::Status::ok ? PINDRIVE_OK : given_up(stepper_.status());
 }

@@ -102,6 +102,7 @@ class Certifier {
     Guard guard;
     T Certificate<T>::* law;
     T scale;
+    T known{0};  ///< how well, by the rounding of the time
   };
   static PositivityBound<T> guard_of(const ClosedForm<T>& along, const Path<T>& path) {
     return {along.oscillator(), path};
@@ -121,11 +122,12 @@ class Certifier {
     Quantity x_rate, acceleration, finger_rate;
     std::array<Watch<Guard>, 6> watches;
     int count{0};
+    T slider_unsure{0};  ///< m/s
   };
 
   /// The motion at an instant.
   struct Numbers {
-    T tau, x, v, a, plate_force, finger_force;
+    T tau, x, v, a, plate_force, finger_force, finger_rate;
   };
   template <class Trajectory>
   struct State : Numbers {
@@ -159,7 +161,7 @@ class Certifier {
     const Line<T> at_finger{drive_.finger.static_limit * stage.finger_load.value,
                             drive_.finger.static_limit * stage.finger_load.rate};
     const auto watch = [&](const auto& path, T Certificate<T>::* law, T scale) {
-      stage.watches[stage.count++] = {guard_of(along, path), law, scale};
+      stage.watches[stage.count++] = {guard_of(along, path), law, scale, T(0)};
     };
     const auto slipping = [&](const Contact<T>& contact, ContactState does, int index,
                               const auto& sliding) {
@@ -188,11 +190,15 @@ class Certifier {
         watch(along.above(T(-1) * speed, -branch.to), &Certificate<T>::sliding_sign, v_scale_);
     }
     // A slider is slower than the pin by what its skin stretches.
-    if (soft())
+    if (soft()) {
+      const int others = stage.count;
       slipping(drive_.finger, mode.finger, mode.finger_branch,
                along.velocity() + 1 / drive_.finger.stiffness * stage.finger_rate);
-    else
+      stage.slider_unsure = slider_unsure(stage);
+      for (int i = others; i < stage.count; ++i) stage.watches[i].known = stage.slider_unsure;
+    } else {
       slipping(drive_.finger, mode.finger, mode.finger_branch, along.velocity());
+    }
     stops_at(stage, watch);
     if (held_by_stop(drive_, mode)) return stage;
     if (mode.both_stuck()) {
@@ -212,7 +218,7 @@ class Certifier {
     const auto now = along.moment(tau);
     return {{tau, along.at(along.position(), now), along.at(along.velocity(), now),
              along.at(stage.acceleration, now), along.at(along.plate_force(), now),
-             along.at(along.finger_force(), now)},
+             along.at(along.finger_force(), now), along.at(stage.finger_rate, now)},
             now};
   }
 
@@ -292,6 +298,26 @@ class Certifier {
     if (!(speed > 0)) return T(0);
     const T turns = w / speed;
     return 4 * detail::rounding<T> * moves * strength * turns * turns / speed;
+  }
+
+  /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
+  /// changes, and by that of the force, of whose change it is known.
+  template <class Trajectory>
+  T slider_unsure(const Stage<Trajectory>& stage) const {
+    using std::abs;
+    if (stage.finger_load.rate == 0) return T(0);
+    const Trajectory& along = stage.along;
+    const auto bend = along.derivative(stage.finger_rate);
+    T most{0};
+    for (const T tau : {T(0), stage.span}) {
+      const auto now = along.moment(tau);
+      const T faster =
+          along.at(stage.acceleration, now) + along.at(bend, now) / drive_.finger.stiffness;
+      most = std::max(most, abs(faster));
+    }
+    most *= detail::rounding<T> * (stage.segment.begin + stage.span);
+    const T carries = abs(along.at(along.finger_force(), along.moment(T(0))));
+    return most + detail::rounding<T> * carries / (drive_.finger.stiffness * stage.span);
   }
 
   bool soft() const { return drive_.finger.present() && !drive_.finger.rigid(); }
@@ -384,9 +410,9 @@ class Certifier {
     const auto from = state(stage, T(0)), to = state(stage, stage.span);
     const T known = std::max(unsure(stage, from), unsure(stage, to));
     for (int i = 0; i < stage.count; ++i) {
-      const auto& [guard, law, scale] = stage.watches[i];
+      const auto& [guard, law, scale, slid] = stage.watches[i];
       const T least =
-          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : T(0));
+          lowest(guard, unseen * scale) + (law == &Certificate<T>::force_bound ? known : slid);
       if (!(least >= 0)) worst(result_.*law, least, scale);
     }
     laws(stage, from, errors);
@@ -425,7 +451,7 @@ class Certifier {
     ClosedState before = from;
     const auto follow = [&](const ClosedState& now) {
       for (int i = 0; i < stage.count; ++i) {
-        const auto& [guard, law, scale] = stage.watches[i];
+        const auto& [guard, law, scale, slid] = stage.watches[i];
         const T lowest = guard.lowest(oscillator, guard.at(before.moment), guard.at(now.moment),
                                       flatness[i], unseen * scale);
         if (!(lowest >= 0)) worst(result_.*law, lowest, scale);
@@ -498,18 +524,27 @@ class Certifier {
       const T pull = end * stop_force(stage, s) - unsure(stage, s);
       worst(result_.force_bound, std::max(pull, T(0)), force_scale_);
     }
-    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load) {
+    const auto contact = [&](const Contact<T>& law, ContactState does, T u, T force, T load,
+                             T unsure) {
       if (does == ContactState::slip_oblique)
         raise(errors.friction, oblique_error(u, stage.across.at(s.tau), force, load));
       else if (slips(does))
-        raise(errors.friction, force + sign(does) * load * kinetic(law, abs(u)));
+        raise(errors.friction,
+              std::max(abs(force + sign(does) * load * kinetic(law, abs(u))) - unsure, T(0)));
       else if (does == ContactState::stick)
         raise(errors.sticking, u);
     };
     contact(drive_.plate, mode.plate, s.v - stage.plate_velocity.at(s.tau), s.plate_force,
-            stage.load.at(s.tau));
-    contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force,
-            stage.finger_load.at(s.tau));
+            stage.load.at(s.tau), T(0));
+    const T pressed = stage.finger_load.at(s.tau);
+    const T slope =
+        drive_.finger.branches > 0
+            ? abs(drive_.finger
+                      .branch(std::clamp(mode.finger_branch, 0, drive_.finger.branches - 1))
+                      .slope)
+            : T(0);
+    contact(drive_.finger, mode.finger, on_finger(stage, s), s.finger_force, pressed,
+            pressed * slope * stage.slider_unsure);
   }
 
   /// The sliding velocity on the finger.
@@ -570,17 +605,36 @@ class Certifier {
     if (!soft()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      worst(result_.continuity, left.finger_force - right.finger_force, force_scale_);
+      const bool changes = motion_.inputs().finger_load.from(before.begin).rate != 0;
+      const T known = changes ? detail::rounding<T> * before.end * abs(left.finger_rate) : T(0);
+      const T jump = abs(left.finger_force - right.finger_force);
+      worst(result_.continuity, std::max(jump - known, T(0)), force_scale_);
       return;
     }
     const T load = motion_.inputs().finger_load.from(before.end).value;
     const bool gripped = before.mode.finger == ContactState::elastic_stick;
     if (gripped)
-      worst(result_.transitions, drive_.finger.static_limit * load - asked, force_scale_);
-    const T most = load > 0 ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
+      worst(result_.transitions, std::max(drive_.finger.static_limit * load - asked, T(0)),
+            force_scale_);
+    const bool lifts = !(load > 0) || lifts_off(before.mode, left.v, before.end);
+    const T most = !lifts ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
     const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, force_scale_);
     raise(gained_, std::min(energy(left) - energy(right), T(0)));
+  }
+
+  /// Whether a load that falls to zero is so near to that that the times in which skin follows it are within
+  /// the rounding of the time: those of its slider or of the rounds in which it grips and slips.
+  bool lifts_off(const Mode& mode, T v, T time) const {
+    using std::abs;
+    const Contact<T>& finger = drive_.finger;
+    const Line<T> load = motion_.inputs().finger_load.from(time);
+    if (!(load.rate < 0)) return false;
+    const T slope = slips(mode.finger) ? finger.branch(mode.finger_branch).slope : T(0);
+    const T limit = finger.static_limit;
+    const T follows = slope > 0 ? 1 / slope : limit > 0 ? abs(v) / limit : T(0);
+    const T known = 65 * detail::rounding<T> * time;
+    return load.value <= known * (finger.stiffness * follows - load.rate);
   }
 
   /// The largest friction of the finger from a branch of its curve on, under a load of 1: skin becomes

@@ -95,8 +95,8 @@ struct Touch : SlidingSkin<T> {
 
   /// What it may do, the preferred first: to stick, else to go on as it does.
   Option option(int index) const {
-    if (this->breaks())
-      return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_);
+    if (this->breaks() || this->turns_back(index))
+      return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_, index);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
       if (!contact.rigid()) return this->after_landing(sense_);

@@ -62,8 +62,14 @@ class Guards {
     if (side.elastic()) {
       const Path<T> most = Line<T>{side.stick_limit(), side.contact.static_limit * side.load.rate};
       const int near = -sense(segment.finger_force);
-      for (const int to : {near, -near})
-        add(most + T(to) * segment.finger_force, Bound::none, plate, to);
+      for (const int to : {near, -near}) {
+        Path<T> left = most + T(to) * segment.finger_force;
+        if (most.drift != 0 && side.does.at == Bound::upper && to == near) {
+          left.start = T(0);
+          if (segment.flow.velocity.start == side.level()) left.drift = -left.slope;
+        }
+        add(left, Bound::none, plate, to);
+      }
     }
     if (!side.sliding()) return;
     const Branch<T> range = side.branch();

@@ -192,8 +192,7 @@ struct Inputs {
   T skin_stretch{std::numeric_limits<T>::quiet_NaN()};
   Profile<T> force{T(0)};            ///< on the pin from outside, N
   Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
-  Profile<T> finger_load{T(1)};      ///< factor on the finger's friction; >= 0, constant where that
-                                     ///< is compliant
+  Profile<T> finger_load{T(1)};      ///< factor on the finger's friction; >= 0
 
   bool constant() const {
     return mouse_velocity.constant() && plate_load.constant() && force.constant() &&

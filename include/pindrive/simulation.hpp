@@ -107,10 +107,7 @@ class Simulation : private Selection<T> {
 
   /// Flat, as calls would cost a plain release a tenth of its time; but not where size was asked for.
   PINDRIVE_FLAT void select() {
-    if (const T rounds = finger_.starts_nowhere(state_); rounds > 0) {
-      finger_.load.rate = T(0);
-      row_ = std::min(row_, time_ + rounds * first_grip<T> * row_);
-    }
+    row_ = finger_.keeps_off_zero(state_, time_, row_);
     if (!Selected::select()) outcome_.status = Status::inconsistent;
     finger_.land(state_);
   }
@@ -195,17 +192,18 @@ class Simulation : private Selection<T> {
   void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    series_.move(state_, drive_, finger_, tau);
+    const bool row = tau == row_ - time_;
+    const T end = row ? row_ : time_ + tau;
+    const T lasts = finger_.rounds_time() ? end - time_ : tau;
+    series_.move(state_, drive_, finger_, lasts);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();
       segment.moved = turns ? half_turn_ : segment.flow.after(tau);
       state_.move(segment, finger_.elastic());
     }
-    const bool row = tau == row_ - time_;
-    time_ = row ? row_ : time_ + tau;
+    segment.end = time_ = end;
     const T across = plate_.across.at(tau), level = finger_.sliding() ? finger_.level() : T(0);
-    const T loaded = load_before(finger_.load.at(tau), finger_.load.rate);
-    segment.end = time_;
+    const T loaded = load_before(finger_.load.at(lasts), finger_.load.rate);
     limit_ = 0;
     struck_ = false;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
@@ -269,9 +267,10 @@ class Simulation : private Selection<T> {
     else
       look_ahead();
     const T now = finger_.load.value;
-    return abs(value - now) <= rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_)
-               ? now
-               : value;
+    if (abs(value - now) > rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_))
+      return value;
+    finger_.keeps_force(state_, value);
+    return now;
   }
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.
   /// Rows that differ by the rounding of a time are one: the last of them.

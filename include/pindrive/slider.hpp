@@ -24,6 +24,7 @@ struct Landing {
   Bound at{Bound::none};  ///< the end of the branch that it is at
   bool grips{false};      ///< it does not slide …
   bool drops{false};      ///< or it slid so fast that the skin has become shorter
+  bool turns{false};      ///< it slides the other way
 };
 
 /// The landings of a slider on a curve, of a pin with a speed along the slip. Its skin stretches by `follows`
@@ -103,7 +104,8 @@ class Slider {
       const Branch<T> range = contact_.branch(j);
       const T left = misses(range.from, range.force);
       const bool last = !(range.to < never);
-      if (range.slope < 0 || !(left > 0)) continue;
+      if (range.slope < 0 || left < 0 || (left == 0 && j == 0)) continue;
+      if (left == 0) return {j, range.from, range.force, Bound::lower};
       if (!last && misses(range.to, contact_.branch(j + 1).force) > 0) continue;
       const T speed = std::min(range.from + left / (1 + follows_ * range.slope), range.to);
       return {j, speed, range.at(speed)};
@@ -208,6 +210,16 @@ class SlidingSkin : public TouchState<T> {
     const T sense = does.sense;
     return sense * range.at(lags() ? sense * s.slide : range.from) * loaded;
   }
+  /// Whether it moves by much in the rounding of a time, as a slider does that gets ever faster while its load
+  /// falls: it then goes on by the time that is kept.
+  bool rounds_time() const { return lags() && load.rate != 0; }
+  /// Goes on with its force where its load is known to the rounding of the time only: it was `before`.
+  void keeps_force(State<T>& s, T before) const {
+    if (!lags() || before == load.value || !(load.value > 0)) return;
+    const Branch<T> range = branch();
+    s.slide +=
+        does.sense * range.at(does.sense * s.slide) * (before / load.value - 1) / range.slope;
+  }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {
     if (does.state == ContactState::absent) s.skin = T(0);
@@ -242,10 +254,13 @@ class SlidingSkin : public TouchState<T> {
   bool breaks() const { return compliant() && breaks_; }
   /// Whether it has neither force nor static friction, so that it may slip either way.
   bool either_way() const { return compliant() && either_way_; }
-  TouchOption<T> after_landing(T sense) const {
+  /// Of what has come to the begin of a branch at the speed of the pin, the last: that it turns back.
+  bool turns_back(int index) const { return compliant() && meets_other_ && index == count - 1; }
+  TouchOption<T> after_landing(T sense, int index = 0) const {
     if (lifted()) return {};
-    if (landing_.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
-    return slip(sense, landing_.at, landing_.branch);
+    const Landing<T>& there = turns_back(index) ? other_ : landing_;
+    if (there.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
+    return slip(there.turns ? -sense : sense, there.at, there.branch);
   }
 
   /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
@@ -266,7 +281,7 @@ class SlidingSkin : public TouchState<T> {
   /// Finds out what it may do.
   [[gnu::noinline]] void ask_slider(const State<T>& s, T u) {
     Bound& at = at_;
-    breaks_ = either_way_ = meets_ = false;
+    breaks_ = either_way_ = meets_ = meets_other_ = false;
     if (!contact.present()) return;
     if (load.value == 0 && !takes_load(s, u)) return;
     meets_ = sliding() && !lags();
@@ -285,6 +300,7 @@ class SlidingSkin : public TouchState<T> {
       breaks_ = meets_ && came_to == Bound::none && at != Bound::none &&
                 jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
       meets_ = meets_ && !breaks_;
+      meets_ = meets_ && !breaks_;
       slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
       friction = range.at(lags() ? slid_ : range.from);
       const T pulls = sense_ * s.skin, most = friction * load.value;
@@ -293,6 +309,7 @@ class SlidingSkin : public TouchState<T> {
         meets_ = false;
         landing_ = pulls > most ? goes.faster(branch_, pulls / load.value)
                                 : goes.slower(branch_ + 1, pulls / load.value);
+        comes_to_rest(goes, sense_, u);
         return;
       }
       if (at == Bound::none) return;
@@ -301,6 +318,7 @@ class SlidingSkin : public TouchState<T> {
         const T asked = friction = contact.branch(beyond).force;
         landing_ = at == Bound::upper ? goes.faster(beyond, asked) : goes.slower(beyond, asked);
         count = breaks_ ? 1 : 2;
+        comes_to_rest(goes, sense_, u);
         if (at == Bound::upper || !landing_.grips || asked < contact.static_limit) return;
       }
     }
@@ -315,7 +333,7 @@ class SlidingSkin : public TouchState<T> {
     sense_ = (empty ? u > 0 : s.skin > 0) ? T(-1) : T(1);  // of the force
     const T pulls = -sense_ * s.skin;
     const bool exceeds = pulls > most + rounding<T> * most + s.roundoff;
-    if (!(exceeds && load.rate != 0) && (pulls < most || sense_ * u > -grows)) return;
+    if (!exceeds && (pulls < most || sense_ * u > -grows)) return;
     at = Bound::upper;
     breaks_ = exceeds;
     const auto goes = slider(-sense_, u);
@@ -323,15 +341,45 @@ class SlidingSkin : public TouchState<T> {
     if (landing_.drops && landing_.at == Bound::lower && load.rate < 0)  // nor does it slip on
       landing_ = goes.gripping(landing_);
     count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
+    comes_to_rest(goes, -sense_, u);
+  }
+  /// What follows where it has landed: without static friction what grips slips on with the pin, and where
+  /// it meets the speed of the pin at the begin of a branch, only the pin's acceleration tells which way it goes.
+  void comes_to_rest(const Slider<T>& goes, T sense, T u) {
+    if (landing_.grips && landing_.drops && contact.static_limit == 0 && u != 0) {
+      landing_ = slider(-sense, u).faster(0, T(0));
+      landing_.drops = landing_.turns = true;
+    }
+    if (landing_.at != Bound::lower || landing_.turns) return;
+    const bool meets = goes.pin(landing_.friction) == landing_.speed;
+    if (!breaks_ && !(meets && landing_.branch > 0)) return;
+    other_ = goes.slower(landing_.branch, landing_.friction);
+    meets_other_ = breaks_ || !other_.grips;
+    if (meets_other_) ++count;
   }
 
  public:
-  /// How many times too fast the pin is for skin to grip as its load grows from zero, where no speed of its
-  /// slider lasts either: it then grips and slips the more often, the smaller the load is. Else 0.
-  T starts_nowhere(const State<T>& s) const {
-    if (load.value != 0 || !(load.rate > 0) || !contact.may_lag()) return T(0);
-    const T u = s.v < 0 ? -s.v : s.v, most = stretching(contact.static_limit);
-    return u > most && slider(T(1), u).from_zero().grips ? u / most : T(0);
+  /// Where no mode of its skin lasts next to a load of zero, it has none while that is nearer than the rounds
+  /// of grip and slip need that are known by their times. When the load is to be asked again, s.
+  [[gnu::noinline]] T keeps_off_zero(State<T>& s, T time, T row) {
+    if (load.rate == 0 || contact.rigid() || !contact.present()) return row;
+    const T u = s.v < 0 ? -s.v : s.v, known = first_grip<T> * row;
+    if (load.value == 0 && load.rate > 0) {
+      const T most = stretching(contact.static_limit);
+      if (!contact.may_lag() || !(u > most) || !slider(T(1), u).from_zero().grips) return row;
+      load.rate = T(0);
+      return std::min(row, time + u / most * known);
+    }
+    if (load.rate > 0) return row;
+    const T ends = load.at(row - time);
+    const T follows = lags()                     ? 1 / branch().slope
+                      : contact.static_limit > 0 ? u / contact.static_limit
+                                                 : T(0);
+    if (ends > rounding<T> * load.value + known * -load.rate ||
+        load.value > known * (contact.stiffness * follows - load.rate))
+      return row;
+    load = {T(0), T(0)};
+    return row;
   }
 
  protected:
@@ -361,6 +409,7 @@ class SlidingSkin : public TouchState<T> {
       breaks_ = !landing_.grips || s.skin != 0 || sense_ * u != stretching(contact.static_limit);
     }
     landing_.drops = s.skin != 0;
+    if (landing_.at == Bound::lower) comes_to_rest(slider(sense_, u), sense_, u);
     return !breaks_;
   }
 
@@ -374,7 +423,9 @@ class SlidingSkin : public TouchState<T> {
 
   T slid_{0};                               ///< the speed of the slider until now, …
   Landing<T> landing_{};                    ///< … where it comes to, …
+  Landing<T> other_{};                      ///< … or, from there, …
   bool either_way_{false}, breaks_{false};  ///< … whether it could not but go there, …
+  bool meets_other_{false};                 ///< … where it may do both, …
   bool meets_{false};                       ///< … and whether it had the speed of the pin
 };
 

@@ -100,8 +100,7 @@ class Stepper {
     return true;
   }
 
-  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most, and that of a
-  /// compliant finger, or of one with a curve, stays as it is. A mouse velocity
+  /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most. A mouse velocity
   /// that jumps moves the housing in no time: beside it the pin keeps its velocity, as no finite force could
   /// change that; so it does where the velocity across jumps. A value that differs from the input as it went
   /// on by rounding is the same.

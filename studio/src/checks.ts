@@ -149,15 +149,6 @@ export function checkWithinTravel(values: Found): void {
   throw new Refusal("displacement", words, `${floatRepr(displacement)} m`);
 }
 
-/** Refuses a load that changes on a finger with a stiffness. */
-export function checkFingerLoad(values: Found): void {
-  const load = values["motion.finger_load"];
-  if (!Array.isArray(load) || load.every(([, y]) => y === load[0]![1])) return;
-  if (values["finger.stiffness"] == null) return;
-  const words = "constant for a finger with a stiffness";
-  throw new Refusal("finger_load", words, `a Profile of ${load.length} rows`);
-}
-
 /** What an input is at t = 0. */
 function initial(given: Value): number {
   if (typeof given === "number") return given;
@@ -256,7 +247,6 @@ export function problemOf(values: Values): string {
     }
     checkStops(found);
     checkWithinTravel(found);
-    checkFingerLoad(found);
     checkStretch(found);
     checkDrive(found);
     checkPhase(found);

@@ -3,7 +3,6 @@
 import {
   checkCurve,
   checkDrive,
-  checkFingerLoad,
   checkOneKind,
   checkRows,
   checkStatic,
@@ -245,7 +244,6 @@ class Reader {
   private checkTogether(): void {
     this.attempt(() => checkStops(this.values), "drive.stop_stiffness", "drive.stop_damping");
     this.attempt(() => checkWithinTravel(this.values), "motion.displacement");
-    this.attempt(() => checkFingerLoad(this.values), "motion.finger_load");
     this.attempt(() => checkStretch(this.values), "motion.skin_stretch");
   }
 }

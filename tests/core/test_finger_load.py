@@ -60,6 +60,51 @@ def test_a_constant_load_scales_the_friction(finger: Contact) -> None:
     assert one.certificate().worst < 1e-12
 
 
+SKIN = {
+    "Coulomb": Contact(0.02, 0.03, stiffness=800.0),
+    "curve": replace(CURVE, stiffness=300.0),
+}
+
+
+@pytest.mark.parametrize("name", SKIN)
+def test_skin_under_a_load_that_changes_obeys_the_laws(name: str) -> None:
+    drive = replace(DRIVE, finger=SKIN[name])
+    motion = simulate(drive, Release(0.06, 0.002, finger_load=LIFT), duration=0.1)
+    assert motion.certificate().worst < 1e-11
+    assert abs(motion.energy.residual) < 1e-12 * motion.energy.spring_start
+    lifted = np.linspace(0.0301, 0.0449, 50)
+    assert np.all(motion.stretch(lifted) == 0.0) and np.all(motion.force("finger", lifted) == 0.0)
+    slips = [e.time for e in motion.events if (e.contact, e.kind) == ("finger", "slip")]
+    assert 0.03 in slips  # it lifts, and the skin has no stretch then
+
+
+def test_skin_slips_under_a_pin_at_rest_as_it_is_let_go() -> None:
+    """A plate holds the pin; the skin keeps its stretch until the limit has fallen to it."""
+    drive = replace(DRIVE, plate=Contact(0.5), finger=Contact(0.02, stiffness=800.0))
+    falls = Profile([0.0, 0.1], [1.0, 0.0])
+    release = Release(0.0, 1e-3, skin_stretch=1e-5, finger_load=falls)
+    motion = simulate(drive, release, duration=0.1)
+    t = np.linspace(0.0, 0.1, 101)
+    assert np.array_equal(motion.position(t), np.full(101, 1e-3))
+    exact = -np.minimum(0.008, 0.02 * np.clip(1 - t / 0.1, 0.0, 1.0))
+    assert np.abs(motion.force("finger", t) - exact).max() < 1e-17
+    (slip,) = [e for e in motion.events if e.contact == "finger"]
+    assert slip.kind == "slip" and slip.time == pytest.approx(0.06, abs=1e-16)
+    assert motion.transient.finger.dissipated == pytest.approx(0.008**2 / 1600, rel=1e-12)
+
+
+def test_stiff_skin_under_a_load_that_changes_tends_to_the_rigid_finger() -> None:
+    t = np.linspace(0.0, 0.1, 201)
+    rigid = Contact(curve=[(0.0, 0.02), (0.3, 0.05)])
+    release = Release(0.06, 0.002, finger_load=LIFT)
+    limit = simulate(replace(DRIVE, finger=rigid), release, duration=0.1).position(t)
+    off = []
+    for stiffness in (1e3, 1e4, 1e5):
+        drive = replace(DRIVE, finger=replace(rigid, stiffness=stiffness))
+        off.append(np.abs(simulate(drive, release, duration=0.1).position(t) - limit).max())
+    assert off[1] < 0.5 * off[0] and off[2] < 0.5 * off[1]
+
+
 def test_with_a_coefficient_the_friction_follows_the_touch_force() -> None:
     """μ times the touch force, which the load multiplies."""
     finger = Contact(coefficient=0.5, static_coefficient=0.75)
@@ -80,8 +125,9 @@ def test_a_lifted_finger_is_no_finger() -> None:
     assert np.array_equal(lifted, alone)
 
 
-def test_rows_of_a_constant_load_are_the_load() -> None:
-    drive = replace(DRIVE, finger=CURVE)
+@pytest.mark.parametrize("finger", [CURVE, *SKIN.values()])
+def test_rows_of_a_constant_load_are_the_load(finger: Contact) -> None:
+    drive = replace(DRIVE, finger=finger)
     rows = Profile([0.0, 0.01, 0.05], [1.5, 1.5, 1.5])
     one, other = (simulate(drive, Release(0.06, 0.002, finger_load=f)) for f in (rows, 1.5))
     t = np.linspace(0.0, 0.2, 201)
@@ -121,9 +167,6 @@ BAD: dict[str, Callable[[], object]] = {
         plate=Contact(0.02),
         finger=Contact(coefficient=0.5),
         touch_force="-10 mN",
-    ),
-    "finger_load must be constant for a finger with a stiffness, got a Profile of 6 rows": (
-        lambda: simulate(forced.DRIVE, Release(0.06, finger_load=LIFT))
     ),
     "finger_load must be 1; `simulate` follows another, got a Profile": (
         lambda: simulate_batch(DRIVE, Release(0.06, finger_load=LIFT), mass=[0.01])

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from oracle import mp_oblique, mp_slider, random_cases
+from oracle import mp_oblique, random_cases
 
 # Cheap ones of `python -m oracle.random_cases KIND 200 1`, with what happens at the contacts.
 CASES: dict[tuple[str, int], dict[str, int]] = {
@@ -17,6 +17,11 @@ CASES: dict[tuple[str, int], dict[str, int]] = {
     ("skin", 20): {"finger slip": 5, "finger stick": 4, "plate slip": 1, "plate stick": 1,
                    "plate cross": 1},
     ("load", 70): {"finger cross": 1, "plate stick": 1, "plate slip": 1},
+    ("skin_load", 2): {"finger slip": 3, "finger stick": 1, "plate slip": 1, "plate stick": 1,
+                       "plate cross": 1},
+    ("skin_load", 5): {"finger slip": 4, "finger stick": 4, "plate slip": 3, "plate stick": 3},
+    ("skin_load", 8): {"finger slip": 3, "finger stick": 3, "plate cross": 2},
+    ("skin_load", 15): {"finger slip": 1, "finger stick": 1, "plate slip": 1, "plate stick": 1},
     ("oblique", 3): {"finger slip": 1, "finger stick": 1},
     ("oblique", 7): {"finger cross": 1},
     ("oblique", 8): {"finger cross": 1, "finger stick": 1},
@@ -30,7 +35,7 @@ def test_core_gives_the_oracle_answers(kind: str, seed: int) -> None:
     case, path = random_cases.KINDS[kind](seed)
     assert Counter(f"{e.contact} {e.kind}" for e in path.events) == CASES[kind, seed]
     assert random_cases.deviation(case, path) < random_cases.CLOSE
-    if isinstance(path, mp_slider.Path):
+    if kind == "skin":
         kinds = [e.kind for e in path.events if e.contact == "finger"]
         assert (["slip", "slip"] in [kinds[i : i + 2] for i in range(len(kinds))]) == (
             seed in AT_ONCE

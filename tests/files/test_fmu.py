@@ -50,7 +50,7 @@ class Archive:
             displacement=self.device.release.displacement,
             plate_load=Profile(TIMES, LOADS),
             force=Profile(TIMES, FORCES),
-            finger_load=Profile(TIMES, FINGER_LOADS) if self.device.drive.finger.rigid else 1.0,
+            finger_load=Profile(TIMES, FINGER_LOADS),
         )
         return simulate(self.device.drive, release, duration=END)
 
@@ -71,12 +71,10 @@ def test_a_strict_importer_finds_nothing_wrong(archive: Archive) -> None:
     assert named["drive.mass"].unit == "kg" and float(named["drive.mass"].min) > 0
     assert len(named) == len(variables)
     inputs = {v.name: v for v in variables if v.causality == "input"}
-    expected = {"mouse_velocity", "plate_load", "force", "across_velocity"}
-    if archive.device.drive.finger.rigid:
-        expected.add("finger_load")
+    expected = {"mouse_velocity", "plate_load", "force", "across_velocity", "finger_load"}
     assert inputs.keys() == expected | {f"{name}_rate" for name in expected}
     assert inputs["force"].unit == "N" and inputs["force_rate"].unit == "N/s"
-    assert ("motion.finger_load" in named) != archive.device.drive.finger.rigid
+    assert "motion.finger_load" not in named
     outputs = {v.name: v for v in variables if v.causality == "output"}
     assert {name: v.unit for name, v in outputs.items()} == {
         **{"position": "m", "velocity": "m/s", "acceleration": "m/s^2"},
@@ -107,8 +105,7 @@ def driven(unit: Unit, random: np.random.Generator, largest: float) -> Iterator[
     for i, (begin, end) in enumerate(pairwise((*TIMES, END))):
         assert unit.time == begin
         rows = {"mouse_velocity": VELOCITIES, "plate_load": LOADS, "force": FORCES}
-        if "finger_load" in unit.numbers:
-            rows["finger_load"] = FINGER_LOADS
+        rows["finger_load"] = FINGER_LOADS
         unit.set(**{name: values[i] for name, values in rows.items()})
         slopes = {name: rates(values, i) for name, values in rows.items()}
         if unit.version == 2 and i % 2:  # FMI 2 sets a rate in either way

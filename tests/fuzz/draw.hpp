@@ -119,8 +119,9 @@ class Draw {
       c.displacement = c.travel * (chance(0.3) ? 1 : uniform(-1, 1));
   }
 
-  /// A friction curve on skin or on a rigid finger under a load over time, from soft to stiff, now and then beside stops or under a hand across. It may
-  /// rise, fall or stay, and have no static friction.
+  /// A friction curve on skin, from soft to stiff, now and then beside stops or under a hand across. It may
+  /// rise, fall or stay, and have no static friction. Where a load changes, one finger in three has Coulomb
+  /// friction, and one in five is rigid.
   void skin(Case& c, double critical, double length) {
     c.skin = c.stiffness * decade(-1, 4);
     while (c.curve[1].at.size() == 1) c.curve[1] = curve();
@@ -130,10 +131,11 @@ class Draw {
         c.curve[1].value[i] = c.curve[1].value[i - 1];
     c.limit[1] = c.curve[1].value[0] * (chance(0.5) ? 1 : tidy(uniform(1, 2.5)));
     c.finger_load = {{0}, {chance(0.7) ? 1 : tidy(uniform(0, 2))}};
-    const bool rigid = chance(0.25);  // such a finger may press and lift
     double last = 0;
-    if (rigid)
+    if (chance(0.5))
       c.finger_load = profile([&] { return chance(0.3) ? 0 : tidy(uniform(0, 2)); }, last, 0.2);
+    if (last > 0 && chance(0.3)) c.curve[1] = {{0}, {c.curve[1].value[0]}};
+    const bool rigid = last > 0 && chance(0.2);
     if (chance(0.1)) c.across = across();
     if (chance(0.2)) stop(c, critical, length);
     // The steepest rise or fall has the slowest skin, the flattest the fastest.
@@ -142,7 +144,7 @@ class Draw {
       const double rise = std::abs(c.curve[1].value[i] - c.curve[1].value[i - 1]);
       if (rise > 0) flattest = std::min(flattest, rise / (c.curve[1].at[i] - c.curve[1].at[i - 1]));
     }
-    const double load = c.finger_load.value[0];
+    const double load = *std::max_element(c.finger_load.value.begin(), c.finger_load.value.end());
     if (rigid) c.skin = never;
     if (load == 0 || rigid) return;
     c.duration = std::min({c.duration, 3 * period_, 2e3 * flattest * load / c.skin});
@@ -151,6 +153,8 @@ class Draw {
     for (const double force : c.curve[1].value) least = std::min(least, force);
     if (c.limit[1] > least)
       c.duration = std::min(c.duration, 3e2 * load * (c.limit[1] - least) / (c.skin * speed_));
+    for (double& at : c.finger_load.at)  // within its time
+      if (last > c.duration) at *= 0.8 * c.duration / last;
   }
 
   Rows curve() {

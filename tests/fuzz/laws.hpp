@@ -158,6 +158,17 @@ inline Rows from(const Rows& rows, double t, const std::vector<double>& all) {
   return later;
 }
 
+/// Whether the load of skin grows from zero while its friction falls with speed.
+inline bool begins_anyhow(const Case& c) {
+  const Rows &load = c.finger_load, &curve = c.curve[1];
+  bool grows = false, falls = false;
+  for (std::size_t i = 1; i < load.at.size(); ++i)
+    grows = grows || (load.value[i - 1] == 0 && load.value[i] > 0 && load.at[i] > load.at[i - 1]);
+  for (std::size_t i = 1; i < curve.at.size(); ++i)
+    falls = falls || curve.value[i] < curve.value[i - 1];
+  return !std::isinf(c.skin) && grows && falls;
+}
+
 /// Where a motion is cut, and the drive from there on. The same case is always cut at the same time.
 struct Cut {
   Cut(const pd::Motion<double>& motion, const Case& whole) : rest(whole) {
@@ -167,9 +178,12 @@ struct Cut {
     while (segment != motion.end() && !(segment->end > segment->begin)) ++segment;
     possible = segment != motion.end();
     if (!possible) return;
-    // A release cannot say how fast skin slips on a curve.
-    possible =
-        std::isinf(whole.skin) || whole.curve[1].at.size() == 1 || !pd::slips(segment->mode.finger);
+    // A release cannot say how fast skin slips on a curve, nor which way as its load changes.
+    const bool known = whole.curve[1].at.size() == 1 &&
+                       Given::profile(whole.finger_load).from(segment->begin).rate == 0;
+    possible = std::isinf(whole.skin) || known || !pd::slips(segment->mode.finger);
+    // Skin that has no first mode as its load grows from zero begins with one at a time that the rows tell.
+    possible = possible && !begins_anyhow(whole);
     if (!possible) return;
     tau = 0.61803398874989 * (std::min(segment->end, whole.duration) - segment->begin);
     time = segment->begin + tau;

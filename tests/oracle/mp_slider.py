@@ -5,8 +5,10 @@ skin asks; the plate has Coulomb friction, whose load and velocity are piecewise
 is followed by the Taylor series of its own linear equations, and its end is the earliest zero of
 its guards.
 
-Inputs are a mapping of SI values as in `mp_piecewise`. The finger's curve has no plateau but beyond
-its last row but one, and does not fall there.
+Inputs are a mapping of SI values as in `mp_piecewise`, with `finger_load`, a factor on the finger's
+friction, over time. It is zero at rows only, and only where the finger has Coulomb friction: a
+curve of two rows with one force. The finger's curve has no plateau but beyond its last row but one,
+and does not fall there.
 """
 
 from __future__ import annotations
@@ -80,7 +82,9 @@ class _Skin:
         self.kinetic = mpf(inputs["plate"]["curve"][0][1])
         self.limit = mpf(inputs["plate"]["static"])
         self.mouse, self.load = Profile(inputs["mouse_velocity"]), Profile(inputs["load"])
-        knots = {t for p in (self.mouse, self.load) for t, _ in p.rows} | {mpf(duration)}
+        self.touch = Profile(inputs.get("finger_load", [[0.0, 1.0]]))
+        profiles = (self.mouse, self.load, self.touch)
+        knots = {t for p in profiles for t, _ in p.rows} | {mpf(duration)}
         self.knots = sorted(t for t in knots if 0 < t <= duration)
         self.t, self.x, self.v = mpf(0), mpf(inputs["displacement"]), mpf(inputs["velocity"])
         self.q = self.skin * mpf(inputs["skin_stretch"])
@@ -90,6 +94,7 @@ class _Skin:
         moves = [abs(v) for _, v in self.mouse.rows]
         self.speed = max(*moves, abs(self.v), sqrt(self.k / self.m) * abs(self.x))
         self.force = max(self.static, self.limit)
+        self.presses, self.gone = self.touch.slope(self.t), False
         self.path = Path()
 
     # -- a step --------------------------------------------------------------------------------
@@ -97,6 +102,7 @@ class _Skin:
     def series(self, h: mpf) -> tuple[Poly, Poly, Poly, Poly]:
         """Position, velocity, the skin's force, and the speed of the slider, over a step."""
         v_p, load = self.over(self.mouse, h), self.over(self.load, h)
+        touch = self.over(self.touch, h)
         inertia = self.m * self.mouse.slope(self.t)
         x, v, q = [self.x], [self.v], [self.q]
         speed: Poly = []
@@ -105,13 +111,16 @@ class _Skin:
             if n < 2:
                 push -= self.plate * self.kinetic * load[n]
             forces = push - self.k * x[n] - self.b * v[n] - q[n]
-            if self.side == 0:
+            base = self.side * self.branch.base
+            if self.lifted:
+                slides = v[n]
+            elif self.side == 0:
                 slides = mpf(0)
             elif self.branch.slope == 0:
-                slides = v[n]
-            else:
-                base = self.branch.base if n == 0 else 0
-                slides = self.side * (self.side * q[n] - base) / self.branch.slope
+                slides = v[n] - (base * touch[1] / (h * self.skin) if n == 0 else 0)
+            else:  # q = λ (base + slope u), order by order
+                carried = (q[n] - (base * touch[n] if n < 2 else 0)) / self.branch.slope
+                slides = (carried - (touch[1] * self.side * speed[n - 1] if n else 0)) / touch[0]
             speed.append(self.side * slides)
             x.append(h * v[n] / (n + 1))
             rate = h * forces / (self.m * (n + 1))
@@ -135,22 +144,27 @@ class _Skin:
                 Guard("plate", f"{-way:+d}", plus(most, times(mpf(-way), needed)), self.force)
                 for way in (1, -1)
             ]
-        if self.side:
+        if self.lifted:
+            pass
+        elif self.side:
             low, high = self.branch.low, self.branch.high
             found.append(Guard("finger", "low", plus(speed, [-low]), self.speed))
             if high < inf:
                 above = plus([high], times(mpf(-1), speed))
                 found.append(Guard("finger", "high", above, self.speed))
         else:
+            holds = times(self.static, self.over(self.touch, h))
             found += [
-                Guard("finger", f"{way:+d}", plus([self.static], times(mpf(-way), q)), self.force)
+                Guard("finger", f"{way:+d}", plus(holds, times(mpf(-way), q)), self.force)
                 for way in (1, -1)
             ]
         return [guard for guard in found if not guard.idle]
 
     def solve(self) -> Path:
         rates = [self.skin / b.slope for b in self.curve if b.slope]
-        longest = 1 / (max(map(abs, rates)) + self.frequency + self.b / self.m)
+        least = min([y for _, y in self.touch.rows if y > 0], default=mpf(1))
+        longest = 1 / (max([mpf(0), *map(abs, rates)]) / least + self.frequency + self.b / self.m)
+        self.touches(mpf(0))
         for _ in range(MOST_STEPS):
             if self.t == self.knots[-1]:
                 return self.path
@@ -174,6 +188,9 @@ class _Skin:
                 self.at_plate(guard.kind)
             elif s < 1:
                 self.at_finger(guard.kind)
+            elif self.t == knot and self.t < self.knots[-1]:
+                self.touches(self.presses)
+            self.presses = self.touch.slope(self.t)
         raise DoubtError("too many steps")
 
     # -- what follows --------------------------------------------------------------------------
@@ -197,16 +214,74 @@ class _Skin:
             self.plate = -int(sign(needed))
             self.event("plate", "cross")
 
+    @property
+    def lifted(self) -> bool:
+        return bool(self.touch(self.t) == 0 and self.touch.slope(self.t) == 0)
+
+    def follows(self, force: mpf) -> mpf:
+        """Speed at which the stretch of a friction grows with the load."""
+        return force * self.touch.slope(self.t) / self.skin
+
+    def touches(self, before: mpf) -> None:
+        """The load jumps or changes its rate, from `before`."""
+        load, was = self.touch(self.t), self.side
+        if self.t > 0 and before == self.touch.slope(self.t) and len(self.touch.rows) == 1:
+            return
+        if load == 0:
+            if len(self.curve) > 1 or self.branch.slope:
+                raise DoubtError("a curve without load")
+            drops = bool(abs(self.q) > DOUBT * self.force)
+            fast = abs(self.v) > self.follows(self.branch.base)
+            self.q, self.side = mpf(0), int(sign(self.v)) if fast and not self.lifted else 0
+            gone, self.gone = self.gone, self.lifted
+            if self.t == 0 or (gone and self.side):
+                return
+            if drops or (self.lifted and not gone and was == 0):
+                self.event("finger", "slip")
+            elif not self.lifted and (gone or self.side != was):
+                kinds = {0: "slip", -self.side: "cross"}
+                self.event("finger", "stick" if self.side == 0 else kinds[was])
+            return
+        if self.gone:
+            self.gone = False
+            self.event("finger", "stick")
+            return
+        asked, drops = abs(self.q) / load, False
+        if self.side == 0:
+            if not apart(asked, self.static):
+                raise DoubtError("at its limit")
+            if asked > self.static:
+                self.side = int(sign(self.q))
+                drops = self.faster(0)
+        else:
+            number = self.curve.index(self.branch)
+            low, high = (self.branch.at(u) if u < inf else inf for u in self.ends())
+            if self.branch.slope == 0:
+                low = high = self.branch.base
+                if same(asked, low):
+                    if self.side * self.v - self.follows(low) < self.branch.low:
+                        self.slower(number)
+                    asked = low
+            if asked > high and not same(asked, high):
+                drops = self.faster(number if self.branch.slope == 0 else number + 1)
+            elif asked < low and not same(asked, low):
+                self.slower(number)
+        if drops or self.side != was:
+            self.event("finger", "slip" if drops or self.side else "stick")
+
+    def ends(self) -> tuple[mpf, mpf]:
+        return self.branch.low, self.branch.high
+
     def at_finger(self, kind: str) -> None:
         """A skin that becomes shorter at once slips, also where it grips again at that instant."""
         was, drops = self.side, False
         if was == 0:
             self.side = int(kind)
-            self.q = self.side * self.static
+            self.q = self.side * self.static * self.touch(self.t)
             drops = self.faster(0)
         else:
             end = self.branch.low if kind == "low" else self.branch.high
-            self.q = self.side * self.branch.at(end)
+            self.q = self.side * self.branch.at(end) * self.touch(self.t)
             number = self.curve.index(self.branch)
             if kind == "high":
                 drops = self.faster(number + 1)
@@ -221,7 +296,7 @@ class _Skin:
         Without one the skin becomes shorter at once, until the last plateau carries it; whether it
         did.
         """
-        asked = abs(self.q)
+        asked = abs(self.q) / self.touch(self.t)
         for branch in self.curve[first:]:
             begin = branch.at(branch.low)
             if branch.slope > 0 and reaches(asked, begin) and below(asked, branch.at(branch.high)):
@@ -230,10 +305,11 @@ class _Skin:
             if branch.slope == 0:
                 if not reaches(asked, begin):
                     raise DoubtError("below its plateau")
-                if not apart(self.side * self.v, branch.low):
+                speed = self.side * self.v - self.follows(branch.base)
+                if not apart(speed, branch.low):
                     raise DoubtError("as fast as a row")
-                self.q = self.side * branch.base
-                if self.side * self.v > branch.low:
+                self.q = self.side * branch.base * self.touch(self.t)
+                if speed > branch.low:
                     self.branch = branch
                 else:
                     self.slower(len(self.curve) - 1)
@@ -242,7 +318,7 @@ class _Skin:
 
     def slower(self, number: int) -> None:
         """To the first speed below a branch that carries what the skin asks; else it grips."""
-        asked = abs(self.q)
+        asked = abs(self.q) / self.touch(self.t)
         for branch in reversed(self.curve[:number]):
             if branch.slope > 0 and reaches(asked, branch.at(branch.low)):
                 self.branch = branch

@@ -3,8 +3,9 @@
     cd tests && ../.venv/bin/python -m oracle.random_cases load 200 1
 
 KIND is `load`, a friction curve at the plate under a load that changes; `skin`, a friction curve on
-a compliant finger; or `oblique`, a hand that wobbles across the axis. A draw whose answer is
-ill-conditioned is discarded. The seeds that are off are named, if any are.
+a compliant finger; `skin_load`, a compliant finger under a load that changes; or `oblique`, a hand
+that wobbles across the axis. A draw whose answer is ill-conditioned is discarded. The seeds that
+are off are named, if any are.
 """
 
 from __future__ import annotations
@@ -50,6 +51,7 @@ def drawn(
 KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
     "load": under_load,
     "skin": partial(drawn, slider_draws.draw, mp_slider.solve),
+    "skin_load": partial(drawn, slider_draws.draw_load, mp_slider.solve),
     "oblique": partial(drawn, oblique_draws.draw, mp_oblique.solve),
 }
 

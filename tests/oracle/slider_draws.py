@@ -24,6 +24,24 @@ def curve(rng: random.Random, force: float, speed: float) -> list[list[float]]:
     return rows
 
 
+def draw_load(rng: random.Random) -> dict[str, Any]:
+    """The same under a touch force that changes, or Coulomb friction that it presses and lifts."""
+    case = draw(rng)
+    pin, duration = case["inputs"], case["duration"]
+    loads = [short(rng.uniform(0.3, 1.8)) for _ in range(4)]
+    finger = pin["finger"]
+    if rng.random() < 0.4:
+        force = finger["curve"][0][1]
+        finger["curve"] = [[0.0, force], [1.0, force]]
+        loads[rng.randint(1, 3)] = 0.0
+    times = [0.0, *sorted(short(duration * rng.uniform(0.05, 0.9)) for _ in range(3))]
+    if rng.random() < 0.5:
+        times[2] = times[1]
+    pin["finger_load"] = [list(row) for row in zip(times, loads, strict=True)]
+    pin["skin_stretch"] *= loads[0]
+    return case
+
+
 def draw(rng: random.Random) -> dict[str, Any]:
     mass, omega = short(10 ** rng.uniform(-3, -1.5)), 10 ** rng.uniform(1.5, 2.7)
     speed = short(10 ** rng.uniform(-2, -0.5))

@@ -30,7 +30,7 @@ def fmu(
     """Write the drive of a device file as a functional mock-up unit (FMU) for co-simulation.
 
     What a release lets change over time is an input, with its rate: mouse velocity, plate load,
-    force, velocity across and, for a rigid finger, its load. Of a file of the whole device, the
+    force, velocity across and finger load. Of a file of the whole device, the
     unit is one pin with its magnet: an input magnet_on, as the control block has it, takes the
     place of the plate load. All other values that the motion depends on are parameters. It follows
     the pin exactly, whatever the steps of the importer.

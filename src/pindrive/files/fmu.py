@@ -161,14 +161,9 @@ def _given(name: str, row: Quantity, value: float) -> Variable:
 def inputs_of(device: DeviceFile) -> tuple[str, ...]:
     """The inputs that its unit has, without their rates: those of a release.
 
-    The load of a finger with a stiffness is a parameter, as it cannot change; that of
-    the plate is what the magnet makes of its command, where the file describes the magnet.
+    The plate load is what the magnet makes of its command, where the file describes the magnet.
     """
-    finger = device.drive.finger
-    fixed = {"finger_load"} if not finger.rigid else set()
-    if device.whole:
-        fixed.add("plate_load")
-    return tuple(name for name in INPUTS if name not in fixed)
+    return tuple(name for name in INPUTS if not (device.whole and name == "plate_load"))
 
 
 def _inputs(device: DeviceFile) -> Iterator[Variable]:

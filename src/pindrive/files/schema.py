@@ -45,7 +45,7 @@ from pindrive.motion.friction import (
     normal_force,
 )
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import CONTINUOUS, INPUTS, Release, check_finger_load, initial
+from pindrive.motion.release import CONTINUOUS, INPUTS, Release, initial
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
 from pindrive.quantities.refusal import Refusal, refusal
@@ -255,8 +255,6 @@ def drive_problems(values: Mapping[str, Value], place: Place) -> list[str]:
     problems.check(check_within_travel, values[start[0]], travel, stiffness, keys=start)
     load = over_time(values["motion.finger_load"])
     assert load is not None  # it is 1 unless given
-    load_keys = ("motion.finger_load", "finger.stiffness")
-    problems.check(check_finger_load, load, finger, keys=load_keys)
     if stretch is not None:
         stretch_keys = ("motion.skin_stretch", "finger.stiffness")
         problems.check(check_stretch, stretch, finger, initial(load), keys=stretch_keys)

@@ -8,7 +8,6 @@ from typing import Final
 
 from pindrive.motion.core_numbers import CoreNumbers, Rows
 from pindrive.motion.drive import (
-    Contact,
     Drive,
     check_stretch,
     check_within_travel,
@@ -47,7 +46,7 @@ class Release:
             duration.
         finger_load: factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
-            `Profile`. One that changes needs a rigid finger.
+            `Profile`, which may have steps.
 
     Raises:
         ValueError: a value is no number or out of its range, or the mouse velocity has a step.
@@ -115,21 +114,12 @@ def _input(name: str, given: float | str | Profile) -> float | Profile:
     return given
 
 
-def check_finger_load(load: float | Profile, finger: Contact) -> None:
-    """Refuse a load that changes on a finger with a stiffness."""
-    if not isinstance(load, Profile) or not load.changes or finger.rigid:
-        return
-    required = "constant for a finger with a stiffness"
-    raise ValueError(refusal("finger_load", required, f"a Profile of {len(load.times)} rows"))
-
-
 def check_fits(drive: Drive, release: Release) -> None:
     """Refuse a drive and a release that the core cannot follow together.
 
     Raises:
         ValueError: one of them is something else; a compliant plate; a stretch that the skin cannot
-            hold; a finger load that changes at a finger with a stiffness or a curve; a
-            displacement beyond rigid end stops.
+            hold; a displacement beyond rigid end stops.
     """
     if not isinstance(drive, Drive):
         raise ValueError(refusal("drive", "a Drive", repr(drive)))
@@ -137,7 +127,6 @@ def check_fits(drive: Drive, release: Release) -> None:
         raise ValueError(refusal("release", "a Release", repr(release)))
     if not drive.plate.rigid:
         raise ValueError(refusal("plate stiffness", "infinite", f"{drive.plate.stiffness!r} N/m"))
-    check_finger_load(release.finger_load, drive.finger)
     check_within_travel(release.displacement, drive.travel, drive.stop_stiffness)
     if release.skin_stretch is not None:
         check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))

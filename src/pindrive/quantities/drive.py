@@ -374,8 +374,7 @@ _MOTION: Final = (
         NON_NEGATIVE,
         source="assumed: a finger that lifts off the pin within 20 ms",
         absent=1.0,
-        remark="one value, rows over time, or a CSV of them; constant for a finger with a "
-        "stiffness",
+        remark="one value, rows over time, or a CSV of them",
         example=1.0,
         rows_of="profile",
         rows=((0.0, 1.0), (0.020, 0.0)),
