@@ -3,13 +3,14 @@
 python -m random_scans COUNT SEED            the worst of so many, from that seed on
 python -m random_scans COUNT SEED sundials   the same against SUNDIALS, of those it can follow
 python -m random_scans COUNT SEED [sundials] curved   with a friction curve at the plate
+python -m random_scans COUNT SEED [sundials] oblique  with the drive at an angle to the hand
 """
 
 from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, radians
 
 import numpy as np
 
@@ -37,7 +38,9 @@ class RandomScan:
     """A time within the path, s."""
 
     @classmethod
-    def of(cls, seed: int, *, curved: bool = False) -> RandomScan:
+    def of(cls, seed: int, *, curved: bool = False, oblique: bool = False) -> RandomScan:
+        if oblique:
+            return cls.of(seed, curved=curved).turned(seed)
         draw = np.random.default_rng(seed)
 
         def between(low: float, high: float) -> float:
@@ -85,6 +88,20 @@ class RandomScan:
         cut = float(draw.uniform(0.05, 0.95)) * path.end
         return cls(Device(drive=drive, magnet=magnet, control=control), scene, path, cut)
 
+    def turned(self, seed: int) -> RandomScan:
+        """The drive at 1° to 80° to the hand, which moves from beginning to end of its one stroke.
+
+        A general integrator cannot start where both the plate's velocities are 0.
+        """
+        draw = np.random.default_rng([seed, 2])
+        angle = radians(float(np.exp(draw.uniform(0.0, np.log(80.0)))))
+        device = replace(self.device, array=replace(self.device.array, axis=angle))
+        halts = self.path.times[self.path.vx == 0.0][1]
+        stroke = self.path.between(0.01 * halts, 0.99 * halts)
+        x, y = (float(place) for place in self.path.position(stroke.begin))
+        path = HandPath(stroke.times - stroke.begin, stroke.vx, stroke.vy, (x, y))
+        return replace(self, device=device, path=path, cut=self.cut * path.end / self.path.end)
+
     def scan(self) -> PinScan:
         return scan(self.device, self.scene, self.path, threads=1).pins[0]
 
@@ -99,7 +116,8 @@ class RandomScan:
         start = -float(path.x[0]), float(path.y[0])
         back = HandPath(path.times, -path.vx, path.vy, start)
         other = replace(scene, luminance=scene.luminance[:, ::-1])
-        return scan(self.device, other, back, threads=1).pins[0]
+        array = replace(self.device.array, axis=-self.device.array.axis)
+        return scan(replace(self.device, array=array), other, back, threads=1).pins[0]
 
 
 def short(pin: PinScan) -> bool:
@@ -128,10 +146,12 @@ def mirrors(pin: PinScan, other: PinScan) -> bool:
     )
 
 
-def main(count: int, seed: int, *, curved: bool) -> None:
+def main(count: int, seed: int, *, curved: bool, oblique: bool) -> None:
     residual = part = 0.0
     events = turned = 0
-    for one in (RandomScan.of(s, curved=curved) for s in range(seed, seed + count)):
+    for one in (
+        RandomScan.of(s, curved=curved, oblique=oblique) for s in range(seed, seed + count)
+    ):
         pin = one.scan()
         residual = max(residual, pin.motion.certificate().worst)
         part = max(part, parting(pin, one.halves()))
@@ -141,12 +161,14 @@ def main(count: int, seed: int, *, curved: bool) -> None:
     print(f"in two halves {part:.1e} apart, {turned} mirrored to the bit")
 
 
-def main_sundials(count: int, seed: int, *, curved: bool) -> None:
+def main_sundials(count: int, seed: int, *, curved: bool, oblique: bool) -> None:
     """Where SUNDIALS steps over two zeros, SciPy's DOP853 is asked with the same modes."""
     from oracle.scan_cycles import Distance, distance
     from oracle.watched_dop853 import dop853
 
-    drawn = (RandomScan.of(s, curved=curved).scan() for s in range(seed, seed + count))
+    drawn = (
+        RandomScan.of(s, curved=curved, oblique=oblique).scan() for s in range(seed, seed + count)
+    )
     pins = [pin for pin in drawn if short(pin)]
     found: list[Distance] = []
     others: list[Distance] = []
@@ -167,4 +189,9 @@ def main_sundials(count: int, seed: int, *, curved: bool) -> None:
 
 if __name__ == "__main__":
     run = main_sundials if "sundials" in sys.argv else main
-    run(int(sys.argv[1]), int(sys.argv[2]), curved="curved" in sys.argv)
+    run(
+        int(sys.argv[1]),
+        int(sys.argv[2]),
+        curved="curved" in sys.argv,
+        oblique="oblique" in sys.argv,
+    )

@@ -65,8 +65,9 @@ enum : std::size_t {
   input_count
 };
 static_assert(input_count == Block::inputs, "the kernel takes them all");
-/// Travel, stiffness and damping of the end stops, which all points share.
-using StopNumbers = std::tuple<double, double, double>;
+using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+/// Travel, stiffness and damping of the end stops, of all points or of each; nothing: no stops.
+using StopNumbers = std::vector<Numbers>;
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
 using Point = std::array<double, input_count>;
@@ -137,7 +138,7 @@ class Batch {
  public:
   /// A point that breaks a bound is left out, and marked.
   Batch(const Inputs& inputs, const pe::Bounds& bounds, const std::vector<std::string>& outputs,
-        bool events, const pe::KernelFunctions& kernel, const pd::Stops<double>& stops)
+        bool events, const pe::KernelFunctions& kernel, const StopNumbers& stops)
       : inputs_(inputs),
         bounds_(bounds),
         size_(size_of(inputs)),
@@ -151,6 +152,11 @@ class Batch {
         status_(size()),
         ending_(size()),
         events_(events ? size() : 0) {
+    const bool fit = std::all_of(stops.begin(), stops.end(), [&](const Numbers& each) {
+      return each.size() == 1 || each.size() == size();
+    });
+    if (!(stops.empty() || (stops.size() == 3 && fit)))
+      throw std::invalid_argument("stops must be three arrays of one value or one of each point");
     for (bool& each : varies_) each = !each;
     constexpr double infinite = std::numeric_limits<double>::infinity();
     ends_.fill({infinite, -infinite});
@@ -264,27 +270,36 @@ class Batch {
           kernel_.judge(block, static_cast<int>(count), of_share.data(), bounds_, space.broken);
       press(block, count);
       // The kernel knows no stops, and before it has followed a pin nobody knows whether that meets one.
-      const bool followed = !stops_.present() && by_kernel(first, count, space);
+      const bool followed = stops_.empty() && by_kernel(first, count, space);
       if (good && followed && !energy_) continue;
       for (std::size_t i = 0; i < count; ++i) {
         if (space.broken[i] != 0) {
           leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
-        if (stops_.within(block.input[displacement][i]) != block.input[displacement][i]) {
+        const pd::Stops<double> stops = stops_of(first + i);
+        if (stops.within(block.input[displacement][i]) != block.input[displacement][i]) {
           leave_out(first + i, static_cast<std::int8_t>(refused + 1 + displacement));
           continue;
         }
-        const Left left = stops_.present() ? Left::all : left_by_kernel(block, i);
+        const Left left = stops_.empty() ? left_by_kernel(block, i) : Left::all;
         if (left == Left::nothing && !energy_) continue;
         if (!go_on(1)) return;
         Point p;
         for (std::size_t k = 0; k < input_count; ++k) p[k] = block.input[k][i];
-        by_general_core(first + i, p, left, space.segments, [&] { return go_on(1); });
+        by_general_core(first + i, p, stops, left, space.segments, [&] { return go_on(1); });
         if (space.segments.capacity() > keep)
           std::vector<pd::Segment<double>>().swap(space.segments);
       }
     }
+  }
+
+  pd::Stops<double> stops_of(std::size_t i) const {
+    if (stops_.empty()) return {};
+    const auto number = [&](std::size_t k) {
+      return stops_[k].data()[stops_[k].size() > 1 ? i : 0];
+    };
+    return {number(0), number(1), number(2)};
   }
 
   /// The load of the plate multiplies its friction forces.
@@ -344,9 +359,9 @@ class Batch {
 
   /// One point, or what is left of it, and its energies.
   template <class GoOn>
-  void by_general_core(std::size_t i, const Point& p, Left left,
+  void by_general_core(std::size_t i, const Point& p, const pd::Stops<double>& stops, Left left,
                        std::vector<pd::Segment<double>>& segments, GoOn go_on) {
-    const pd::Drive<double> drive = drive_of(p, stops_);
+    const pd::Drive<double> drive = drive_of(p, stops);
     const pd::Inputs<double> inputs = inputs_of(p);
     const pd::Summary<double> summary =
         pd::summarise(drive, inputs, p[settling_band], segments, go_on);
@@ -381,7 +396,7 @@ class Batch {
   pd::detail::Asked asked_;
   bool energy_{false};
   const pe::KernelFunctions& kernel_;
-  const pd::Stops<double> stops_;
+  const StopNumbers& stops_;
   Rows numbers_;
   std::array<bool, input_count> varies_;        ///< which inputs are written for each block
   std::array<pe::Extremes, input_count> ends_;  ///< the least and the largest of each input
@@ -401,8 +416,7 @@ const pe::KernelFunctions& kernel_for(int width) {
 nb::dict simulate_batch(const Inputs& inputs, const pe::Bounds& bounds, std::size_t threads,
                         const std::vector<std::string>& outputs, bool events, int width,
                         const StopNumbers& stops) {
-  Batch batch(inputs, bounds, outputs, events, kernel_for(width),
-              {std::get<0>(stops), std::get<1>(stops), std::get<2>(stops)});
+  Batch batch(inputs, bounds, outputs, events, kernel_for(width), stops);
   Interrupt interrupt;
   {
     const nb::gil_scoped_release unlocked;
@@ -421,8 +435,6 @@ std::vector<int> kernel_widths() {
   return widths;
 }
 
-using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
 nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, const Numbers& a,
                                                                      const Numbers& b, int width) {
   Column<double> found(a.size());
@@ -435,10 +447,9 @@ nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig> elementary(int which, 
 void bind_batch(nb::module_& m);  // called in _core.cpp
 
 void bind_batch(nb::module_& m) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   m.def(
       "simulate_batch", &simulate_batch, "inputs"_a, "bounds"_a, "threads"_a, "outputs"_a,
-      "events"_a, "width"_a = 0, "stops"_a = StopNumbers{infinite, infinite, 0.0},
+      "events"_a, "width"_a = 0, "stops"_a = nb::list(),
       "Columns of the numbers named in outputs, one row for each point of the inputs in C order: "
       "arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, "
       "static and stiffness, mouse velocity, displacement, velocity, duration, settling band, "

@@ -108,7 +108,7 @@ def differentiate(numbers: tuple[float, float, float, tuple[float, float, float,
     The derivatives of a motion along a direction; both as the arguments of simulate.
     """
 
-def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], bounds: Sequence[Sequence[float]], threads: int, outputs: Sequence[str], events: bool, width: int = 0, stops: tuple[float, float, float] = (float('inf'), float('inf'), 0.0)) -> dict:
+def simulate_batch(inputs: Sequence[Annotated[NDArray[numpy.float64], dict(device='cpu', writable=False)]], bounds: Sequence[Sequence[float]], threads: int, outputs: Sequence[str], events: bool, width: int = 0, stops: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]] = []) -> dict:
     """
     Columns of the numbers named in outputs, one row for each point of the inputs in C order: arrays of one shape (mass, stiffness, damping, plate kinetic and static, finger kinetic, static and stiffness, mouse velocity, displacement, velocity, duration, settling band, plate load). A point that breaks one of the bounds (the least value, the largest, and one beside them or NaN) of the arguments in this order, of the damping ratio and of the phase is left out: its status says which, its numbers are NaN. The column of events is there if asked for; `general` says how many points the general core followed, `extremes` the least and the largest value of each argument, NaN if one is NaN. The kernel works in packs of `width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, infinite: rigid; damping) the general core follows all points.
     """

@@ -22,9 +22,11 @@ def test_random_scans(seed: int, curved: bool) -> None:
     assert mirrors(pin, one.mirrored())
 
 
-@pytest.mark.parametrize("seed", SHORT)
-def test_random_scans_against_sundials(seed: int) -> None:
-    found = distance(RandomScan.of(seed).scan())
+@pytest.mark.parametrize(
+    ("seed", "oblique"), [*((s, False) for s in SHORT), (4, True), (6, True), (8, True)]
+)
+def test_random_scans_against_sundials(seed: int, oblique: bool) -> None:
+    found = distance(RandomScan.of(seed, oblique=oblique).scan())
     assert found.events
     assert found.time < 1e-8
     assert found.state < 1e-8

@@ -6,6 +6,7 @@ import signal
 import sys
 import threading
 import time
+from dataclasses import replace
 from math import inf, nan
 from typing import Any
 
@@ -314,6 +315,41 @@ def test_every_variable_has_its_meaning_and_unit() -> None:
 def test_what_is_no_point_at_all_is_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         batch_of(**change)
+
+
+def test_end_stops_are_varied_as_all_else_is() -> None:
+    columns: dict[str, Any] = {"travel": [[2e-4], [1e-3], [1.5e-3]], "stop_stiffness": [1e3, 1e5]}
+    elastic = simulate_batch(DRIVE, replace(RELEASE, displacement=1.5e-3), **columns)
+    assert elastic.travel.attrs["units"] == "m"
+    for i, travel in enumerate((2e-4, 1e-3, 1.5e-3)):
+        for j, stiffness in enumerate((1e3, 1e5)):
+            drive = replace(DRIVE, travel=travel, stop_stiffness=stiffness)
+            motion = simulate(drive, replace(RELEASE, displacement=1.5e-3))
+            found = elastic.isel(dim_0=i, dim_1=j)
+            assert found.transient_settling_time == motion.transient.settling_time
+            assert found.transient_peak_displacement == motion.transient.peak_displacement
+            assert found.ending_position == motion.ending.position
+    rigid = simulate_batch(DRIVE, replace(RELEASE, displacement=1e-3), travel=[5e-4, 1e-3, 0.1])
+    assert [meaning(status) for status in rigid.status] == ["bad_displacement", "ok", "ok"]
+    free = simulate_batch(DRIVE, replace(RELEASE, displacement=1e-3))
+    far, ended = float(rigid.isel(dim_0=2).ending_position), float(free.ending_position)
+    assert far == pytest.approx(ended, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"travel": [1e-3, 0.0]}, "travel must be finite and greater than 0 m, got 0.0 m"),
+        ({"stop_stiffness": [1e3]}, "stop_stiffness must be left out without travel"),
+        (
+            {"travel": 1e-3, "stop_damping": 1.0},
+            "stop_damping must be left out for rigid",
+        ),
+    ],
+)
+def test_end_stops_that_cannot_be_are_refused(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        simulate_batch(DRIVE, replace(RELEASE, displacement=0.0), **change)
 
 
 def test_arrays_whose_coordinates_differ_are_refused() -> None:

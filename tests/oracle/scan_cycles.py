@@ -36,8 +36,14 @@ class Distance:
         return max(self.position, self.velocity, self.force, self.stretch)
 
 
-def distance(pin: PinScan, tool: Integrator = sundials_modes.cvode) -> Distance:
-    """Integrate it anew, and compare."""
+def distance(pin: PinScan, tool: Integrator | None = None) -> Distance:
+    """Integrate it anew, and compare.
+
+    The hand may move across the drive as well, if it does so at all times.
+    """
+    if tool is None:
+        oblique = isinstance(pin.motion.release.across_velocity, Profile)
+        tool = sundials_modes.stiff if oblique else sundials_modes.cvode
     last = JUST_BEFORE * pin.end
     samples = np.linspace(0.0, last, SAMPLES)
     run = explicit_piecewise.solve(_inputs(pin), pin.end, samples.tolist(), tool)
@@ -60,6 +66,7 @@ def distance(pin: PinScan, tool: Integrator = sundials_modes.cvode) -> Distance:
 def _inputs(pin: PinScan) -> dict[str, Any]:
     motion, load = pin.motion, pin.load
     assert isinstance(motion.release.mouse_velocity, Profile)
+    across = motion.release.across_velocity
     return {
         "mass": motion.drive.mass,
         "stiffness": motion.drive.stiffness,
@@ -68,6 +75,7 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
         "finger": _contact(motion.drive.finger),
         "mouse_velocity": [list(row) for row in motion.release.mouse_velocity.rows],
         "load": [list(row) for row in load.rows] if isinstance(load, Profile) else [[0.0, load]],
+        "across": across.rows if isinstance(across, Profile) else [[0.0, across]],
         "displacement": 0.0,
         "velocity": 0.0,
         "skin_stretch": None if motion.drive.finger.rigid else 0.0,

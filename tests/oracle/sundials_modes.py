@@ -7,6 +7,7 @@ that it starts at for a root, or, where the pin leaves tangentially, the roundin
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from sksundae.cvode import CVODE
 
 from oracle import explicit_piecewise
 from oracle.explicit_piecewise import Run
-from oracle.watched_dop853 import Answer, Function, State, Watch
+from oracle.watched_dop853 import Answer, Function, Integrator, State, Watch
 
 RTOL = 1e-13
 PHASE_TOLERANCE = 1e-8  # of event times, in radians of the natural frequency
@@ -23,7 +24,8 @@ HELD = 1e-12  # of its scale: a guard no larger after the first way does not mov
 FIRST_WAY = 1e-3  # of the longest step, without the guards just left
 
 
-def cvode(
+def _integrate(
+    method: str,
     rhs: Function,
     watches: list[Watch],
     t: float,
@@ -33,7 +35,6 @@ def cvode(
     atol: State,
     samples: list[float],
 ) -> Answer:
-    """As `watched_dop853.dop853`."""
     parts = [(t, end, watches)]
     if any(watch.left for watch in watches):
         middle = min(t + FIRST_WAY * longest, (t + end) / 2)
@@ -44,14 +45,20 @@ def cvode(
             watched = [w for w in watched if abs(w.value(begin, y)) > HELD * w.scale]
         last = stop == end
         asked = [u for u in samples if begin <= u < stop or (last and u == stop)]
-        reached, y, which, found = _part(rhs, watched, begin, y, stop, longest, atol, asked)
+        reached, y, which, found = _part(method, rhs, watched, begin, y, stop, longest, atol, asked)
         rows += found
         if which is not None:
             return reached, y, which, rows
     return end, y, None, rows
 
 
+# both as `watched_dop853.dop853`; where the hand also moves across, creep makes equations stiff
+cvode: Integrator = partial(_integrate, "Adams")
+stiff: Integrator = partial(_integrate, "BDF")
+
+
 def _part(
+    method: str,
     rhs: Function,
     watches: list[Watch],
     t: float,
@@ -74,7 +81,7 @@ def _part(
         rooted = {"eventsfn": guards, "num_events": len(watches)}
     solver = CVODE(
         right,
-        method="Adams",
+        method=method,
         rtol=RTOL,
         atol=0.1 * atol,
         max_step=longest,

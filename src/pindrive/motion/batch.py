@@ -9,10 +9,10 @@ import numpy as np
 
 from pindrive import _core
 from pindrive.lazy import xr
-from pindrive.motion.drive import check_one_kind
+from pindrive.motion.drive import check_one_kind, check_stops
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import check_fits, stop_numbers
+from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
@@ -53,13 +53,18 @@ _ARGUMENTS: Final = {
         "plate_load",
     )
 }
+_STOPS: Final = {name: QUANTITIES[name] for name in ("travel", "stop_stiffness", "stop_damping")}
 # What may be given in place of friction forces, likewise.
 _FORCES: Final = [name for name in COEFFICIENT_OF if not name.endswith("curve")]
 _PRESSING: Final = [n for parts in PRESSED_BY.values() for n in parts if n not in _ARGUMENTS]
-_TAKEN: Final = _ARGUMENTS | {
-    name.replace(".", "_"): QUANTITIES[name]
-    for name in (*(COEFFICIENT_OF[name] for name in _FORCES), *_PRESSING)
-}
+_TAKEN: Final = (
+    _ARGUMENTS
+    | _STOPS
+    | {
+        name.replace(".", "_"): QUANTITIES[name]
+        for name in (*(COEFFICIENT_OF[name] for name in _FORCES), *_PRESSING)
+    }
+)
 # What an argument is where it is left out: another one, infinite, or the usual value.
 _SAME_AS: Final = {
     "plate_static": "plate_kinetic",
@@ -133,7 +138,8 @@ def simulate_batch(
             forces, of a contact given by coefficients, `plate_coefficient`,
             `plate_static_coefficient`, `preload`, `finger_coefficient`,
             `finger_static_coefficient` and `touch_force`; of the release
-            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; and `duration` (infinite:
+            `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
+            `stop_stiffness` and `stop_damping`; and `duration` (infinite:
             long enough to see each ending) and `settling_band`, as for `simulate`, which has their
             ranges. Static friction that is None in a contact is the kinetic one, and a velocity
             that is None the plate's, at every point.
@@ -150,8 +156,9 @@ def simulate_batch(
     Raises:
         ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
             together, `threads` is no count, or `outputs` names what there is not; friction is given
-            both by a force and by a coefficient; a drive or a release has what only `simulate`
-            follows: a friction curve, an input that changes, a given stretch of the skin.
+            both by a force and by a coefficient; end stops are out of range; a drive or a release
+            has what only `simulate` follows: a friction curve, an input that changes, a given
+            stretch of the skin.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
@@ -211,15 +218,12 @@ def _followed(
     computed = [_SETTLING_TIME if name == _SETTLED else name for name in wanted]
     numbers = [*dict.fromkeys(_NUMBERS[name] for name in computed if name in _NUMBERS)]
     table = _core.simulate_batch(
-        spread, _BOUNDS, workers, numbers, "events" in wanted, 0, stop_numbers(drive)
+        spread, _BOUNDS, workers, numbers, "events" in wanted, 0, _stops(aligned, shape)
     )
     if _SETTLED in wanted:
         settling_time = table[_NUMBERS[_SETTLING_TIME]]
         table[_SETTLED] = settling_time == settling_time  # not NaN
     columns = {name: table[_NUMBERS.get(name, name)] for name in wanted}
-    for name in ("travel", "stop_stiffness", "stop_damping"):
-        if (value := getattr(drive, name)) is not None:
-            coordinates[name] = ((), value, QUANTITIES[name].attributes)
     coordinates |= {k: (v.dims, v.values, _attributes(k)) for k, v in arguments.items()}
     data = {
         name: (tuple(sizes), column.reshape(shape), _attributes(_NUMBERS.get(name, name)))
@@ -259,6 +263,7 @@ def _constants(
         "displacement": release.displacement,
         "velocity": release.velocity,
         "plate_load": release.plate_load,
+        **{name: getattr(drive, name) for name in _STOPS},
     }
     found: dict[str, Broadcastable] = {}
     for name, value in has.items():
@@ -293,6 +298,28 @@ def _friction(drive: Drive, varied: Collection[str]) -> dict[str, float | None]:
             required = "left out where the finger's friction is given as a force"
             raise ValueError(refusal("touch_force", required, "it"))
     return found
+
+
+def _stops(
+    given: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]
+) -> list[NDArray[np.float64]]:
+    """Travel, stiffness and damping of the end stops: one value each, or one of each point.
+
+    Raises:
+        ValueError: a value is out of its range, or what describes stops lacks what it needs.
+    """
+    for name in _STOPS.keys() & given.keys():
+        for value in np.unique(given[name][~_within(_STOPS[name].bounds, given[name])]):
+            check(name, float(value))
+    check_stops(*(float(given[n].max(initial=0.0)) if n in given else None for n in _STOPS))
+    if "travel" not in given:
+        return []
+    left_out = {"stop_stiffness": np.array(inf), "stop_damping": np.array(0.0)}
+    parts = [given.get(name, left_out.get(name, np.array(inf))) for name in _STOPS]
+    return [
+        np.ascontiguousarray(part if part.size == 1 else np.broadcast_to(part, shape)).ravel()
+        for part in parts
+    ]
 
 
 def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:

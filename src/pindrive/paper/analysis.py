@@ -13,6 +13,7 @@ from pindrive.motion.batch import batched
 from pindrive.motion.release import Release
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
+from pindrive.paper.equations import GOOD
 from pindrive.paper.exhibit import Exhibit, by_case, listed, page, trend
 from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
+
+    from pindrive.paper.formulas import Array
 
 _FACTORS_LABEL: Final = "the paper's damping factors"
 _BOUNDS: Final[dict[str, tuple[Any, str]]] = {
@@ -341,8 +344,7 @@ def printed_forms() -> Exhibit:
     at = data.interp(ratio=[*FACTORS])
     worst = [100 * max(float(at[name][i]) for name in SLIPS) for i in range(3)]
     good = [
-        f"{label.split()[0]} up to ζ = {ratios[off[name] <= 0.01].max():.2g}"
-        for name, label in SLIPS.items()
+        f"{label.split()[0]} {_spans(ratios, off[name] <= GOOD)}" for name, label in SLIPS.items()
     ]
     return Exhibit(
         "printed-forms",
@@ -355,9 +357,20 @@ def printed_forms() -> Exhibit:
             f"At the paper's damping factors 0.04, 0.16 and 0.32, read as ratios, the worst of the "
             f"four is off by {worst[0]:.2g} %, {worst[1]:.2g} % and {worst[2]:.2g} % of the "
             "amplitude.",
-            f"They are good to 1 %: {listed(good)}.",
+            f"They are good to {100 * GOOD:g} %: {listed(good)}.",
         ),
     )
+
+
+def _spans(ratios: Array, good: NDArray[np.bool_]) -> str:
+    """From where to where a form is good, of damping ratios from 0 on, where each is."""
+    words = []
+    for last in np.flatnonzero(np.diff(good)):
+        if good[last]:
+            words.append(f"up to ζ = {np.floor(100 * ratios[last] + 1e-9) / 100:.2f}")
+        else:
+            words.append(f"from ζ = {np.ceil(100 * ratios[last + 1] - 1e-9) / 100:.2f} on")
+    return " and ".join(words)
 
 
 def _draw_printed_forms(data: xr.Dataset) -> Figure:

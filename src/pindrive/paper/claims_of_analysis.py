@@ -64,6 +64,20 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         f"is true of {share(right)}.",
     )
     yield from _first_reversal(r.take(reverses), t_1[reverses])
+    whole = whole_motion(facts)
+    solved = r.batch()["status"].to_numpy() == 0
+    yield Claim(
+        _PLACE,
+        "For the general case equation (1) is to be solved by computer methods.",
+        ~whole,
+        "first-reversal",
+        f"(6) is the whole motion in {share(whole[~reverses])} releases whose friction never "
+        f"reverses, and elementary forms give it in {share(whole[reverses])} of the others. By "
+        f"computer, with closed forms from event to event, {share(solved[reverses])} of these are "
+        "solved.",
+        "friction reverses",
+        reverses,
+    )
 
 
 def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
@@ -121,8 +135,8 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
     )
 
 
-def no_closed_form(facts: Facts) -> Iterator[Claim]:
-    """The conclusion on the law of motion."""
+def whole_motion(facts: Facts) -> Truth:
+    """Whether elementary expressions give the whole motion, of each release."""
     r = facts.r
     reverses = np.isfinite(facts.number("first_reversal_time"))
     one_piece = r.take(~reverses)
@@ -132,6 +146,12 @@ def no_closed_form(facts: Facts) -> Iterator[Claim]:
     whole = np.zeros(r.shape, dtype=bool)
     whole[~reverses] = off < TINY * formulas.amplitude(one_piece)
     whole[reverses] = has_closed_form(r.take(reverses))
+    return whole
+
+
+def no_closed_form(facts: Facts) -> Iterator[Claim]:
+    """The conclusion on the law of motion."""
+    reverses, whole = np.isfinite(facts.number("first_reversal_time")), whole_motion(facts)
     yield Claim(
         "Conclusions",
         "It was defined that the law of motion of the pin can not be obtained analytically in "
@@ -154,10 +174,26 @@ def no_closed_form(facts: Facts) -> Iterator[Claim]:
 _SENTENCES: Final = (
     (
         "Introduction",
+        "The great variety of tactile systems in use testifies that the disadvantages, such as "
+        "system complexity, great cost, low reliability and functional possibilities are not "
+        "overcome yet and the search of more promising solution remains the problem of today.",
+        "",
+        "Says why the device was made; the report asks how it moves.",
+    ),
+    (
+        "Introduction",
         "The method, where information transmitting pin stimulates operator fingertip skin moving "
         "tangentially to it and the patented tactile device were proposed",
         "figure-1-device",
         "Describes the device.",
+    ),
+    (
+        "Introduction",
+        "Electromagnet 1 with wrapped winding is held by spring 2 in the mouse 3 which must be "
+        "placed on the metallic surface 4. A pin 5 on the electromagnet is protruding from the "
+        "housing.",
+        "figure-1-device",
+        "Describes the device. The damper, which its equation (1) has, is not named here.",
     ),
     (
         "Introduction",
@@ -193,6 +229,12 @@ _SENTENCES: Final = (
         "`pindrive.Device` follows an oblique hand: at 10° the pin of examples/tactile-reader.toml "
         "goes 84 % as far as under an aligned hand, at 30° 69 %, at 60° 26 %, and from 84° on it "
         "shows no line (docs/studies.md).",
+    ),
+    (
+        "Experiment",
+        "In that case law of motion of the pin was measured (Figure 2).",
+        "figure-2-velocity",
+        "Says what was measured; the data are not printed.",
     ),
     (
         "Experiment",

@@ -59,6 +59,7 @@ td strong { font-weight: 600; }
   h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; }
   .wide, figure > div { overflow: visible; } figure svg { min-width: 0; }
   table { font-size: 7pt; } th, td { padding-right: .5em; overflow-wrap: anywhere; }
+  td:first-child { overflow-wrap: normal; }
   td:nth-child(n) { white-space: normal; min-width: 0; } td em { font-size: 1em; } }
 """
 _KINDS: Final = {
