@@ -92,7 +92,7 @@ def test_a_mutant_of_the_core_that_is_none_is_an_error(
         "same: it changes nothing",
     ]
     assert of_the_core.problems([first, gone, same]) == errors
-    with pytest.raises(SystemExit, match="^of no name: no mutant's name has it$"):
+    with pytest.raises(SystemExit, match=r"^of no name: no mutant's name has it$"):
         of_the_core.main(["10", "of no name"])
     monkeypatch.setattr(of_the_core, "MUTANTS", (first, gone, same))
     with pytest.raises(SystemExit, match="gone: its text is 0 times"):

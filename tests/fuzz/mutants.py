@@ -115,7 +115,8 @@ MUTANTS = (
         "skin grips with a thousandth more stretch",
         "slider.hpp",
         "if (drops()) s.skin = grip(s);",
-        "if (drops()) s.skin = grip(s);\n    if (elastic() && before != does.state) s.skin *= T(1.001);",
+        "if (drops()) s.skin = grip(s);\n"
+        "    if (elastic() && before != does.state) s.skin *= T(1.001);",
     ),
     Mutant(
         "skin slips only while the plate holds the pin",
