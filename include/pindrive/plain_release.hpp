@@ -73,7 +73,7 @@ struct ForwardRelease {
   Oscillation<V> swing;
   MaskOf<V> plain;  ///< those that the kernel follows
 
-  explicit ForwardRelease(const PlainRelease<V>& r)
+  explicit ForwardRelease(const PlainRelease<V>& r) noexcept
       : mirror(with_sign(V(1.0), r.mouse_velocity)),
         stiffness(r.stiffness),
         fp(r.plate_kinetic),

@@ -47,7 +47,7 @@ void encloses() {
   bool inside = true, ends = true, halves = true, lowest = true;
   for (int i = 0; i < 200; ++i) {
     P p;
-    p.degree = static_cast<int>(i % 12) + 1;
+    p.degree = i % 12 + 1;
     for (int n = 0; n <= p.degree; ++n) p.c[n] = draw(random);
     const auto b = pd::detail::bernstein(p.c, p.degree);
     ends = ends && b[0] == p.c[0] && near(b[p.degree], p.at(1), 1e-14);
@@ -63,7 +63,8 @@ void encloses() {
     pd::detail::halve(upper, lower, p.degree);
     halves = halves && near(upper[0], p.at(0.5), 1e-14) && lower[p.degree] == upper[0];
     const double bound = pd::lowest(p, 1e-3);
-    lowest = lowest && !(dips < -1e-3 && bound >= -1e-3) && !(bound < -1e-3 && dips > -0.99e-3);
+    const bool says = bound < -1e-3;
+    lowest = lowest && (says ? dips <= -0.99e-3 : dips >= -1e-3);
   }
   expect(ends, "the first and the last Bernstein coefficient are the values at both ends");
   expect(inside, "... and all of them enclose the values between");

@@ -47,13 +47,15 @@ void changes() {
     faster.u.value += 1e-6 * speed;
     slower.u.value -= 1e-6 * speed;
     const long double fall = force(slower, load, 0) - force(faster, load, 0);
-    steep = steep && near(slip.steepness(branch, load) / (fall / (2e-6L * speed)), 1, 1e-5);
+    const auto steepness = static_cast<double>(fall / (2e-6L * speed));
+    steep = steep && near(slip.steepness(branch, load) / steepness, 1, 1e-5);
     const auto square = [&](long double t) {
       const long double u = slip.u.value + slip.u.rate * t, w = slip.w.value + slip.w.rate * t;
       return (u * u + w * w) / 2;
     };
-    speeds = speeds && near(slip.closing(), (square(h) - square(-h)) / (2 * h), 1e-12) &&
-             near(slip.parting(0), (square(h) + square(-h) - 2 * square(0)) / (h * h), 1e-9);
+    const auto closing = static_cast<double>((square(h) - square(-h)) / (2 * h));
+    const auto parting = static_cast<double>((square(h) + square(-h) - 2 * square(0)) / (h * h));
+    speeds = speeds && near(slip.closing(), closing, 1e-12) && near(slip.parting(0), parting, 1e-9);
   }
   expect(rates, "the rate of the force is its derivative along straight velocities");
   expect(bends, "... and the bend its second one");
