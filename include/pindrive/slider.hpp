@@ -300,7 +300,6 @@ class SlidingSkin : public TouchState<T> {
       breaks_ = meets_ && came_to == Bound::none && at != Bound::none &&
                 jumps > 2 * rounding<T> * (range.from + (speed < 0 ? -speed : speed));
       meets_ = meets_ && !breaks_;
-      meets_ = meets_ && !breaks_;
       slid_ = at == Bound::none ? speed : at == Bound::upper ? range.to : range.from;
       friction = range.at(lags() ? slid_ : range.from);
       const T pulls = sense_ * s.skin, most = friction * load.value;
