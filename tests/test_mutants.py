@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -59,3 +62,38 @@ def test_files_take_turns() -> None:
     found = [replace(PERCENT, name=name, file=name[0]) for name in ("a1", "a2", "a3", "b1", "c1")]
     names = [mutant.name for mutant in mutants.spread(found)]
     assert names == ["a1", "b1", "c1", "a2", "a3"]
+
+
+@pytest.fixture(scope="module")
+def of_the_core() -> ModuleType:
+    """The mutants of the core, whose file has the name of those of Python."""
+    path = Path(__file__).parent / "fuzz" / "mutants.py"
+    spec = spec_from_file_location("fuzz_mutants", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[spec.name] = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_text_of_a_mutant_of_the_core_is_once_in_its_header(of_the_core: ModuleType) -> None:
+    assert of_the_core.problems(of_the_core.MUTANTS) == []
+    assert len(of_the_core.MUTANTS) >= 33
+
+
+def test_a_mutant_of_the_core_that_is_none_is_an_error(
+    of_the_core: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = of_the_core.MUTANTS[0]
+    gone = replace(first, what="gone", text="no such text")
+    same = replace(first, what="same", instead=first.text)
+    errors = [
+        f"gone: its text is 0 times in {first.header}, not once",
+        "same: it changes nothing",
+    ]
+    assert of_the_core.problems([first, gone, same]) == errors
+    with pytest.raises(SystemExit, match=r"^of no name: no mutant's name has it$"):
+        of_the_core.main(["10", "of no name"])
+    monkeypatch.setattr(of_the_core, "MUTANTS", (first, gone, same))
+    with pytest.raises(SystemExit, match="gone: its text is 0 times"):
+        of_the_core.main(["10"])

@@ -57,9 +57,10 @@ KINDS: dict[str, Callable[[int], tuple[Case, Path]]] = {
 
 
 def events(case: Case, told: list[piecewise.Told]) -> list[list[piecewise.Told]]:
-    """Those that the answer tells too: under an oblique hand the plate has none."""
+    """Those that both tell: an oblique plate has none, nor a contact that is never loaded."""
     if "across" in case["inputs"]:
         told = [event for event in told if event[1] != "plate"]
+    told = piecewise.carried(case, told)
     return piecewise.instants([event for event in told if event[0] < case["duration"]])
 
 
