@@ -559,7 +559,7 @@ def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) 
     out, docs = tmp_path / "new" / "report", tmp_path / "docs"
     result = CliRunner().invoke(app, ["paper", "--out", str(out), "--docs", str(docs)])
     assert result.exit_code == 0, result.output
-    assert "3 hold, 12 hold under a condition" in result.stdout
+    assert "3 hold, 13 hold under a condition" in result.stdout
     written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert written == {str(Path(name)) for name in files}
     assert (out / report.PAGE).read_bytes() == files[report.PAGE]
