@@ -158,12 +158,12 @@ struct Touch : SlidingSkin<T> {
     const Branch<T> range = branch();
     const T force = -does.sense * range.force;
     Force<T> law{{force * load.value, force * load.rate}};
-    if (range.slope == 0) return law;
+    if (vanishes(range.slope)) return law;
     const T from = does.sense * range.from;
     law.drag = range.slope * load.value;
     law.constant.value += law.drag * (from + surface.value);
     law.constant.rate += range.slope * load.rate * from + law.drag * surface.rate;
-    law.rounding = range.rounding * load.value;
+    if (range.slope != 0) law.rounding = range.rounding * load.value;
     return law;
   }
 

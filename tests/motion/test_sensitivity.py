@@ -283,6 +283,22 @@ def test_rows_and_skin_against_differences(name: str, given: tuple[Drive, float]
     assert found == pytest.approx(settling, rel=1e-4, abs=1e-9)
 
 
+def test_a_row_at_the_end_of_a_plateau_against_differences() -> None:
+    """The slope is zero there, its derivative is not."""
+
+    def run(by: float) -> Motion:
+        plate = Contact(curve=[(0.0, 0.02), (0.2, 0.02 + by), (0.4, 0.03)])
+        drive = Drive(mass=0.01, stiffness=100.0, damping=0.1, plate=plate, finger=Contact(0.005))
+        return simulate(drive, Release(0.05, 3e-3), duration=0.1)
+
+    motion, up, down = run(0.0), run(1e-7), run(-1e-7)
+    sensitivity = motion.sensitivity(["plate_curve[1].force"])
+    assert sensitivity.gaps == {}
+    t = np.linspace(0.01, 0.09, 9)
+    central = (up.position(t) - down.position(t)) / 2e-7
+    np.testing.assert_allclose(sensitivity.position(t)[0], central, rtol=1e-5)
+
+
 # ---- where a derivative does not exist -----------------------------------------------------------
 
 
