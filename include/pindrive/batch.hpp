@@ -16,12 +16,13 @@ struct Summary {
   long long events{0};  ///< changes at a contact; of a cycle, those of one round
 };
 
-/// How many events end a segment: one for each contact, or one that both share.
+/// How many events end a segment: one for each contact, or one that plate and finger share.
 template <class T>
 int events_at_end(const Segment<T>& segment) {
   const Event event = segment.event;
-  if (event.plate == event.finger) return event.plate == Transition::none ? 0 : 1;
-  return (event.plate == Transition::none ? 0 : 1) + (event.finger == Transition::none ? 0 : 1);
+  const auto one = [](Transition transition) { return transition == Transition::none ? 0 : 1; };
+  const int rubbing = event.plate == event.finger ? 0 : one(event.finger);
+  return one(event.plate) + rubbing + one(event.stop);
 }
 
 /// Follows one pin and measures its motion. `segments` is a container that the caller lends for the

@@ -66,7 +66,8 @@ enum : std::size_t {
 };
 static_assert(input_count == Block::inputs, "the kernel takes them all");
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-/// Travel, stiffness and damping of the end stops, of all points or of each; nothing: no stops.
+/// Travel, stiffness and damping of the end stops, of all points or of each, NaN where it is refused;
+/// nothing: no stops.
 using StopNumbers = std::vector<Numbers>;
 using Input = nb::ndarray<const double, nb::device::cpu>;
 using Inputs = std::array<Input, input_count>;
@@ -118,6 +119,8 @@ void points(const Inputs& inputs, std::size_t first, std::size_t count,
 /// The status of a point that breaks the first bound is one more; then those of the others. As in
 /// quantities/status.py.
 constexpr std::int8_t refused = 15;
+/// That of a point whose travel is refused; after it those of the stops' stiffness and damping.
+constexpr std::size_t first_of_stops = refused + 1 + std::tuple_size<pe::Bounds>::value;
 
 pd::Drive<double> drive_of(const Point& p, const pd::Stops<double>& stops) {
   return {p[mass],
@@ -277,6 +280,10 @@ class Batch {
           leave_out(first + i, static_cast<std::int8_t>(refused + space.broken[i]));
           continue;
         }
+        if (const std::int8_t status = broken_stop(first + i)) {
+          leave_out(first + i, status);
+          continue;
+        }
         const pd::Stops<double> stops = stops_of(first + i);
         if (stops.within(block.input[displacement][i]) != block.input[displacement][i]) {
           leave_out(first + i, static_cast<std::int8_t>(refused + 1 + displacement));
@@ -294,12 +301,18 @@ class Batch {
     }
   }
 
+  double stop_number(std::size_t k, std::size_t i) const {
+    return stops_[k].data()[stops_[k].size() > 1 ? i : 0];
+  }
   pd::Stops<double> stops_of(std::size_t i) const {
     if (stops_.empty()) return {};
-    const auto number = [&](std::size_t k) {
-      return stops_[k].data()[stops_[k].size() > 1 ? i : 0];
-    };
-    return {number(0), number(1), number(2)};
+    return {stop_number(0, i), stop_number(1, i), stop_number(2, i)};
+  }
+  /// The status of a point of whose stops a number is refused, or 0.
+  std::int8_t broken_stop(std::size_t i) const {
+    for (std::size_t k = 0; k < stops_.size(); ++k)
+      if (std::isnan(stop_number(k, i))) return static_cast<std::int8_t>(first_of_stops + k);
+    return 0;
   }
 
   /// The load of the plate multiplies its friction forces.
@@ -461,7 +474,7 @@ void bind_batch(nb::module_& m) {
       "largest value of each argument, NaN if one is NaN. The kernel works in packs of "
       "`width`; 0: the widest. Where there are end stops (travel, infinite: none; stiffness, "
       "infinite: "
-      "rigid; damping) the general core follows all points.");
+      "rigid; damping; a NaN is a number that is refused) the general core follows all points.");
   m.def("kernel_widths", &kernel_widths, "The widths of the kernel that this processor runs.");
   m.def("elementary", &elementary, "which"_a, "a"_a, "b"_a, "width"_a,
         "Values of one of the elementary functions: sine, cosine, exp, expm1, log, log1p of a, or "

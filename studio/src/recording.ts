@@ -1,7 +1,7 @@
 // A recording of a release: a CSV whose header names columns with their units, in SI.
 import { quoted, repr } from "./python";
 import { TABLES } from "./table";
-import { toSi, UnitError } from "./units";
+import { expected, toSi, UnitError } from "./units";
 
 export const CHANNELS = {
   position: ["m", "mm"],
@@ -70,7 +70,7 @@ export function readRecording(text: string, file: string): Recording {
       scale = toSi(`1 ${column.unit}`, unit, `1 ${unit}`);
     } catch (error) {
       if (!(error instanceof UnitError)) throw error;
-      fail(`column ${name}`, `in ${unit} or a unit alike, like ${quoted(usual)}`, heading);
+      fail(`column ${name}`, `${expected(unit, column.unit)}, like ${quoted(usual)}`, heading);
     }
     const values = new Float64Array(rows.length);
     rows.forEach((line, i) => {

@@ -41,13 +41,18 @@ export function toSi(text: string, unit: string, example: string): number {
   }
   const factor = conversion(written, unit);
   if (!factor) {
-    const kind = unit === "1" ? "a plain number or a percentage" : `in ${unit} or a unit alike`;
-    throw new UnitError(`${kind}, like "${example}"`);
+    throw new UnitError(`${expected(unit, written, " or a percentage")}, like "${example}"`);
   }
   if (/n/i.test(number)) return plainNumber(number);
   // Beyond any double before its unit: as the number alone.
   if (Math.abs(Number(number.split(/e/i)[1] ?? 0)) > 5000) return Number(number);
   return toNumber(times(decimal(number), factor));
+}
+
+/** What a unit has to be, in words, and that `written` is none where it is not known at all. */
+export function expected(unit: string, written: string, otherwise = ""): string {
+  const kind = unit === "1" ? `a plain number${otherwise}` : `in ${unit} or a unit alike`;
+  return parseUnit(written) ? kind : `${kind} (${quoted(written)} is not a known unit)`;
 }
 
 function plainNumber(text: string): number {

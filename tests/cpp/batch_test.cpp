@@ -14,9 +14,9 @@ namespace {
 using Segments = std::vector<pd::Segment<double>>;
 
 void events() {
-  const auto at_end = [](Transition plate, Transition finger) {
+  const auto at_end = [](Transition plate, Transition finger, Transition stop = {}) {
     pd::Segment<double> segment{};
-    segment.event = {plate, finger};
+    segment.event = {plate, finger, stop};
     return pd::events_at_end(segment);
   };
   expect(at_end(Transition::none, Transition::none) == 0, "the row of an input is no event");
@@ -25,6 +25,9 @@ void events() {
          "what happens at one contact is one event");
   expect(at_end(Transition::stick, Transition::stick) == 1, "what both do together is one, too");
   expect(at_end(Transition::slip, Transition::stick) == 2, "what each does by itself are two");
+  expect(at_end(Transition::none, Transition::none, Transition::cross) == 1 &&
+             at_end(Transition::slip, Transition::slip, Transition::slip) == 2,
+         "what happens at an end stop is an event of its own");
 }
 
 void summary() {

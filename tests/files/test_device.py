@@ -208,7 +208,8 @@ def test_numbers_keep_every_bit(value: float) -> None:
         (
             '"10 g"',
             '"10 parsec"',
-            'FILE: drive.mass must be in kg or a unit alike, like "10 g", got "10 parsec"',
+            'FILE: drive.mass must be in kg or a unit alike ("parsec" is not a known unit), like '
+            '"10 g", got "10 parsec"',
         ),
         (
             '"10 g"',

@@ -74,6 +74,19 @@ inline Place size(const pd::Motion<double>& motion, double duration) {
   }
   return most;
 }
+/// The largest of the terms that position and velocity are sums of, which round: a force that changes within so
+/// short a time that the pin hardly moves makes them far larger than those.
+inline Place terms(const pd::Motion<double>& motion, double duration) {
+  Place most{};
+  for (const auto& segment : motion) {
+    const double span = std::min(segment.end, duration) - segment.begin;
+    motion.along(segment, [&](const auto& along) {
+      most[0] = std::max(most[0], along.terms(along.position(), span));
+      most[1] = std::max(most[1], along.terms(along.velocity(), span));
+    });
+  }
+  return most;
+}
 /// Beside a size; what differs from none at all is far.
 inline double beside(double difference, double size) {
   return difference == 0 ? 0 : size > 0 ? std::abs(difference) / size : never;
@@ -227,7 +240,7 @@ struct Cut {
 /// How far what goes on from a state within a motion is from that motion, as a part of its largest position
 /// and velocity, at times ever closer to the cut. Where a start that is moved by a part of 1e-12, either
 /// way, comes elsewhere, the rounding of the state may do so too: of the difference, four times the
-/// distance between those is taken.
+/// distance between those is taken, and the rounding of what they are sums of.
 inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   const Cut cut(motion, c);
   if (!cut.possible || !(cut.rest.duration > 0)) return 0;
@@ -258,11 +271,14 @@ inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   if (worst <= largest_residual) return worst;
   const Followed up = cut.follow(most, 1e-12), down = cut.follow(most, -1e-12);
   if (!up.ok() || !down.ok()) return never;
+  const Place sums = terms(motion, c.duration);
   worst = 0;
   for (std::size_t k = 0; k < times; ++k) {
     const Place a = place(up.motion(), at[k]), b = place(down.motion(), at[k]);
     for (std::size_t i = 0; i < 2; ++i) {
-      worst = std::max(worst, apart[k][i] - 4 * beside(a[i] - b[i], most[i]));
+      const double rounded = 64 * std::numeric_limits<double>::epsilon() * sums[i];
+      worst = std::max(worst,
+                       apart[k][i] - 4 * beside(a[i] - b[i], most[i]) - beside(rounded, most[i]));
     }
   }
   return worst;

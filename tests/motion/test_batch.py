@@ -329,9 +329,26 @@ def test_end_stops_are_varied_as_all_else_is() -> None:
             assert found.transient_settling_time == motion.transient.settling_time
             assert found.transient_peak_displacement == motion.transient.peak_displacement
             assert found.ending_position == motion.ending.position
+            assert found.events == len(motion.events)
+            assert any(event.contact == "stop" for event in motion.events)
     rigid = simulate_batch(DRIVE, replace(RELEASE, displacement=1e-3), travel=[5e-4, 1e-3, 0.1])
     assert [meaning(status) for status in rigid.status] == ["bad_displacement", "ok", "ok"]
     free = simulate_batch(DRIVE, replace(RELEASE, displacement=1e-3))
+    bad = simulate_batch(
+        DRIVE,
+        RELEASE,
+        travel=[1e-3, 0.0, inf, 1e-3, 1e-3, 1e-3],
+        stop_stiffness=[1e4, 1e4, 1e4, -1.0, 1e4, 1e13],
+        stop_damping=[0.0, 0.0, 0.0, 0.0, nan, 0.0],
+    )
+    assert [meaning(status) for status in bad.status] == [
+        "ok",
+        *["bad_travel"] * 2,
+        "bad_stop_stiffness",
+        "bad_stop_damping",
+        "bad_stop_stiffness",
+    ]
+    assert np.isnan(bad.transient_peak_displacement[1:]).all()
     far, ended = float(rigid.isel(dim_0=2).ending_position), float(free.ending_position)
     assert far == pytest.approx(ended, rel=1e-12)
 
@@ -339,7 +356,6 @@ def test_end_stops_are_varied_as_all_else_is() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"travel": [1e-3, 0.0]}, "travel must be finite and greater than 0 m, got 0.0 m"),
         ({"stop_stiffness": [1e3]}, "stop_stiffness must be left out without travel"),
         (
             {"travel": 1e-3, "stop_damping": 1.0},

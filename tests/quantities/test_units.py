@@ -52,7 +52,9 @@ def test_degrees_are_parts_of_a_turn() -> None:
     [
         ("12", "kg", 'a number with its unit (give a unit, like "10 g")'),
         ("12 m", "kg", 'in kg or a unit alike, like "10 g"'),
-        ("12 bananas", "kg", 'in kg or a unit alike, like "10 g"'),
+        ("12 bananas", "kg", 'in kg or a unit alike ("bananas" is not a known unit), like "10 g"'),
+        ("10 MHz", "Hz", 'in Hz or a unit alike ("MHz" is not a known unit), like "10 g"'),
+        ("3 m", "kg/s", 'in kg/s or a unit alike, like "10 g"'),
         ("1,5 g", "kg", 'a number whose decimal sign is a point, like "1.5 g"'),
         ("heavy", "kg", 'a number with its unit, like "10 g"'),
         ("3 m", "1", 'a plain number or a percentage, like "10 g"'),

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from pindrive.files.device import ConfigError
+from pindrive.quantities.status import Status
 from pindrive.study.design import Plan
 from pindrive.study.distributions import BLOCK, Distribution, Even, Sample
-from pindrive.study.evaluate import evaluate
+from pindrive.study.evaluate import evaluate, follow, is_slow, refusals
 from pindrive.study.outputs import MEASURED, OUTPUTS
 from pindrive.study.study import load_study
 
@@ -191,6 +192,38 @@ def test_one_by_one_is_the_batch(tmp_path: Path) -> None:
         np.testing.assert_allclose(one[name][good], two[name][good], 1e-11, 1e-15, err_msg=name)
     assert not two["transient_settled"][~good].any()
     assert np.isnan(two["transient_swing"][~good]).all()
+
+
+def test_end_stops_are_followed_by_the_batch(tmp_path: Path) -> None:
+    """The numbers of `simulate` at each point; a stop that cannot be is a point without numbers."""
+    plan = study(
+        tmp_path,
+        """
+        [axes]
+        travel = ["0.2 mm", "1 mm", "2 mm"]
+        stop_stiffness = ["1 N/mm", "100 N/mm"]
+        stop_damping = ["0 N*s/m", "4 N*s/m"]
+        """,
+        BASE,
+    )
+    columns, count = plan.columns(0, plan.size), plan.size
+    assert count == 12
+    assert not is_slow(plan.device, columns)
+    found = evaluate(plan, columns, count, OUTPUTS)
+    for i in range(count):
+        motion = follow(plan, {key: float(values[i]) for key, values in columns.items()})
+        numbers = motion.numbers()
+        for name in MEASURED:
+            quantity = next(n for n in numbers if n.replace(".", "_") == name)
+            np.testing.assert_array_equal(found[name][i], numbers[quantity], err_msg=name)
+        assert found["events"][i] == len(motion.events)
+        assert found["ending"][i] == motion.ending.end
+    columns["drive.travel"] = np.where(np.arange(count) < 2, -1e-3, columns["drive.travel"])
+    table = evaluate(plan, columns, count, ("status", "reason"))
+    assert list(table["status"][:3]) == [Status.bad_travel, Status.bad_travel, Status.ok]
+    (told,) = refusals(plan, columns, table["reason"])
+    assert told.count == 2
+    assert "travel must be" in told.reason
 
 
 def test_load_stretch_and_curves_are_followed(tmp_path: Path) -> None:

@@ -156,9 +156,9 @@ def simulate_batch(
     Raises:
         ValueError: an argument is unknown or holds something else than numbers, shapes do not fit
             together, `threads` is no count, or `outputs` names what there is not; friction is given
-            both by a force and by a coefficient; end stops are out of range; a drive or a release
-            has what only `simulate` follows: a friction curve, an input that changes, a given
-            stretch of the skin.
+            both by a force and by a coefficient; what describes end stops lacks what it needs; a
+            drive or a release has what only `simulate` follows: a friction curve, an input that
+            changes, a given stretch of the skin.
 
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
@@ -305,17 +305,16 @@ def _stops(
 ) -> list[NDArray[np.float64]]:
     """Travel, stiffness and damping of the end stops: one value each, or one of each point.
 
+    NaN where one is refused.
+
     Raises:
-        ValueError: a value is out of its range, or what describes stops lacks what it needs.
+        ValueError: what describes stops lacks what it needs.
     """
-    for name in _STOPS.keys() & given.keys():
-        for value in np.unique(given[name][~_within(_STOPS[name].bounds, given[name])]):
-            check(name, float(value))
     check_stops(*(float(given[n].max(initial=0.0)) if n in given else None for n in _STOPS))
     if "travel" not in given:
         return []
     left_out = {"stop_stiffness": np.array(inf), "stop_damping": np.array(0.0)}
-    parts = [given.get(name, left_out.get(name, np.array(inf))) for name in _STOPS]
+    parts = [_allowed(name, given[name]) if name in given else left_out[name] for name in _STOPS]
     return [
         np.ascontiguousarray(part if part.size == 1 else np.broadcast_to(part, shape)).ravel()
         for part in parts
@@ -326,9 +325,7 @@ def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.fl
     """The friction forces that coefficients amount to; NaN where one of their parts is refused."""
 
     def value(name: str) -> NDArray[np.float64]:
-        quantity, values = QUANTITIES[name], given[name.replace(".", "_")]
-        good = _within(quantity.bounds, values) & _within(quantity.limits, values)
-        return np.where(good, values, nan)
+        return _allowed(name, given[name.replace(".", "_")])
 
     return {
         name.replace(".", "_"): friction_force(name, value)
@@ -442,6 +439,13 @@ def _warn(name: str, given: Broadcastable, ends: tuple[float, float]) -> None:
         if float(size) not in seen:
             warn_of(quantity.name, float(size), label=name, stacklevel=3)
             return
+
+
+def _allowed(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The values of a quantity, NaN where one is out of its range."""
+    quantity = QUANTITIES[name]
+    good = _within(quantity.bounds, values) & _within(quantity.limits, values)
+    return np.where(good, values, nan)
 
 
 def _within(bounds: Bounds, values: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -64,10 +64,12 @@ def where_good(deviation: Array, r: Releases) -> str:
     if good[beyond].all() and not good[~beyond].any():
         return f"x_0 > x_d ({share(good)})"
     least = ratio[~good].min()
-    below = ratio < least
+    step = 10 ** (np.floor(np.log10(least)) - 1)  # two digits, downwards
+    limit = f"{np.floor(least / step) * step:.2g}"
+    below = ratio < float(limit)
     if below.sum() < GOOD * below.size:
         return f"nowhere ({share(good)} by chance)" if good.any() else "nowhere"
-    return f"ζ < {np.floor(1e3 * least) / 1e3:.2g} ({share(good)})"
+    return f"ζ < {limit} ({share(below)}; good in all: {good.sum()})"
 
 
 def rows(facts: Facts) -> list[Row]:

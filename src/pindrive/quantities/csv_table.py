@@ -13,7 +13,7 @@ from typing import Final
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.units import UnitError, expected, quoted, to_si
 
 _HEADING: Final = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")
 
@@ -148,6 +148,5 @@ class CsvTable:
         try:
             return to_si(f"1 {written or ''}", unit, f"1 {unit}")
         except UnitError:
-            kind = "a plain number" if unit == "1" else f"in {unit} or a unit alike"
-            required = f"{kind}, like {quoted(usual)}"
+            required = f"{expected(unit, written or '')}, like {quoted(usual)}"
             raise ValueError(refusal(f"column {name}", required, heading, self.file)) from None

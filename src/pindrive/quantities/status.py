@@ -49,6 +49,9 @@ class Status(IntEnum):
     bad_plate_load = 29
     bad_damping_ratio = 30
     bad_phase = 31
+    bad_travel = 32
+    bad_stop_stiffness = 33
+    bad_stop_damping = 34
 
     @property
     def exists(self) -> bool:

@@ -82,8 +82,23 @@ def to_si(text: str, unit: str, example: str) -> float:
     except ArithmeticError:  # beyond even decimal's range; infinite or 0 as a float
         return float(number)
     except LookupError:
-        kind = "a plain number or a percentage" if unit == "1" else f"in {unit} or a unit alike"
-        raise UnitError(f'{kind}, like "{example}"') from None
+        raise UnitError(f'{expected(unit, written, "or a percentage")}, like "{example}"') from None
+
+
+def expected(unit: str, written: str, otherwise: str = "") -> str:
+    """What a unit has to be, in words, and that `written` is none where it is not known at all.
+
+    Args:
+        unit: the SI unit, "1" for dimensionless.
+        written: the unit that does not fit.
+        otherwise: what a plain number may be written as.
+    """
+    kind = f"a plain number {otherwise}".rstrip() if unit == "1" else f"in {unit} or a unit alike"
+    try:
+        _registry().parse_units(written)
+    except Exception:  # pint lets through whatever goes wrong in the parts of its parser
+        return f"{kind} ({quoted(written)} is not a known unit)"
+    return kind
 
 
 def quoted(value: object) -> str:

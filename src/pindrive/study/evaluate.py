@@ -106,7 +106,7 @@ _WHOLE: Final = {
 _NOT_OF_THE_DRIVE: Final = ("duration", "settling_band")
 """What is asked of a motion, beside its drive and its release."""
 _STOPS: Final = ("travel", "stop_stiffness", "stop_damping")
-_FOLLOWED: Final = tuple(f"drive.{name}" for name in _STOPS) + tuple(
+_FOLLOWED: Final = tuple(
     f"motion.{name}" for name in ("skin_stretch", "force", "across_velocity", "finger_load")
 )
 """Which points `simulate_batch` does not take."""
@@ -197,7 +197,6 @@ def is_slow(device: DeviceFile, swept: Mapping[str, object]) -> bool:
     }
     return (
         any(changing and key not in swept for key, changing in changes.items())
-        or device.drive.travel is not None
         or device.drive.plate.curved
         or device.drive.finger.curved
         or device.release.skin_stretch is not None
