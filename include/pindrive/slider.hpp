@@ -213,12 +213,12 @@ class SlidingSkin : public TouchState<T> {
   /// Whether it moves by much in the rounding of a time, as a slider does that gets ever faster while its load
   /// falls: it then goes on by the time that is kept.
   bool rounds_time() const { return lags() && load.rate != 0; }
-  /// Goes on with its force where its load is known to the rounding of the time only: it was `before`.
-  void keeps_force(State<T>& s, T before) const {
-    if (!lags() || before == load.value || !(load.value > 0)) return;
+  /// Goes on with its force where its load is known to the rounding of the time only: it was `loaded`.
+  void keeps_force(State<T>& s, T loaded) const {
+    if (!lags() || loaded == load.value || !(load.value > 0)) return;
     const Branch<T> range = branch();
     s.slide +=
-        does.sense * range.at(does.sense * s.slide) * (before / load.value - 1) / range.slope;
+        does.sense * range.at(does.sense * s.slide) * (loaded / load.value - 1) / range.slope;
   }
   /// Brings the state to where the mode that was selected begins.
   void land(State<T>& s) const {

@@ -64,13 +64,13 @@ export function readRecording(text: string, file: string): Recording {
     const [column, twice] = columns.get(name)! as [Column, Column | undefined];
     if (twice) fail(`column ${name}`, "given once", "it twice");
     const heading = quoted(headings[column.index]!);
-    if (column.unit === null) fail(`column ${name}`, `given with its unit, like ${quoted(usual)}`, heading);
+    const given = column.unit ?? fail(`column ${name}`, `given with its unit, like ${quoted(usual)}`, heading);
     let scale = 1;
     try {
-      scale = toSi(`1 ${column.unit}`, unit, `1 ${unit}`);
+      scale = toSi(`1 ${given}`, unit, `1 ${unit}`);
     } catch (error) {
       if (!(error instanceof UnitError)) throw error;
-      fail(`column ${name}`, `${expected(unit, column.unit)}, like ${quoted(usual)}`, heading);
+      fail(`column ${name}`, `${expected(unit, given)}, like ${quoted(usual)}`, heading);
     }
     const values = new Float64Array(rows.length);
     rows.forEach((line, i) => {
