@@ -166,8 +166,8 @@ RAMP = f'{SPEED}\nplate_load = [["0 ms", 1], ["5 ms", 0.2]]'
         (
             SPEED,
             '[["0 ms", "6 mm/s"], ["4 parsec", "0 mm/s"]]',
-            'motion.mouse_velocity[1] time must be in s or a unit alike ("parsec" is not a known unit), '
-            'like "100 ms", got "4 parsec"',
+            "motion.mouse_velocity[1] time must be in s or a unit alike "
+            '("parsec" is not a known unit), like "100 ms", got "4 parsec"',
         ),
         (
             SPEED,

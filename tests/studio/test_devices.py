@@ -106,10 +106,6 @@ WRONG = [
     ('"100 mm/s"', '"100 mm/s"\nforce = [["0 s", "1 N"], ["0 s", "2 N"], ["0 s", "3 N"]]'),
     ('"100 mm/s"', '"100 mm/s"\nforce = "1 m"'),
     ('"100 mm/s"', '"100 mm/s"\nfinger_load = -1'),
-    (
-        '"5 mN"\n[motion]',
-        '"5 mN"\nstiffness = "1 N/m"\n[motion]\nfinger_load = [["0 s", 1], ["1 s", 2]]',
-    ),
     ('"100 mm/s"', '"100 mm/s"\nacross_velocity = [["0 s", "1 m/s"], ["0 s", "2 m/s"]]'),
     ('"10 g"', '"10 g"\nstop_stiffness = "1 N/m"'),
     ('"10 g"', '"10 g"\nstop_damping = "0 N*s/m"'),
