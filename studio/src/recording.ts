@@ -64,7 +64,8 @@ export function readRecording(text: string, file: string): Recording {
     const [column, twice] = columns.get(name)! as [Column, Column | undefined];
     if (twice) fail(`column ${name}`, "given once", "it twice");
     const heading = quoted(headings[column.index]!);
-    const given = column.unit ?? fail(`column ${name}`, `given with its unit, like ${quoted(usual)}`, heading);
+    const given =
+      column.unit ?? fail(`column ${name}`, `given with its unit, like ${quoted(usual)}`, heading);
     let scale = 1;
     try {
       scale = toSi(`1 ${given}`, unit, `1 ${unit}`);
