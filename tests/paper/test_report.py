@@ -504,8 +504,9 @@ def test_trends() -> None:
 
 
 def test_words_of_numbers() -> None:
-    assert at_most(4e-16) == "< 10^{-15}"
-    assert at_most(6e-16) == "< 10^{-14}"
+    assert at_most(4e-16) == "< 10^{-12}"
+    assert at_most(9e-14) == "< 10^{-12}"
+    assert at_most(2e-13) == "< 10^{-9}"
     assert at_most(0.0) == "0"
     assert share([True, False, True]) == "2 of 3"
     assert listed(["a", "b", "c"]) == "a, b and c"

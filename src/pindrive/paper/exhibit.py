@@ -122,8 +122,9 @@ def by_case(found: dict[str, str]) -> str:
 
 
 def at_most(value: float) -> str:
-    """A bound on a rounding error: the next power of ten, as TeX; twice the value for safety."""
-    return "0" if value == 0.0 else rf"< 10^{{{ceil(log10(2 * value))}}}"
+    """A bound on a rounding error: the next power of a thousand, as TeX, that the rounding of another
+    machine, ten times as large, does not pass either."""
+    return "0" if value == 0.0 else rf"< 10^{{{3 * ceil(log10(10 * value) / 3)}}}"
 
 
 def share(true: ArrayLike) -> str:
