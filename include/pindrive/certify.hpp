@@ -283,10 +283,23 @@ class Certifier {
     return speed > 0 ? std::min(by_velocity, abs(force + strength * u / speed)) : by_velocity;
   }
 
-  /// What the force of a plate that slides across too is unsure by, N: it turns with the velocity, which is
-  /// known to its rounding and to that of the time.
+  /// What the forces are unsure by, N: that of skin on a slider changes within the rounding of the time, as its
+  /// load does, …
   template <class Stage>
   T unsure(const Stage& stage, const Numbers& s) const {
+    const T of_skin = slips(stage.segment.mode.finger)
+                          ? skin_unsure(stage.finger_load, stage.segment.begin + s.tau, s)
+                          : T(0);
+    return of_skin + turns_by(stage, s);
+  }
+  T skin_unsure(const Line<T>& load, T time, const Numbers& s) const {
+    using std::abs;
+    return soft() && load.rate != 0 ? detail::rounding<T> * time * abs(s.finger_rate) : T(0);
+  }
+  /// … and that of a plate that slides across too turns with the velocity, which is known to its rounding and
+  /// to that of the time.
+  template <class Stage>
+  T turns_by(const Stage& stage, const Numbers& s) const {
     using detail::hypot;
     using std::abs;
     if (stage.segment.mode.plate != ContactState::slip_oblique) return T(0);
@@ -605,8 +618,8 @@ class Certifier {
     if (!soft()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      const bool changes = motion_.inputs().finger_load.from(before.begin).rate != 0;
-      const T known = changes ? detail::rounding<T> * before.end * abs(left.finger_rate) : T(0);
+      const T known =
+          skin_unsure(motion_.inputs().finger_load.from(before.begin), before.end, left);
       const T jump = abs(left.finger_force - right.finger_force);
       worst(result_.continuity, std::max(jump - known, T(0)), force_scale_);
       return;
