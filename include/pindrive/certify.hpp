@@ -358,8 +358,8 @@ class Certifier {
     if (!on_skin()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
-      const bool changes = motion_.inputs().finger_load.from(before.begin).rate != 0;
-      const T known = changes ? detail::rounding<T> * before.end * abs(left.finger_rate) : T(0);
+      const Line<T> load = motion_.inputs().finger_load.from(before.begin);
+      const T known = detail::skin_unsure(drive_, load, before.end, left);
       const T jump = abs(left.finger_force - right.finger_force);
       worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
       return;

@@ -36,6 +36,13 @@ T kinetic_friction(const Contact<T>& contact, T speed) {
   return force;
 }
 
+/// What the force of skin is unsure by, N: it changes within the rounding of the time, as its load does.
+template <class T>
+T skin_unsure(const Drive<T>& drive, const Line<T>& load, T time, const PinState<T>& s) {
+  using std::abs;
+  return !drive.finger.rigid() && load.rate != 0 ? rounding<T> * time * abs(s.finger_rate) : T(0);
+}
+
 template <class T, class Trajectory>
 class EvaluatedSegment {
  public:
@@ -114,13 +121,19 @@ class EvaluatedSegment {
                      : by_velocity;
   }
 
-  /// What the force of a plate that slides across too is unsure by, N: it turns with the velocity, which is
-  /// known to its rounding and to that of the time.
+  /// What the forces are unsure by, N: …
   T unsure(const PinState<T>& s) const {
+    const T time = segment.begin + s.tau;
+    const T of_skin = slips(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
+    return of_skin + turning_unsure(s, time);
+  }
+  /// … that of a plate that slides across too turns with the velocity, which is known to its rounding and to
+  /// that of the time.
+  T turning_unsure(const PinState<T>& s, T time) const {
     using std::abs;
     if (!oblique()) return T(0);
     const T u = s.v - plate_velocity.at(s.tau), w = across.at(s.tau);
-    const T speed = hypot(u, w), time = segment.begin + s.tau;
+    const T speed = hypot(u, w);
     const T pressed = std::max(load.at(s.tau), T(0));  // less by rounding where it ends
     const T strength = pressed * kinetic_friction(drive.plate, speed);
     const T moves = scales.v + time * (abs(s.a) + abs(plate_velocity.rate));

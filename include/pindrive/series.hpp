@@ -38,7 +38,8 @@ class SeriesFlow : public SeriesStep<T> {
       this->trim();
       return;
     }
-    step = std::min({this->suggested_part(), longest / (rate * step), farthest / step, farther});
+    step = std::min({this->suggested_part(), 1 / ((rate / longest + rising_rate(equation)) * step),
+                     farthest / step, farther});
     for (int tries = 0; tries < most_tries; ++tries, step = Real(0.75)) {
       this->rescale(step);
       if (bound(equation)) break;
@@ -68,6 +69,12 @@ class SeriesFlow : public SeriesStep<T> {
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope))) / m +
            (f != 0 ? abs(plain(e.skin_decay) / f) : Real(0)) +
            sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
+  }
+  /// … the one at which the factor of skin has grown from zero: there every solution but one is singular, so
+  /// that a longer step would make the rounding of its start grow, …
+  static Real rising_rate(const SeriesEquation<T>& e) {
+    const Real f = plain(e.skin_factor.value), rate = plain(e.skin_factor.rate);
+    return f * rate > 0 ? rate / f : Real(0);
   }
   /// … and the one at which the direction of sliding turns.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {

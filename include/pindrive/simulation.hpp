@@ -258,17 +258,17 @@ class Simulation : private Selection<T> {
     limit_ = 0;
   }
 
-  /// Takes the inputs from here on; the finger's load until now, where it was this by its rate: it jumps, or it
-  /// is the same but for rounding.
+  /// Takes the inputs from here on; the finger's load until now, where it was this by its rate, to the rounding
+  /// of the time: it jumps, perhaps from zero, or it is the same.
   T load_before(T value, T rate) {
     using std::abs;
     if (inputs_.constant())
       plate_.surface = inputs_.mouse_velocity.from(time_);
     else
       look_ahead();
-    const T now = finger_.load.value;
-    if (abs(value - now) > rounding<T> * (abs(value) + abs(now) + 2 * abs(rate) * time_))
-      return value;
+    const T now = finger_.load.value, known = rounding<T> * (abs(value) + 2 * abs(rate) * time_);
+    if (abs(value - now) > known + rounding<T> * abs(now))
+      return abs(value) > known ? value : T(0);
     finger_.keeps_force(state_, value);
     return now;
   }
