@@ -7,7 +7,7 @@
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/series_oblique.hpp"
-#include "pindrive/slider.hpp"
+#include "pindrive/skin.hpp"
 #include "pindrive/state.hpp"
 
 namespace pindrive::detail {

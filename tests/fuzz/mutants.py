@@ -113,7 +113,7 @@ MUTANTS = (
     ),
     Mutant(
         "skin grips with a thousandth more stretch",
-        "slider.hpp",
+        "skin.hpp",
         "if (drops()) s.skin = grip(s);",
         "if (drops()) s.skin = grip(s);\n"
         "    if (elastic() && before != does.state) s.skin *= T(1.001);",

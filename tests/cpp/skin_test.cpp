@@ -1,0 +1,101 @@
+// Skin with its slider: what stretches it, when it grips and slips, and what becomes of it as its load changes.
+#include "pindrive/skin.hpp"
+
+#include <limits>
+
+#include "check.hpp"
+#include "pindrive/friction.hpp"
+
+namespace pd = pindrive;
+using check::expect;
+using check::near;
+using pd::ContactState;
+using pd::detail::Bound;
+
+namespace {
+
+using Touch = pd::detail::Touch<double>;
+using State = pd::detail::State<double>;
+
+constexpr double never = std::numeric_limits<double>::infinity();
+const pd::Contact<double> skin{0.2, 0.3, 1000};
+/// Rises by 1 N s/m from 0.2 N.
+const pd::Branch<double> viscous[] = {{0, never, 0.2, 1, 0}};
+const pd::Contact<double> lagging{0.2, 0.3, 1000, viscous, 1};
+
+State at(double v, double force) { return {1e-3, v, force, 1e-3, 1e-16}; }
+
+Touch gripping(const pd::Contact<double>& contact, double load = 1) {
+  Touch touch(contact);
+  touch.load = {load, 0};
+  touch.does = {ContactState::elastic_stick, Bound::none, 0, 0};
+  return touch;
+}
+
+void grips() {
+  Touch touch = gripping(skin);
+  touch.ask(at(0.1, -0.25));
+  expect(touch.count == 1 && touch.option(0).state == ContactState::elastic_stick,
+         "within its limit skin grips");
+  expect(near(touch.force(at(0.1, -0.25)), 0.25, 1e-15), "with the force that it has");
+  touch.ask(at(-0.1, -0.3));
+  expect(touch.count == 2 && touch.option(1).state == ContactState::slip_backward,
+         "at its limit, stretched further, it may slip");
+  Touch light = gripping(skin, 0.5);
+  light.ask(at(-0.1, -0.25));
+  expect(light.count == 1 && light.option(0).state == ContactState::slip_backward,
+         "where its load has jumped to half it cannot but slip");
+  light.does = light.option(0);
+  State state = at(-0.1, -0.25);
+  light.land(state);
+  expect(light.drops() && near(state.skin, -0.1, 1e-15), "and is as short as its friction at once");
+}
+
+void slips() {
+  Touch touch = gripping(lagging);
+  touch.does = Touch::slip(1, Bound::none);
+  State state = at(0.08, 0.25);
+  state.slide = 0.05;
+  touch.ask(state);
+  expect(touch.lags() && near(touch.slide(), 0.05, 1e-15) && near(touch.gap(0.08), 0.03, 1e-15),
+         "on a rising curve its slider has a speed of its own");
+  expect(near(touch.skin_force(state, 2), 0.5, 1e-15), "its skin carries the friction of that");
+  touch.load = {0.5, 0};
+  State before = state;
+  touch.keeps_force(before, 0.50001);
+  expect(near(touch.skin_force(before, 0.5), touch.skin_force(state, 0.50001), 1e-12),
+         "within the rounding of a time it keeps its force as the load changes");
+  Touch even = gripping(skin);
+  even.does = Touch::slip(1, Bound::none);
+  expect(!even.lags(), "under Coulomb friction it slides with the pin");
+  even.load = {1, 2};
+  expect(near(even.stretching(0.2), 4e-4, 1e-15), "less what it stretches as its load grows");
+}
+
+void lifts() {
+  Touch touch = gripping(skin);
+  touch.load = {0, 5};
+  State state = at(0.01, 0);
+  touch.ask(state);
+  expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.rate == 5,
+         "a load that grows from zero is followed by skin without a curve");
+  touch.load = {1, -1};
+  expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.value == 1,
+         "one far from zero is followed until its row");
+  touch.load = {1e-20, -1e-6};
+  touch.keeps_off_zero(state, 1, 1 + 1e-14);
+  expect(touch.load.value == 0 && touch.load.rate == 0, "the last of one that ends is none");
+  Touch rigid(pd::Contact<double>{0.2, 0.3});
+  rigid.load = {1e-20, -1e-6};
+  expect(rigid.keeps_off_zero(state, 1, 1 + 1e-14) == 1 + 1e-14 && rigid.load.rate == -1e-6,
+         "a rigid contact needs none of this");
+}
+
+}  // namespace
+
+int main() {
+  grips();
+  slips();
+  lifts();
+  return check::status();
+}
