@@ -319,9 +319,9 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
     assert {row["pin"] for row in rows} == {"0", "1"}
     for row in rows:
         assert row["fate"] == "shown"
-        latency, lag = float(row["latency_on [s]"]), float(row["lag_on [m]"])
+        latency, lag = float(row["line_latency_on [s]"]), float(row["line_lag_on [m]"])
         assert 0.0 < lag <= latency * 0.0601
-        smear = row["smear [m]"]
+        smear = row["line_smear [m]"]
         assert not smear or not isnan(float(smear))
     dull = CliRunner().invoke(app, [*command, "--set", "judge.felt=9 mm"])
     assert "0 shown, 8 missed" in dull.output
