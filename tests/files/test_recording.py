@@ -148,7 +148,7 @@ def test_a_finger_that_lifts_is_a_csv_rows_or_set() -> None:
 def test_check_says_what_a_csv_of_rows_holds() -> None:
     csv("speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
     said = run("check", "speed.csv").stdout
-    assert said == "mouse_velocity: 3 rows over 90.00 ms, from -10.00 mm/s to 60.00 mm/s.\n"
+    assert said == "mouse_velocity: 3 rows over 90 ms, from -10.00 mm/s to 60.00 mm/s.\n"
     csv("speed.csv", "time [ms], mouse_velocity [mm]\n0,60\n")
     assert "column mouse_velocity must be in m/s" in run("check", "speed.csv").stderr
     csv("load.csv", "time [ms], plate_load\n0,5\n")

@@ -14,7 +14,7 @@ from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.rows import check_slopes, check_times
-from pindrive.quantities.table import QUANTITIES, default
+from pindrive.quantities.table import QUANTITIES, default, duration
 from pindrive.quantities.units import quoted
 
 SUFFIX: Final = ".csv"
@@ -96,7 +96,7 @@ def profile_words(file: Path) -> str:
     for key, quantity in NUMBERS.items():
         if quantity.rows_of in OVER_TIME and quantity.name in table:
             rows = _profile(table, key)
-            lasts = _TIME.text(rows[-1][0] - rows[0][0])
+            lasts = duration(rows[-1][0] - rows[0][0])
             low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))
             return (
                 f"{quantity.name}: {counted(len(rows), 'row')} over {lasts}, from {low} to {high}."
