@@ -32,6 +32,7 @@ from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import QUANTITIES, check, default
+from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -134,7 +135,7 @@ class Recording:
         table = CsvTable.read(path, "a recorded path", EXAMPLE)
         relative = "dx" in table and "x" not in table
         names = ("dx", "dy") if relative else ("x", "y")
-        table.check_header(("time", *names), EXAMPLE)
+        table.check_header({"time", *names} <= {*table.names}, f"like {quoted(EXAMPLE)}")
         times = table.column("time", QUANTITIES["hand.time"])
         step = 1.0 / resolution
         counted = [table.unit(name) in COUNTS for name in names]

@@ -11,7 +11,6 @@ from pindrive.files.keys import NUMBERS, Tables, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
-from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.table import QUANTITIES, default, duration
@@ -123,14 +122,9 @@ def _profile(table: CsvTable, key: str) -> Rows:
     """The rows of a CSV that gives a key over time, SI."""
     quantity = NUMBERS[key]
     name = quantity.name
-    if name not in table or "time" not in table:
-        also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
-        given = quoted(", ".join(table.headings))
-        raise ValueError(
-            refusal(
-                "the header", f"like {quoted(profile_header(quantity))}{also}", given, table.file
-            )
-        )
+    also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
+    required = f"like {quoted(profile_header(quantity))}{also}"
+    table.check_header({"time", name} <= {*table.names}, required)
     times, values = table.column("time", _TIME), table.column(name, quantity)
     table.check_rows(f"a CSV of {name}", 1)
     why = " (a jump would take an infinite force)" if name in CONTINUOUS else ""

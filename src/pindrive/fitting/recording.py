@@ -170,10 +170,8 @@ def read_recording(
     """
     file = str(path)
     table = CsvTable.read(path, "a recording", EXAMPLE)
-    if "time" not in table or not any(name in table for name in CHANNELS):
-        also = f"with time and at least one of {', '.join(CHANNELS)}, like {quoted(EXAMPLE)}"
-        given = quoted(", ".join(table.headings))
-        raise ValueError(refusal("the header", also, given, file))
+    required = f"with time and at least one of {', '.join(CHANNELS)}, like {quoted(EXAMPLE)}"
+    table.check_header("time" in table and any(name in table for name in CHANNELS), required)
     table.check_rows("a recording", FEWEST)
     time = np.array(table.column("time", SERIES["time"]))
     back = np.flatnonzero(np.diff(time) <= 0.0)

@@ -13,7 +13,7 @@ import numpy as np
 from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
 from pindrive.fitting.model import Model
-from pindrive.fitting.parameters import SENSOR, Parameter
+from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import Profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals
@@ -344,8 +344,3 @@ class ModelComparison(lazy.NotebookHtml):
         }
         attributes = {"status": self.status.name, "best": self.best}
         return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
-
-
-def is_of_sensor(estimate: Estimate) -> bool:
-    """Whether it describes the bench and not the drive or its release."""
-    return estimate.parameter.key in SENSOR

@@ -83,10 +83,8 @@ def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
             if key in keys:
                 raise ValueError(f"{path}: {key} is given twice, as {keys[key]} and {column}")
             keys[key] = column
-    if "part" not in table or not keys:
-        required = f"have a column part and one for each key that a part sets, like {_EXAMPLE!r}"
-        given = quoted(", ".join(table.headings))
-        raise ValueError(f"{path}: the header must {required}, got {given}".replace("'", '"'))
+    required = f"with part and a column for each key that a part sets, like {quoted(_EXAMPLE)}"
+    table.check_header("part" in table and bool(keys), required)
     table.check_rows("the parts", 1)
     columns = {}
     for key, column in keys.items():

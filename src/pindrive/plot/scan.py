@@ -320,7 +320,8 @@ def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
 
 def _track(scan: Scan, chosen: Moment) -> NDArray[np.float64]:
     """Where the pin's spot is in that time, m, of shape (2, n)."""
-    return scan.spots(np.linspace(chosen.begin, chosen.end, 200))[chosen.pin].T
+    spots: NDArray[np.float64] = scan.spots(np.linspace(chosen.begin, chosen.end, 200))[chosen.pin]
+    return spots.T
 
 
 def _where(scan: Scan, chosen: Moment) -> str:

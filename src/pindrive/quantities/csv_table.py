@@ -86,11 +86,11 @@ class CsvTable:
         """The unit in the heading of a column; None where it has none."""
         return self._columns[name][0][1]
 
-    def check_header(self, names: tuple[str, ...], example: str) -> None:
-        """Refuse a header that lacks one of these columns."""
-        if not all(name in self for name in names):
+    def check_header(self, holds: bool, required: str) -> None:
+        """Refuse the header unless it holds what is required of it."""
+        if not holds:
             given = quoted(", ".join(self.headings))
-            raise ValueError(refusal("the header", f"like {quoted(example)}", given, self.file))
+            raise ValueError(refusal("the header", required, given, self.file))
 
     @property
     def names(self) -> tuple[str, ...]:
