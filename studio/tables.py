@@ -36,7 +36,7 @@ from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Bounds, Quantity
-from pindrive.quantities.results import MOTION, OUTPUTS
+from pindrive.quantities.results import CHANNELS, MOTION, OUTPUTS
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import DEFINITIONS
 
@@ -89,6 +89,11 @@ def row(quantity: Quantity, explained: bool = True) -> dict[str, Any]:
             "meaning": quantity.meaning if explained else "",
         }
     )
+
+
+def column(quantity: Quantity) -> dict[str, Any]:
+    """A row of what is known over time."""
+    return row(quantity) | {"heading": quantity.heading}
 
 
 def checked(quantity: Quantity) -> dict[str, Any]:
@@ -151,7 +156,8 @@ def tables() -> dict[str, Any]:
         "parts": {name: checked(QUANTITIES[name]) for name in PARTS},
         "columns": COLUMNS,
         "numbers": [row(quantity) for quantity in OUTPUTS],
-        "series": [row(quantity) for quantity in MOTION],
+        "series": [column(quantity) for quantity in MOTION],
+        "channels": [column(quantity) for quantity in CHANNELS.values()],
         "keys": KEYS,
         "tables": TABLES,
         "alone": ALONE,

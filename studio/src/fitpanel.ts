@@ -4,6 +4,7 @@ import { variedKeys } from "./design";
 import { button, h, refill, show, textField } from "./dom";
 import type { FitResult } from "./fit";
 import type { Values } from "./friction";
+import { EXAMPLE } from "./recording";
 import { nameOf } from "./results";
 import { DRIVE, digits, text } from "./table";
 import type { Overlay } from "./view";
@@ -52,7 +53,7 @@ export class FitPanel {
           "p",
           { class: "note" },
           "Drop a recording of a release here or anywhere on the page: a CSV whose header names columns with units, such as ",
-          h("code", {}, "t [s], position [mm]"),
+          h("code", {}, EXAMPLE),
           ".",
         ),
         button("Open a recording …", "A CSV of a recording", actions.open),

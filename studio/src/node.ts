@@ -9,8 +9,9 @@ import type { Values } from "./friction";
 import { axesOf, gridValues, mapTask } from "./map";
 import { expanded, SIZE } from "./mapgrid";
 import { RecordingError, readRecording } from "./recording";
+import { type Curves, simulateAll } from "./sample";
 import { toSi } from "./units";
-import { deviceFile } from "./write";
+import { deviceFile, eventsCsv, samplesCsv } from "./write";
 
 type Question =
   | { readonly simulate: Input; readonly duration: number | null }
@@ -26,15 +27,21 @@ interface Device {
   readonly set?: readonly [string, number];
   /** The direction of a key. */
   readonly direction?: string;
+  /** Its motion as the CSV files that the page writes. */
+  readonly csv?: true;
   /** The core's numbers at the corners of a map over two keys. */
   readonly map?: readonly [string, string];
 }
 
-function ofDevice(asked: Device): unknown {
+function ofDevice(core: Core, asked: Device): unknown {
   const text = decodeText(Uint8Array.from(Buffer.from(asked.device, "base64")), asked.file);
   const device = readDevice(text, asked.file);
   const values = asked.set ? withValue(device.values, ...asked.set) : device.values;
   if (asked.direction) return { core: direction(values, asked.direction, 1) };
+  if (asked.csv) {
+    const { curves } = simulateAll(core, [values], null, 50).found[0] as { curves: Curves };
+    return { samples: samplesCsv(curves), events: eventsCsv(curves) };
+  }
   if (asked.map) return { corners: corners(values, ...asked.map) };
   const written = deviceFile({ ...device, values, shown: true });
   return { name: device.name, values, written, core: coreInput(values) };
@@ -56,7 +63,7 @@ function corners(values: Values, x: string, y: string): unknown {
 function answer(core: Core, asked: Question): unknown {
   if ("simulate" in asked) return answerOf(core, asked.simulate, asked.duration);
   try {
-    if ("device" in asked) return ofDevice(asked);
+    if ("device" in asked) return ofDevice(core, asked);
     if ("recording" in asked) {
       const { times, channels } = readRecording(asked.recording, asked.file);
       return {

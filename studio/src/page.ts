@@ -386,7 +386,7 @@ export class Page {
     const name = fileName(design.name);
     const curves = currentCurves(this.view);
     if (kind === "toml") download(`${name}.toml`, deviceFile(design), "application/toml");
-    if (kind === "csv" && curves) download(`${name}.csv`, samplesCsv(this.evenly()), "text/csv");
+    if (kind === "csv" && curves) download(`${name}.csv`, samplesCsv(curves), "text/csv");
     if (kind === "events" && curves) download(`${name}-events.csv`, eventsCsv(curves), "text/csv");
     if (kind === "svg") download(`${name}.svg`, figureSvg(this.view, design.name), "image/svg+xml");
     if (kind === "png") download(`${name}.png`, await pngOf(figureSvg(this.view, design.name)), "image/png");
@@ -400,17 +400,6 @@ export class Page {
         this.words.textContent = "The link is in the address bar.";
       }
     }
-  }
-
-  /** The current design at even times, each once: a recording has no time twice. */
-  private evenly(): NonNullable<ReturnType<typeof currentCurves>> {
-    const curves = currentCurves(this.view)!;
-    const keep = curves.times.map((time, i) => (i > 0 && time === curves.times[i - 1] ? 0 : 1));
-    const thin = (column: Float64Array): Float64Array => column.filter((_, i) => keep[i] === 1);
-    const columns = Object.fromEntries(
-      Object.entries(curves.columns).map(([name, column]) => [name, thin(column)]),
-    );
-    return { ...curves, times: thin(curves.times), columns };
   }
 }
 

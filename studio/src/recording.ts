@@ -1,16 +1,12 @@
 // A recording of a release: a CSV whose header names columns with their units, in SI.
 import { quoted, repr } from "./python";
-import { TABLES } from "./table";
+import { SERIES, type Series, TABLES } from "./table";
 import { expected, toSi, UnitError } from "./units";
 
-export const CHANNELS = {
-  position: ["m", "mm"],
-  velocity: ["m/s", "mm/s"],
-  acceleration: ["m/s^2", "m/s^2"],
-  force: ["N", "mN"],
-} as const;
-export type Channel = keyof typeof CHANNELS;
-const EXAMPLE = "t [s], position [mm]";
+export type Channel = "position" | "velocity" | "acceleration" | "force";
+const TIME = SERIES.get("time")!;
+/** A header. */
+export const EXAMPLE = `${TIME.heading}, ${TABLES.channels[0]!.heading}`;
 const FEWEST = 8;
 
 export interface Recording {
@@ -52,26 +48,25 @@ export function readRecording(text: string, file: string): Recording {
     const name = (match?.[1] ?? heading).trim().toLowerCase();
     columns.set(name, [...(columns.get(name) ?? []), { index, unit: match?.[2]?.trim() ?? null }]);
   });
-  const names = Object.keys(CHANNELS) as Channel[];
-  if (!columns.has("t") || !names.some((name) => columns.has(name))) {
-    const like = `with t and at least one of ${names.join(", ")}, like ${quoted(EXAMPLE)}`;
+  const names = TABLES.channels.map((channel) => channel.name);
+  if (!columns.has("time") || !names.some((name) => columns.has(name))) {
+    const like = `with time and at least one of ${names.join(", ")}, like ${quoted(EXAMPLE)}`;
     fail("the header", like, quoted(headings.join(", ")));
   }
   const rows = numbers.slice(1);
   if (rows.length < FEWEST) fail("a recording", `at least ${FEWEST} rows`, String(rows.length));
 
-  const read = (name: string, unit: string, usual: string): Float64Array => {
+  const read = ({ name, unit = "1", heading }: Series): Float64Array => {
     const [column, twice] = columns.get(name)! as [Column, Column | undefined];
     if (twice) fail(`column ${name}`, "given once", "it twice");
-    const heading = quoted(headings[column.index]!);
-    const given =
-      column.unit ?? fail(`column ${name}`, `given with its unit, like ${quoted(usual)}`, heading);
+    const [like, given] = [quoted(heading), quoted(headings[column.index]!)];
+    const written = column.unit ?? fail(`column ${name}`, `given with its unit, like ${like}`, given);
     let scale = 1;
     try {
-      scale = toSi(`1 ${given}`, unit, `1 ${unit}`);
+      scale = toSi(`1 ${written}`, unit, `1 ${unit}`);
     } catch (error) {
       if (!(error instanceof UnitError)) throw error;
-      fail(`column ${name}`, `${expected(unit, given)}, like ${quoted(usual)}`, heading);
+      fail(`column ${name}`, `${expected(unit, written)}, like ${like}`, given);
     }
     const values = new Float64Array(rows.length);
     rows.forEach((line, i) => {
@@ -86,20 +81,21 @@ export function readRecording(text: string, file: string): Recording {
     return values;
   };
 
-  const times = read("t", "s", "t [s]");
+  const times = read(TIME);
   for (let i = 1; i < times.length; ++i) {
     if (times[i]! > times[i - 1]!) continue;
     const required = `greater than the one before, ${short(times[i - 1]!)} s; sort the rows, or split it`;
-    fail(`row ${rows[i]! + 1}: t`, required, `${short(times[i]!)} s`);
+    fail(`row ${rows[i]! + 1}: time`, required, `${short(times[i]!)} s`);
   }
   const channels: Partial<Record<Channel, Float64Array>> = {};
-  for (const name of names) {
-    if (!columns.has(name)) continue;
-    const [unit, usual] = CHANNELS[name];
-    channels[name] = read(name, unit, `${name} [${usual}]`);
-    if (channels[name].every((value) => value === 0)) {
-      fail(name, "other than zero somewhere; check the sensor and the heading", "0 throughout");
+  for (const channel of TABLES.channels) {
+    if (!columns.has(channel.name)) continue;
+    const values = read(channel);
+    if (values.every((value) => value === 0)) {
+      const required = "other than zero somewhere; check the sensor and the heading";
+      fail(channel.name, required, "0 throughout");
     }
+    channels[channel.name as Channel] = values;
   }
   return { name: file, times, channels };
 }

@@ -39,6 +39,12 @@ export interface Quantity {
   readonly line?: string;
 }
 
+/** What is known over time: a column of files. */
+export interface Series extends Quantity {
+  /** Its heading in a CSV, SI: "position [m]". */
+  readonly heading: string;
+}
+
 interface Tables {
   readonly version: string;
   readonly inputs: readonly Quantity[];
@@ -46,7 +52,9 @@ interface Tables {
   readonly parts: Readonly<Record<string, Quantity>>;
   readonly columns: Readonly<Record<string, readonly [string, string]>>;
   readonly numbers: readonly Quantity[];
-  readonly series: readonly Quantity[];
+  readonly series: readonly Series[];
+  /** What a recording of a release may hold over time. */
+  readonly channels: readonly Series[];
   readonly keys: readonly string[];
   readonly tables: readonly string[];
   readonly alone: readonly string[];
@@ -90,7 +98,7 @@ export const DRIVE: ReadonlyMap<string, Quantity> = new Map(
 /** What is found of a motion, by name. */
 export const NUMBERS: ReadonlyMap<string, Quantity> = new Map(TABLES.numbers.map((q) => [q.name, q]));
 /** What is known of a motion at a time, by name. */
-export const SERIES: ReadonlyMap<string, Quantity> = new Map(TABLES.series.map((q) => [q.name, q]));
+export const SERIES: ReadonlyMap<string, Series> = new Map(TABLES.series.map((q) => [q.name, q]));
 
 export function part(name: string): Quantity {
   return TABLES.parts[name]!;

@@ -65,16 +65,17 @@ function toml(value: TomlValue): string {
   return String(value);
 }
 
-/** Samples of a motion, SI, with a header that a recording has: they can be read again. */
-export function samplesCsv(curves: Curves): string {
-  const names = [...SERIES.keys()].filter((name) => name === "time" || curves.columns[name as QuantityName]);
-  const head = names.map((name) => `${name === "time" ? "t" : name} [${SERIES.get(name)!.unit}]`).join(",");
-  const rows = Array.from(curves.times, (time, i) =>
-    names
-      .map((name) => floatRepr(name === "time" ? time : curves.columns[name as QuantityName]![i]!))
-      .join(","),
-  );
-  return `${[head, ...rows].join("\r\n")}\r\n`;
+function headings(names: readonly string[]): string {
+  return names.map((name) => SERIES.get(name)!.heading).join(",");
+}
+
+/** Samples of a motion, SI, of two at one time the right-hand limit; `readRecording` reads them again. */
+export function samplesCsv({ times, columns }: Curves): string {
+  const names = [...SERIES.keys()].filter((name) => name === "time" || columns[name as QuantityName]);
+  const values = names.map((name) => (name === "time" ? times : columns[name as QuantityName]!));
+  const kept = [...times.keys()].filter((i) => times[i] !== times[i + 1]);
+  const rows = kept.map((i) => values.map((column) => floatRepr(column[i]!)).join(","));
+  return `${[headings(names), ...rows].join("\r\n")}\r\n`;
 }
 
 /** The events of a motion, SI. */
@@ -84,7 +85,7 @@ export function eventsCsv(curves: Curves): string {
       .map((cell) => (typeof cell === "number" ? floatRepr(cell) : cell))
       .join(","),
   );
-  return `${["t [s],contact,kind,position [m],velocity [m/s]", ...rows].join("\r\n")}\r\n`;
+  return `${[`${headings(["time"])},contact,kind,${headings(["position", "velocity"])}`, ...rows].join("\r\n")}\r\n`;
 }
 
 export const TEMPLATE = TABLES.template;

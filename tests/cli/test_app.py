@@ -154,14 +154,14 @@ def test_csv_holds_even_samples_and_events_beside_it() -> None:
     assert said.stdout.endswith("Wrote out.csv\nWrote out-events.csv\n")
     with Path("out.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    times = [float(row["time_s"]) for row in rows]
+    times = [float(row["time [s]"]) for row in rows]
     assert list(rows[0]) == [
-        "time_s",
-        "position_m",
-        "velocity_m_per_s",
-        "acceleration_m_per_s2",
-        "plate_force_N",
-        "finger_force_N",
+        "time [s]",
+        "position [m]",
+        "velocity [m/s]",
+        "acceleration [m/s^2]",
+        "plate_force [N]",
+        "finger_force [N]",
     ]
     motion = example()
     assert times == np.linspace(0.0, motion.duration, 51).tolist()
@@ -170,9 +170,9 @@ def test_csv_holds_even_samples_and_events_beside_it() -> None:
     assert [[*event.values()] for event in events] == [
         [str(e.time), e.contact, e.kind, str(e.position), str(e.velocity)] for e in motion.events
     ]
-    assert list(events[0]) == ["time_s", "contact", "kind", "position_m", "velocity_m_per_s"]
+    assert list(events[0]) == ["time [s]", "contact", "kind", "position [m]", "velocity [m/s]"]
     for row in rows:
-        t = float(row["time_s"])
+        t = float(row["time [s]"])
         assert [float(value) for value in list(row.values())[1:]] == [
             motion.position(t),
             motion.velocity(t),
@@ -262,12 +262,12 @@ def test_skin_has_columns_and_rows_of_its_own() -> None:
     motion = skin()
     with Path("out.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0])[-3:] == ["stretch_m", "stretch_rate_m_per_s", "plate_velocity_m_per_s"]
+    assert list(rows[0])[-3:] == ["stretch [m]", "stretch_rate [m/s]", "plate_velocity [m/s]"]
     for row in rows:
-        t = float(row["time_s"])
-        assert float(row["stretch_m"]) == motion.stretch(t)
-        assert float(row["stretch_rate_m_per_s"]) == motion.stretch_rate(t)
-        assert float(row["plate_velocity_m_per_s"]) == motion.plate_velocity(t)
+        t = float(row["time [s]"])
+        assert float(row["stretch [m]"]) == motion.stretch(t)
+        assert float(row["stretch_rate [m/s]"]) == motion.stretch_rate(t)
+        assert float(row["plate_velocity [m/s]"]) == motion.plate_velocity(t)
     with xr.open_dataset("out.nc", engine="h5netcdf", decode_timedelta=False) as dataset:
         assert dataset["stretch"].attrs["units"] == "m"
         assert np.array_equal(dataset["plate_velocity"], motion.plate_velocity(dataset["time"]))

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 TRUTH = Drive(
     mass=0.010, stiffness=140.0, damping=0.31, plate=Contact(0.019), finger=Contact(0.006)
 )
-HEAD = "t [ms], position [mm]\n"
+HEAD = "time [ms], position [mm]\n"
 
 
 def write(name: str = "pin.csv", head: str = HEAD, span: float = 0.15) -> None:
@@ -75,7 +75,7 @@ def test_bad_options_are_one_line(arguments: list[str], said: str) -> None:
 @pytest.mark.parametrize(
     ("head", "span", "said"),
     [
-        ("t, position [mm]\n", 0.15, 'column t must be given with its unit, like "t [s]"'),
+        ("time, position [mm]\n", 0.15, 'column time must be given with its unit, like "time [s]"'),
         (HEAD, 0.004, "a recording must be at least"),
     ],
 )

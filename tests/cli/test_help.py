@@ -123,7 +123,7 @@ def test_the_examples_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -
     """All but `paper`, which takes long, and a studio that is not built; they have other tests."""
     times = [0.25 * i for i in range(200)]
     rows = "".join(f"{t},{2.0 * exp(-0.02 * t) * cos(0.1 * t):.4f}\n" for t in times)
-    Path("pin.csv").write_text(f"t [ms],position [mm]\n{rows}")
+    Path("pin.csv").write_text(f"time [ms],position [mm]\n{rows}")
     assert run("init", "study.toml", "--study").exit_code == 0
     vary = 'base = "device.toml"\n[axes]\ndrive.stiffness = ["200 N/m", "300 N/m"]\n'
     Path("wish.toml").write_text(f'{vary}[goals]\nminimise = "settling_time"\n')

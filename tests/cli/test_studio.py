@@ -49,7 +49,7 @@ def test_the_copy_holds_the_text_of_the_device(page: Path) -> None:
 
 @pytest.mark.usefixtures("page", "in_empty_folder")
 def test_rows_of_csv_files_go_along_and_no_text_ends_the_script() -> None:
-    Path("v.csv").write_text("t [ms], mouse_velocity [mm/s]\n0, 60\n100, 0\n", "utf-8")
+    Path("v.csv").write_text("time [ms], mouse_velocity [mm/s]\n0, 60\n100, 0\n", "utf-8")
     text = GOOD.replace('"100 mm/s"', '"v.csv"') + '[device]\nname = "</script>"\n'
     Path("device.toml").write_text(text, "utf-8")
     found = given(run("studio", "device.toml", "--no-browser").stdout)

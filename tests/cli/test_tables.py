@@ -95,14 +95,12 @@ def test_the_ending_in_words(motion: Motion) -> None:
     place, since = numbers(ending(motion))
     assert place == pytest.approx(1e3 * motion.ending.position, rel=1e-3)
     assert since == pytest.approx(1e3 * motion.transient.rest_time, rel=1e-3)
-    free = simulate(
-        load_device(
-            EXAMPLES / "tactile-mouse.toml", ["damping_ratio=0", "plate.kinetic=0 N"]
-        ).drive,
-        Release(0.06, 2e-3),
-        duration=0.01,
-    )
-    assert ending(free) == "Still moving after 10.00 ms."
+    weak = [f"finger.{name}=1e-9 N" for name in ("kinetic", "static")]
+    undamped = ["damping_ratio=0", "plate.kinetic=0 N", *weak]
+    drive = load_device(EXAMPLES / "tactile-mouse.toml", undamped).drive
+    for duration, said in ((0.01, "10 ms"), (1.5, "1500 ms"), (32.5, "32.5 s")):
+        free = simulate(drive, Release(0.06, 2e-3), duration=duration)
+        assert ending(free) == f"Still moving after {said}."
 
 
 def test_regimes() -> None:

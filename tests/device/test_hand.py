@@ -101,9 +101,9 @@ def test_a_recorded_stroke_is_that_stroke() -> None:
 
 
 HEADINGS = {
-    "t [s], x [mm], y [mm]": (1.0, 1e-3, 1e-3),
-    "t (ms),x (cm),y (m)": (1e-3, 1e-2, 1.0),
-    "T [ms];pressure;Y [mm];X [in]": (1e-3, 0.0254, 1e-3),
+    "time [s], x [mm], y [mm]": (1.0, 1e-3, 1e-3),
+    "time (ms),x (cm),y (m)": (1e-3, 1e-2, 1.0),
+    "Time [ms];pressure;Y [mm];X [in]": (1e-3, 0.0254, 1e-3),
 }
 
 
@@ -114,7 +114,7 @@ def test_csv_in_its_own_units(tmp_path: Path, heading: str) -> None:
     rows = [heading, "# a comment", ""]
     for i in range(50):
         t, x, y = 0.01 * i / ts, 0.05 * (1 - np.cos(pi * i / 50)) / xs, 0.001 / ys
-        cells = {"t": t, "x": x, "y": y, "pressure": 3.0}
+        cells = {"time": t, "x": x, "y": y, "pressure": 3.0}
         names = [part.strip().split(" ")[0].lower() for part in heading.split(apart)]
         rows.append(apart.join(repr(float(cells[name])) for name in names))
     file = tmp_path / "hand.csv"
@@ -126,27 +126,27 @@ def test_csv_in_its_own_units(tmp_path: Path, heading: str) -> None:
 
 
 BAD = {
-    "": 'is empty; a recorded path begins with "t [s], x [mm], y [mm]"',
-    "t, x [mm], y [mm]\n0,0,0\n1,1,1": (
-        'column t must be given with its unit, like "t [s]", got "t"'
+    "": 'is empty; a recorded path begins with "time [s], x [m], y [m]"',
+    "time, x [mm], y [mm]\n0,0,0\n1,1,1": (
+        'column time must be given with its unit, like "time [s]", got "time"'
     ),
-    "t [s], x [kg], y [mm]\n0,0,0\n1,1,1": (
-        'column x must be in m or a unit alike, like "x [mm]", got "x [kg]"'
+    "time [s], x [kg], y [mm]\n0,0,0\n1,1,1": (
+        'column x must be in m or a unit alike, like "x [m]", got "x [kg]"'
     ),
-    "t [s], x [mm]\n0,0\n1,1": (
-        'the header must be like "t [s], x [mm], y [mm]", got "t [s], x [mm]"'
+    "time [s], x [mm]\n0,0\n1,1": (
+        'the header must be like "time [s], x [m], y [m]", got "time [s], x [mm]"'
     ),
-    "t [s], x [mm], y [mm], x [m]\n": "column x must be given once, got it twice",
-    "t [s], x [mm], y [mm]\n0,0,0": "a recorded path must be at least 2 rows, got 1",
-    "t [s], x [mm], y [mm]\n0,0,0\n1,here,0": 'row 3: x must be a number, got "here"',
-    "t [s], x [mm], y [mm]\n0,0,0\n1,1": 'row 3: y must be a number, got ""',
-    "t [s], x [mm], y [mm]\n0,0,0\nnan,1,1": (
-        'row 3: t must be finite and at least -1e6 s and at most 1e6 s, got "nan"'
+    "time [s], x [mm], y [mm], x [m]\n": "column x must be given once, got it twice",
+    "time [s], x [mm], y [mm]\n0,0,0": "a recorded path must be at least 2 rows, got 1",
+    "time [s], x [mm], y [mm]\n0,0,0\n1,here,0": 'row 3: x must be a number, got "here"',
+    "time [s], x [mm], y [mm]\n0,0,0\n1,1": 'row 3: y must be a number, got ""',
+    "time [s], x [mm], y [mm]\n0,0,0\nnan,1,1": (
+        'row 3: time must be finite and at least -1e6 s and at most 1e6 s, got "nan"'
     ),
-    "t [s], x [mm], y [mm]\n0,0,0\n#\n0.1,1,0\n0.1,2,0": (
-        "row 5: t must be greater than the one before, 0.1 s, got 0.1 s"
+    "time [s], x [mm], y [mm]\n0,0,0\n#\n0.1,1,0\n0.1,2,0": (
+        "row 5: time must be greater than the one before, 0.1 s, got 0.1 s"
     ),
-    "t [s], x [mm], y [mm]\n0,0,0\n0.1,1,0\n0.2,30,0": (
+    "time [s], x [mm], y [mm]\n0,0,0\n0.1,1,0\n0.2,30,0": (
         "row 3 must be without a jump of the hand's speed, a change of at most 2 m/s^2, got 2.8 "
         "m/s^2 at 0.1 s, where it moves at 10 mm/s before and 290 mm/s after"
     ),
@@ -165,8 +165,8 @@ def test_bad_records_are_refused(tmp_path: Path, text: str) -> None:
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"none.csv: cannot be read: No such file"):
         read_csv(tmp_path / "none.csv")
-    (tmp_path / "odd.csv").write_bytes(b"t [s]\xff")
-    with pytest.raises(ValueError, match=r"odd.csv: is not UTF-8 text, at byte 5"):
+    (tmp_path / "odd.csv").write_bytes(b"time [s]\xff")
+    with pytest.raises(ValueError, match=r"odd.csv: is not UTF-8 text, at byte 8"):
         read_csv(tmp_path / "odd.csv")
 
 

@@ -197,7 +197,7 @@ def test_a_voltage_stands_in_the_file_or_in_a_csv() -> None:
     rows = 'voltage = [["0 ms", "3 V"], ["4 ms", "0.6 V"]]\n'
     Path("device.toml").write_text(GOOD + coil + rows)
     written = load_device("device.toml")
-    Path("drive.csv").write_text("t [ms], voltage [V]\n0, 3\n4, 0.6\n")
+    Path("drive.csv").write_text("time [ms], voltage [V]\n0, 3\n4, 0.6\n")
     Path("device.toml").write_text(GOOD + coil + 'voltage = "drive.csv"\n')
     read = load_device("device.toml")
     assert read.device.magnet == written.device.magnet

@@ -50,7 +50,7 @@ def write(file: Path, header: str, *columns: Any) -> Path:
 def test_a_raw_recording_of_a_mouse_is_the_hand_that_made_it(tmp_path: Path) -> None:
     """Speeds within 2 % of the peak, which is within 0.3 %; from row to row they are 70 % off."""
     t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     recording = Recording.read(file)
     assert recording.raw()
     assert recording.resolved == pytest.approx(STEP)
@@ -70,7 +70,7 @@ def test_a_mouse_that_rests_reports_nothing_and_stays(tmp_path: Path) -> None:
     t, ways = mouse(truth())
     gap = int(np.argmax(np.diff(t)))
     assert t[gap + 1] - t[gap] > 0.25
-    file = write(tmp_path / "raw.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     path = read_csv(file)
     x, _ = path.position(np.linspace(t[gap] + 0.05, t[gap + 1] - 0.05, 100))
     assert np.ptp(x) < 0.1 * STEP
@@ -78,9 +78,9 @@ def test_a_mouse_that_rests_reports_nothing_and_stays(tmp_path: Path) -> None:
 
 
 FORMS = {
-    "steps since the row before": ("t [s], dx [count], dy [count]", 1.0, True),
-    "places in steps": ("t [ms], x [counts], y [counts]", 1.0, False),
-    "places in millimetres": ("t [s], x [mm], y [mm]", 1e3 * STEP, False),
+    "steps since the row before": ("time [s], dx [count], dy [count]", 1.0, True),
+    "places in steps": ("time [ms], x [counts], y [counts]", 1.0, False),
+    "places in millimetres": ("time [s], x [mm], y [mm]", 1e3 * STEP, False),
 }
 
 
@@ -90,7 +90,7 @@ def test_the_same_hand_however_it_is_written(tmp_path: Path, form: str) -> None:
     t, ways = mouse(truth())
     x = scale * (ways if relative else np.cumsum(ways))
     file = write(tmp_path / "a.csv", header, (1e3 if "[ms]" in header else 1.0) * t, x, 0.0 * x)
-    usual = write(tmp_path / "b.csv", "t [s], x [m], y [m]", t, STEP * np.cumsum(ways), 0.0 * x)
+    usual = write(tmp_path / "b.csv", "time [s], x [m], y [m]", t, STEP * np.cumsum(ways), 0.0 * x)
     one, other = read_csv(file), read_csv(usual)
     at = np.linspace(one.begin, one.end, 777)
     assert_allclose(one.position(at), other.position(at), atol=1e-3 * STEP)
@@ -98,7 +98,7 @@ def test_the_same_hand_however_it_is_written(tmp_path: Path, form: str) -> None:
 
 def test_the_resolution_is_that_of_the_mouse(tmp_path: Path) -> None:
     t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     one, other = read_csv(file), read_csv(file, resolution=400.0 / 0.0254)
     assert other.peak_speed == pytest.approx(2.5 * one.peak_speed, rel=1e-9)
 
@@ -163,7 +163,7 @@ def test_a_smooth_recording_is_followed_as_it_is() -> None:
 
 def test_refusals(tmp_path: Path) -> None:
     t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     with pytest.raises(ValueError) as error:
         read_csv(file, cutoff=300.0)
     assert str(error.value).startswith(
@@ -172,11 +172,13 @@ def test_refusals(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="resolution must be finite and at least 100 1/m"):
         read_csv(file, resolution=0.0)
     ways[len(ways) // 4] = 2000.0  # the mouse was lifted, or a report is wrong
-    file = write(tmp_path / "jump.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "jump.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     with pytest.raises(ValueError, match=r"jump\.csv, smoothed: t\[\d+\] must be without a jump"):
         read_csv(file)
-    file = write(tmp_path / "lone.csv", "t [s], dx [count]", t, ways)
-    with pytest.raises(ValueError, match=r'lone\.csv: the header must be like "t \[s\], x \[mm\]'):
+    file = write(tmp_path / "lone.csv", "time [s], dx [count]", t, ways)
+    with pytest.raises(
+        ValueError, match=r'lone\.csv: the header must be like "time \[s\], x \[m\]'
+    ):
         read_csv(file)
 
 
@@ -192,7 +194,7 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
     t, ways = mouse(truth())
     x = 0.01 / STEP + np.cumsum(ways)
     y = np.full_like(x, 0.004 / STEP)
-    file = write(tmp_path / "raw.csv", "t [s], x [count], y [count]", t, x, y)
+    file = write(tmp_path / "raw.csv", "time [s], x [count], y [count]", t, x, y)
     one, other = pd.scan(device, scene, file).evaluate(), pd.scan(device, scene, truth()).evaluate()
     assert any("beyond the page" in words for words in one.scan.warnings)
     assert one.counts == other.counts
@@ -206,7 +208,7 @@ def test_a_scan_along_a_raw_recording_shows_what_the_hand_itself_does(tmp_path: 
 
 def test_check_says_what_a_recording_is(tmp_path: Path) -> None:
     t, ways = mouse(truth())
-    file = write(tmp_path / "raw.csv", "t [s], dx [count], dy [count]", t, ways, 0.0 * ways)
+    file = write(tmp_path / "raw.csv", "time [s], dx [count], dy [count]", t, ways, 0.0 * ways)
     result = run("check", str(file))
     assert result.exit_code == 0
     recording, path = result.output.splitlines()

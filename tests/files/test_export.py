@@ -10,7 +10,6 @@ import pytest
 
 import pindrive as pd
 from command import EXAMPLE, refused, run
-from pindrive.files.export import heading
 from pindrive.files.output import OutputError
 from pindrive.quantities.results import MOTION, SERIES
 
@@ -35,22 +34,22 @@ def test_a_motion_at_a_rate(rate: float | str) -> None:
     assert sorted(path.name for path in Path().iterdir()) == ["m-events.csv", "m.csv"]
     rows = table("m.csv")
     hertz = 1000.0 if isinstance(rate, str) else rate
-    t = np.array([float(row["time_s"]) for row in rows])
+    t = np.array([float(row["time [s]"]) for row in rows])
     assert np.array_equal(t, np.arange(len(t)) / hertz)
     assert t[-1] <= motion.duration < t[-1] + 1.0 / hertz
     for name in ("position", "velocity", "acceleration"):
-        (column,) = (key for key in rows[0] if key.startswith(f"{name}_m"))
+        (column,) = (key for key in rows[0] if key.startswith(f"{name} ["))
         assert [float(row[column]) for row in rows] == getattr(motion, name)(t).tolist()
-    assert [float(r["plate_force_N"]) for r in rows] == motion.force("plate", t).tolist()
-    assert [float(r["finger_force_N"]) for r in rows] == motion.force("finger", t).tolist()
-    told = [(float(r["time_s"]), r["contact"], r["kind"]) for r in table(events)]
+    assert [float(r["plate_force [N]"]) for r in rows] == motion.force("plate", t).tolist()
+    assert [float(r["finger_force [N]"]) for r in rows] == motion.force("finger", t).tolist()
+    told = [(float(r["time [s]"]), r["contact"], r["kind"]) for r in table(events)]
     assert told == [(e.time, e.contact, e.kind) for e in motion.events]
 
 
 def test_the_last_sample_of_a_whole_count_is_there() -> None:
     motion = pd.simulate(DRIVE, pd.Release(0.1, 1.5e-3), duration=0.3)
     motion.to_csv("m.csv", rate=10.0)
-    assert [row["time_s"] for row in table("m.csv")] == ["0.0", "0.1", "0.2", "0.3"]
+    assert [row["time [s]"] for row in table("m.csv")] == ["0.0", "0.1", "0.2", "0.3"]
 
 
 def test_a_scan_at_a_rate() -> None:
@@ -60,19 +59,21 @@ def test_a_scan_at_a_rate() -> None:
     rows = table("s.csv")
     for pin in scan.pins:
         own = [row for row in rows if row["pin"] == str(pin.number)]
-        t = np.array([float(row["time_s"]) for row in own])
+        t = np.array([float(row["time [s]"]) for row in own])
         assert np.array_equal(t, scan.path.begin + np.arange(len(t)) / 500.0)
         assert t[-1] <= scan.path.end < t[-1] + 0.002 + 1e-12
         since = pin.since(t)
         motion = pin.motion
-        assert [float(r["position_m"]) for r in own] == motion.position(since).tolist()
-        assert [float(r["velocity_m_per_s"]) for r in own] == motion.velocity(since).tolist()
-        found = [float(r["acceleration_m_per_s2"]) for r in own]
+        assert [float(r["position [m]"]) for r in own] == motion.position(since).tolist()
+        assert [float(r["velocity [m/s]"]) for r in own] == motion.velocity(since).tolist()
+        found = [float(r["acceleration [m/s^2]"]) for r in own]
         assert found == motion.acceleration(since).tolist()
         for contact in ("plate", "finger"):
-            forces = [float(r[f"{contact}_force_N"]) for r in own]
+            forces = [float(r[f"{contact}_force [N]"]) for r in own]
             assert forces == motion.force(contact, since).tolist()
-        events = [float(r["time_s"]) for r in table("s-events.csv") if r["pin"] == str(pin.number)]
+        events = [
+            float(r["time [s]"]) for r in table("s-events.csv") if r["pin"] == str(pin.number)
+        ]
         assert events == [e.time for e in pin.events]
 
 
@@ -139,7 +140,7 @@ def test_columns_are_those_of_the_table_on_every_face() -> None:
     for name in over_time:
         assert data[name].attrs == SERIES[name].attributes
     motion.to_csv("m.csv")
-    assert [*table("m.csv")[0]] == [heading(quantity.name) for quantity in MOTION]
+    assert [*table("m.csv")[0]] == [quantity.heading for quantity in MOTION]
 
 
 def test_columns_of_a_scan_are_those_of_the_table() -> None:
@@ -148,12 +149,12 @@ def test_columns_of_a_scan_are_those_of_the_table() -> None:
     scan = pd.scan(device, pd.Page(grating=[0.004]))
     scan.to_csv("s.csv", rate=100.0)
     rows = table("s.csv")
-    data = scan.to_dataset([float(row["time_s"]) for row in rows])
+    data = scan.to_dataset([float(row["time [s]"]) for row in rows])
     over_time = {str(name) for name, column in data.variables.items() if "time" in column.dims}
     assert over_time == {*SERIES} - {"warming", "stop_force"}  # of a coil's temperature; of stops
     for name in over_time - {"time"}:
         assert data[name].attrs == SERIES[name].attributes
     for quantity in MOTION:
         if quantity.name in data:
-            column = np.array([float(row[heading(quantity.name)]) for row in rows])
+            column = np.array([float(row[quantity.heading]) for row in rows])
             assert np.array_equal(column, data[quantity.name].values.ravel()), quantity.name

@@ -22,6 +22,7 @@ from pindrive.files.output import (
     check_outputs,
     write_files,
 )
+from pindrive.quantities.results import MOTION
 from scan_studies import DEVICE
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -29,7 +30,7 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 STUDY = (
     f'base = "{EXAMPLE.as_posix()}"\n[axes]\nmass = ["9 g", "10 g"]\n[tolerances]\nmass = "1 %"\n'
 )
-HAND = "t [s],x [mm],y [mm]\n" + "".join(f"{0.01 * i:g},{i:g},0\n" for i in range(40))
+HAND = "time [s],x [mm],y [mm]\n" + "".join(f"{0.01 * i:g},{i:g},0\n" for i in range(40))
 SCAN = ("scan", "reader.toml", "--grating", "4 mm")
 SPEED = ("speed", "reader.toml", "--pitch", "4 mm", "--fastest", "50 mm/s", "--slowest", "45 mm/s")
 COMMANDS = {
@@ -74,7 +75,7 @@ def foreign(name: str) -> bytes:
     if name.endswith(".nc"):
         xr.Dataset({"a": 1.0}).to_netcdf(name, engine="h5netcdf")
     else:
-        Path(name).write_text("t [s],x [mm],y [mm]\n0,1,2\n")
+        Path(name).write_text("time [s],x [mm],y [mm]\n0,1,2\n")
     return Path(name).read_bytes()
 
 
@@ -260,7 +261,7 @@ def test_a_file_that_cannot_be_read_is_not_replaced(monkeypatch: pytest.MonkeyPa
     def unreadable(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    Path("a.csv").write_text("time_s,position_m,\n")
+    Path("a.csv").write_text(",".join(quantity.heading for quantity in MOTION))
     monkeypatch.setattr("pindrive.files.output._head", unreadable)
     with pytest.raises(OutputError, match=r"a\.csv: is there, and cannot be read: Permission"):
         check_outputs([Output(Path("a.csv"), MOTION_CSV, "--csv")])

@@ -39,9 +39,9 @@ def csv(name: str, text: str) -> Path:
 def test_a_csv_is_the_rows_that_it_holds() -> None:
     csv(
         "in/speed.csv",
-        "# recorded\nt [ms]; mouse_velocity [mm/s]; note\n0;60;a\n\n40;60;b\n90;0;c\n",
+        "# recorded\ntime [ms]; mouse_velocity [mm/s]; note\n0;60;a\n\n40;60;b\n90;0;c\n",
     )
-    csv("in/load.csv", "t [s], plate_load [%]\n0, 500\n0.005, 100\n0.005, 50\n")
+    csv("in/load.csv", "time [s], plate_load [%]\n0, 500\n0.005, 100\n0.005, 50\n")
     path = device(SPEED, 'mouse_velocity = "speed.csv"\nplate_load = "load.csv"', "in/device.toml")
     found, rows = load_device(path).release, ((0.0, 0.06), (0.04, 0.06), (0.09, 0.0))
     assert found.mouse_velocity.rows == rows  # type: ignore[union-attr]
@@ -54,7 +54,7 @@ def test_a_csv_is_the_rows_that_it_holds() -> None:
 
 
 def test_on_the_command_line_a_path_is_relative_to_the_current_folder() -> None:
-    csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,60\n90,0\n")
+    csv("speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,60\n90,0\n")
     device(SPEED, SPEED, "in/device.toml")
     given = run("simulate", "in/device.toml", "--set", "mouse_velocity=speed.csv")
     rows = '[["0 ms", "60 mm/s"], ["40 ms", "60 mm/s"], ["90 ms", "0 mm/s"]]'
@@ -66,7 +66,7 @@ def test_on_the_command_line_a_path_is_relative_to_the_current_folder() -> None:
 
 
 def test_in_a_study_a_path_is_relative_to_its_file() -> None:
-    csv("studies/speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,60\n90,0\n")
+    csv("studies/speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,60\n90,0\n")
     device(SPEED, SPEED, "device.toml")
     text = 'base = "../device.toml"\n[set]\nmouse_velocity = "speed.csv"\n[axes]\nmass = ["8 g"]\n'
     csv("studies/study.toml", text)
@@ -83,7 +83,7 @@ def test_a_recorded_hand_gives_the_speed_along_the_drive_axis() -> None:
     rows = "\n".join(
         f"{a:.9f},{b:.12f},{c:.12f}" for a, b, c in zip(t, *true.position(t), strict=True)
     )
-    csv("hand.csv", f"t [s], x [m], y [m]\n{rows}\n")
+    csv("hand.csv", f"time [s], x [m], y [m]\n{rows}\n")
     plain = load_device(device(SPEED, 'mouse_velocity = "hand.csv"')).release.mouse_velocity
     assert max(plain.values) == pytest.approx(0.06, rel=1e-3)  # type: ignore[union-attr]
     turned = load_device("device.toml", {"axis": np.arctan2(4.0, 3.0)}).release.mouse_velocity
@@ -95,7 +95,7 @@ def test_a_raw_recording_is_smoothed_and_the_output_says_so() -> None:
     t = np.arange(0.0, true.end, 1e-3)
     counts = np.floor(true.position(t)[0] / 25.4e-6).astype(int)
     rows = "\n".join(f"{a:.6f},{b},0" for a, b in zip(t, counts, strict=True))
-    csv("raw.csv", f"t [s], x [count], y [count]\n{rows}\n")
+    csv("raw.csv", f"time [s], x [count], y [count]\n{rows}\n")
     path = device(SPEED, 'mouse_velocity = "raw.csv"')
     smooth = load_device(path).release.mouse_velocity
     assert max(smooth.values) == pytest.approx(0.0625, rel=3e-3)  # type: ignore[union-attr]
@@ -112,8 +112,8 @@ def test_a_raw_recording_is_smoothed_and_the_output_says_so() -> None:
 
 
 def test_check_reads_every_csv_that_a_file_names_and_changes_none() -> None:
-    csv("load.csv", "t [ms], plate_load\n0,5\n5,-1\n")
-    csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,slow\n")
+    csv("load.csv", "time [ms], plate_load\n0,5\n5,-1\n")
+    csv("speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,slow\n")
     path = device(SPEED, 'mouse_velocity = "speed.csv"\nplate_load = "load.csv"')
     before = {file: file.read_bytes() for file in Path().iterdir()}
     said = run("check", str(path))
@@ -127,7 +127,7 @@ def test_check_reads_every_csv_that_a_file_names_and_changes_none() -> None:
 
 
 def test_a_finger_that_lifts_is_a_csv_rows_or_set() -> None:
-    csv("lift.csv", "t [ms], finger_load [%]\n0, 100\n20, 100\n40, 0\n")
+    csv("lift.csv", "time [ms], finger_load [%]\n0, 100\n20, 100\n40, 0\n")
     path = device(SPEED, f'{SPEED}\nfinger_load = "lift.csv"')
     rows = ((0.0, 1.0), (0.02, 1.0), (0.04, 0.0))
     assert load_device(path).release.finger_load.rows == rows  # type: ignore[union-attr]
@@ -146,41 +146,43 @@ def test_a_finger_that_lifts_is_a_csv_rows_or_set() -> None:
 
 
 def test_check_says_what_a_csv_of_rows_holds() -> None:
-    csv("speed.csv", "t [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
+    csv("speed.csv", "time [ms], mouse_velocity [mm/s]\n0,60\n40,-10\n90,0\n")
     said = run("check", "speed.csv").stdout
-    assert said == "mouse_velocity: 3 rows over 90.00 ms, from -10.00 mm/s to 60.00 mm/s.\n"
-    csv("speed.csv", "t [ms], mouse_velocity [mm]\n0,60\n")
+    assert said == "mouse_velocity: 3 rows over 90 ms, from -10.00 mm/s to 60.00 mm/s.\n"
+    csv("speed.csv", "time [ms], mouse_velocity [mm]\n0,60\n")
     assert "column mouse_velocity must be in m/s" in run("check", "speed.csv").stderr
-    csv("load.csv", "t [ms], plate_load\n0,5\n")
+    csv("load.csv", "time [ms], plate_load\n0,5\n")
     said = run("check", "load.csv").stdout
     assert said == "plate_load: 1 row over 0 ms, from 5.000 to 5.000.\n"
 
 
 REFUSALS = {
-    "t [s], speed [m/s]\n0,1\n": (
-        'the header must be like "t [s], mouse_velocity [mm/s]", or "t [s], x [mm], y [mm]" of a '
-        'recorded hand, got "t [s], speed [m/s]"'
+    "time [s], speed [m/s]\n0,1\n": (
+        'the header must be like "time [s], mouse_velocity [m/s]", or "time [s], x [m], y [m]" of '
+        'a recorded hand, got "time [s], speed [m/s]"'
     ),
-    "t [s], mouse_velocity\n0,1\n": (
-        'column mouse_velocity must be given with its unit, like "mouse_velocity [mm/s]", got '
+    "time [s], mouse_velocity\n0,1\n": (
+        'column mouse_velocity must be given with its unit, like "mouse_velocity [m/s]", got '
         '"mouse_velocity"'
     ),
-    "t [s], mouse_velocity [mm]\n0,1\n": (
-        'column mouse_velocity must be in m/s or a unit alike, like "mouse_velocity [mm/s]", got '
+    "time [s], mouse_velocity [mm]\n0,1\n": (
+        'column mouse_velocity must be in m/s or a unit alike, like "mouse_velocity [m/s]", got '
         '"mouse_velocity [mm]"'
     ),
-    "t [s], mouse_velocity [m/s]\n\n0,1\n1,x\n": 'row 4: mouse_velocity must be a number, got "x"',
-    "t [s], mouse_velocity [m/s]\n0,1\n#\n0.5,1\n0.5,2\n": (
-        "row 5: t must be greater than the one before, 0.5 s (a jump would take an infinite "
+    "time [s], mouse_velocity [m/s]\n\n0,1\n1,x\n": (
+        'row 4: mouse_velocity must be a number, got "x"'
+    ),
+    "time [s], mouse_velocity [m/s]\n0,1\n#\n0.5,1\n0.5,2\n": (
+        "row 5: time must be greater than the one before, 0.5 s (a jump would take an infinite "
         "force), got 0.5 s"
     ),
-    "t [s], mouse_velocity [m/s]\n0,1\n1,1e13\n": (
+    "time [s], mouse_velocity [m/s]\n0,1\n1,1e13\n": (
         "row 3: mouse_velocity must be finite and at least -1e12 m/s and at most 1e12 m/s, got "
         '"1e13"'
     ),
-    "t [s], mouse_velocity [m/s]\n": "a CSV of mouse_velocity must be at least 1 row, got 0",
-    "": 'is empty; a CSV of mouse_velocity begins with "t [s], mouse_velocity [mm/s]"',
-    "t [s], x [mm], y [mm]\n0,0,0\n0.1,1,0\n0.2,400,0": "row 3 must be without a jump",
+    "time [s], mouse_velocity [m/s]\n": "a CSV of mouse_velocity must be at least 1 row, got 0",
+    "": 'is empty; a CSV of mouse_velocity begins with "time [s], mouse_velocity [m/s]"',
+    "time [s], x [mm], y [mm]\n0,0,0\n0.1,1,0\n0.2,400,0": "row 3 must be without a jump",
 }
 
 
@@ -203,7 +205,7 @@ def test_a_missing_file_is_said_beside_what_else_is_wrong() -> None:
 
 
 def test_an_input_is_not_written_over() -> None:
-    text = "t [ms], mouse_velocity [mm/s]\n0,60\n"
+    text = "time [ms], mouse_velocity [mm/s]\n0,60\n"
     csv("speed.csv", text)
     path = device(SPEED, 'mouse_velocity = "speed.csv"')
     said = refused("simulate", str(path), "--csv", "speed.csv")

@@ -270,7 +270,7 @@ def test_other_scenes_and_paths(device: Path) -> None:
     assert run("scan", device, "--grating", "4 mm, 2 mm").exit_code == 0
     assert run("scan", device, "--text", "A\\nB").exit_code == 0
     rows = [f"{0.01 * i},{10 + 0.3 * i},10" for i in range(31)]
-    Path("hand.csv").write_text("\n".join(["t [s], x [mm], y [mm]", *rows]))
+    Path("hand.csv").write_text("\n".join(["time [s], x [mm], y [mm]", *rows]))
     result = run("scan", device, "--image", "p.png", "--set", "pixel=0.1 mm", "--path", "hand.csv")
     assert result.exit_code == 0
     assert "The hand's path takes 0.3 s, at 30.00 mm/s at the most" in result.stdout

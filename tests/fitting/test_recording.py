@@ -10,7 +10,7 @@ import pytest
 from pindrive import Profile, Recording, read_recording
 
 ROWS = "".join(f"{i},{2 - 0.1 * i:g},60\n" for i in range(20))
-HEAD = "t [ms], position [mm], mouse_velocity [mm/s]\n"
+HEAD = "time [ms], position [mm], mouse_velocity [mm/s]\n"
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -38,7 +38,7 @@ def test_columns_are_read_in_si_and_a_constant_input_is_one_number(tmp_path: Pat
 
 
 def test_all_channels_and_another_order_and_separator(tmp_path: Path) -> None:
-    text = "force (mN);acceleration (m/s^2);velocity (mm/s);t (us)\n"
+    text = "force (mN);acceleration (m/s^2);velocity (mm/s);time (us)\n"
     text += "".join(f"{i};{2 * i};{3 * i};{10 * i}\n" for i in range(1, 101))
     found = read_recording(written(tmp_path, text))
     assert found.interval == pytest.approx(1e-5)  # 100 kHz
@@ -74,20 +74,29 @@ def test_a_window_keeps_the_times() -> None:
     ("text", "said"),
     [
         (
-            "t [s], position\n" + ROWS,
-            'column position must be given with its unit, like "position [mm]"',
+            "time [s], position\n" + ROWS,
+            'column position must be given with its unit, like "position [m]"',
         ),
-        ("t, position [mm]\n" + ROWS, 'column t must be given with its unit, like "t [s]"'),
-        ("t [s], position [mN]\n" + ROWS, "column position must be in m or a unit alike, like"),
-        ("t [s], place [mm]\n" + ROWS, "the header must be with t and at least one of position"),
-        (HEAD + ROWS + "3,1,60\n", "row 22: t must be greater than the one before, 0.019 s; sort"),
+        (
+            "time, position [mm]\n" + ROWS,
+            'column time must be given with its unit, like "time [s]"',
+        ),
+        ("time [s], position [mN]\n" + ROWS, "column position must be in m or a unit alike, like"),
+        (
+            "time [s], place [mm]\n" + ROWS,
+            "the header must be with time and at least one of position",
+        ),
+        (
+            HEAD + ROWS + "3,1,60\n",
+            "row 22: time must be greater than the one before, 0.019 s; sort",
+        ),
         (HEAD + ROWS.replace("1.9,", "x,"), 'row 3: position must be a number, got "x"'),
         (HEAD + "0,0,60\n1,1,60\n", "a recording must be at least 8 rows, got 2"),
         (
             HEAD + "".join(f"{i},0,60\n" for i in range(20)),
             "position must be other than zero somewhere; check the sensor and the heading",
         ),
-        ("", 'is empty; a recording begins with "t [s], position [mm]"'),
+        ("", 'is empty; a recording begins with "time [s], position [m]"'),
     ],
 )
 def test_what_is_wrong_is_one_line_with_the_fix(tmp_path: Path, text: str, said: str) -> None:

@@ -121,7 +121,7 @@ def test_what_contradicts_itself_is_refused_in_a_line(wish: dict[str, Any], said
 CATALOGUES = {
     "springs.csv": (
         "part,price\nA,1\n",
-        "{file}: the header must have a column part and one for each key that a part sets, like "
+        "{file}: the header must be with part and a column for each key that a part sets, like "
         '"part, drive.stiffness [N/m], price", got "part, price"',
     ),
     "none.csv": (

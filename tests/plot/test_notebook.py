@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
+from inspect import isfunction, signature
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import numpy as np
@@ -13,6 +16,7 @@ import pindrive as pd
 from command import EXAMPLE
 from notebook_reading import Parts, check_faces
 from pindrive.quantities.quantity import significant
+from pindrive.study.runner import sweep
 from recordings import RELEASE, START, recorded
 
 
@@ -26,8 +30,8 @@ def motion() -> pd.Motion:
 
 
 @pytest.fixture(scope="module")
-def results(motion: pd.Motion) -> dict[str, Any]:
-    device = pd.load_device(EXAMPLE)
+def results(motion: pd.Motion, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    device, file = pd.load_device(EXAMPLE), tmp_path_factory.mktemp("sweep") / "masses.nc"
     study = pd.Study(device, tolerances={"mass": {"uniform": ["9 g", "11 g"]}}, name="<b>&")
     reader = pd.load_device(READER, ["array.columns=2", "array.rows=1"])
     scan = pd.scan(reader, pd.Page(grating=[0.008]))
@@ -41,6 +45,7 @@ def results(motion: pd.Motion) -> dict[str, Any]:
         "sobol": pd.sobol(study, rows=128),
         "fit": pd.fit(recorded(rate=1e3), START, RELEASE, free=["damping"], profiles=False),
         "friction curve": pd.fit_friction(SPEEDS, 0.02 + 0.1 * SPEEDS),
+        "sweep": sweep(pd.Study(device, axes={"mass": ["9 g", "10 g", "11 g"]}), file),
     }
 
 
@@ -50,8 +55,18 @@ SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
 RESULTS = (
     *("motion", "sensitivity", "scan", "judgement", "robustness", "local sensitivity", "sobol"),
-    *("fit", "friction curve"),
+    *("fit", "friction curve", "sweep"),
 )
+
+
+PUBLIC = [
+    "pindrive",
+    *(f"pindrive.{part.name}" for part in iter_modules(pd.__path__) if part.ispkg),
+]
+NO_RESULTS = {
+    *("DeviceFile", "Study", "Wish", "Recording", "HandPath"),  # they are given to what computes
+    *("xr.Dataset", "Array", "NDArray[np.bool_]", "tuple[Array, Array]", "float"),
+}
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -64,6 +79,27 @@ def test_no_result_is_left_out(results: dict[str, Any]) -> None:
     found = {name for p in (ROOT / "src").rglob("*.py") for name in MADE.findall(p.read_text())}
     seen = {type(result).__name__ for result in results.values()}
     assert found == seen | {"Design", "ModelComparison", "SpeedLimits"}
+    public = (
+        getattr(package, name) for package in map(import_module, PUBLIC) for name in dir(package)
+    )
+    returned = {
+        signature(function).return_annotation for function in public if isfunction(function)
+    }
+    assert returned <= found | NO_RESULTS
+
+
+def test_a_sweep_that_was_stopped_says_so_and_is_not_drawn(tmp_path: Path) -> None:
+    text = f'base = "{EXAMPLE.as_posix()}"\nchunk = 1\n[axes]\nmass = ["9 g", "10 g", "11 g"]\n'
+    (tmp_path / "study.toml").write_text(text)
+    study = pd.load_study(tmp_path / "study.toml")
+    done = sweep(study, tmp_path / "masses.nc", stop_after=2)
+    assert repr(done) == "<Sweep masses.nc.partial of 2 points, incomplete>"
+    with pytest.raises(ValueError, match=r"masses\.nc\.partial: is not finished; `pindrive sweep"):
+        done.plot()
+    done = sweep(study, tmp_path / "masses.nc", resume=True)
+    assert repr(done) == "<Sweep masses.nc of 3 points, ok>"
+    with done.to_dataset() as data:
+        assert data.mass.values.tolist() == [0.009, 0.01, 0.011]
 
 
 def test_the_table_has_the_numbers_in_the_units_that_a_person_reads(motion: pd.Motion) -> None:

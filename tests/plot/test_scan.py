@@ -303,6 +303,22 @@ def test_a_blank_page_is_drawn() -> None:
     save(figure, io.BytesIO(), "png")
 
 
+@pytest.mark.parametrize(
+    ("velocity", "start", "where"),
+    [
+        (0.02, 0.02, "along the thick line"),
+        (0.0, 0.02, "at the dot"),
+        (0.0, 0.2, "beyond the page"),
+    ],
+)
+def test_the_history_says_where_it_takes_place(velocity: float, start: float, where: str) -> None:
+    page = Scene(np.ones((60, 500)), 1e-4)
+    path = HandPath([0.0, 1.0], [velocity] * 2, [0.0, 0.0], (start, 0.003))
+    figure = plot_scan(judge(scan(Device(drive=DRIVE), page, path)))
+    expected = f"pin from 0.000 s on, {where}" + ("" if where.endswith("page") else " above")
+    assert panel(figure, "seen").get_title(loc="left") == expected
+
+
 def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
     plot, table = tmp_path / "a.svg", tmp_path / "lines.csv"
     command = ["scan", str(MINIMAL), "--grating", "3 mm", "--set", "array.columns=2"]
@@ -319,9 +335,9 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
     assert {row["pin"] for row in rows} == {"0", "1"}
     for row in rows:
         assert row["fate"] == "shown"
-        latency, lag = float(row["latency_on [s]"]), float(row["lag_on [m]"])
+        latency, lag = float(row["line_latency_on [s]"]), float(row["line_lag_on [m]"])
         assert 0.0 < lag <= latency * 0.0601
-        smear = row["smear [m]"]
+        smear = row["line_smear [m]"]
         assert not smear or not isnan(float(smear))
     dull = CliRunner().invoke(app, [*command, "--set", "judge.felt=9 mm"])
     assert "0 shown, 8 missed" in dull.output

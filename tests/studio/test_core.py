@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from pindrive import simulate
+from command import EXAMPLE, SKIN
+from pindrive import load_device, simulate
 from pindrive.fitting.recording import read_recording
+from pindrive.motion.simulate import motion_of
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.units import UnitError, to_si
 from studio_cases import Ask, compare, doubles, questions
 
@@ -47,16 +53,16 @@ def test_text_with_units_is_the_number_that_python_reads(node: Ask) -> None:
 
 # ---- recordings ----------------------------------------------------------------------------------
 
-HEAD = "t [ms], position [mm], velocity [mm/s]\n"
+HEAD = "time [ms], position [mm], velocity [mm/s]\n"
 ROWS = "".join(f"{i}, {np.sin(i / 5):.6f}, {10 * np.cos(i / 5):.6f}\n" for i in range(20))
 RECORDINGS = [
     HEAD + ROWS,
     "# a bench\n\n" + (HEAD + ROWS).replace(", ", ";"),
     "",
     "t, position [mm]\n" + ROWS,
-    "t [s], place [mm]\n" + ROWS,
-    "t [s], position [kg]\n" + ROWS,
-    "t [s], position [mm], position [m]\n" + ROWS,
+    "time [s], place [mm]\n" + ROWS,
+    "time [s], position [kg]\n" + ROWS,
+    "time [s], position [mm], position [m]\n" + ROWS,
     HEAD + "1, 2, 3\n",
     HEAD + ROWS.replace("\n5, ", "\n3, "),
     HEAD + ROWS.replace("\n5, ", "\nfive, "),
@@ -77,3 +83,35 @@ def test_recordings_are_read_as_python_reads_them(node: Ask, tmp_path: Path) -> 
             np.testing.assert_array_equal(doubles(found["times"]), expected.time)
             for name, channel in expected.channels.items():
                 np.testing.assert_array_equal(doubles(found["channels"][name]), channel)
+
+
+@pytest.mark.parametrize("device", [EXAMPLE, SKIN])
+def test_what_the_page_writes_is_read_as_what_python_writes(
+    node: Ask, device: Path, tmp_path: Path
+) -> None:
+    """Columns by name and unit, numbers to rounding, and the recording that both are."""
+    motion = motion_of(load_device(device))
+    text = base64.b64encode(device.read_bytes()).decode()
+    (found,) = node([{"device": text, "file": device.name, "csv": True}])
+    here, events_here = tmp_path / "here.csv", motion.to_csv(tmp_path / "here.csv", rate="1 kHz")
+    page, events_page = tmp_path / "page.csv", tmp_path / "page-events.csv"
+    page.write_text(found["samples"], "utf-8")
+    events_page.write_text(found["events"], "utf-8")
+    samples = CsvTable.read(page, "samples", "")
+    headings = CsvTable.read(here, "samples", "").headings
+    assert samples.headings == tuple(h for h in headings if h != "plate_velocity [m/s]")
+    time = np.array(samples.column("time", SERIES["time"]))
+    for name, values in motion.columns(time).items():
+        np.testing.assert_allclose(
+            samples.column(name, SERIES[name]), values, rtol=1e-9, atol=1e-12
+        )
+    one, other = (CsvTable.read(path, "events", "") for path in (events_page, events_here))
+    assert one.headings == other.headings
+    for name in ("contact", "kind"):
+        assert one.text(name) == other.text(name)
+    for name in ("time", "position", "velocity"):
+        there = one.column(name, SERIES[name])
+        np.testing.assert_allclose(there, other.column(name, SERIES[name]), rtol=1e-9, atol=1e-12)
+    assert [*read_recording(page).channels] == [*read_recording(here).channels]
+    (again,) = node([{"recording": here.read_text("utf-8"), "file": "here.csv"}])
+    np.testing.assert_array_equal(doubles(again["times"]), read_recording(here).time)

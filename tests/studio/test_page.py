@@ -17,6 +17,8 @@ from command import EXAMPLE, EXAMPLES, SKIN, run
 from pindrive.files.keys import template
 from pindrive.fitting.recording import read_recording
 from pindrive.motion.simulate import motion_of
+from pindrive.quantities.csv_table import CsvTable
+from pindrive.quantities.results import SERIES
 from studio_cases import NAMES, Ask, questions
 from studio_page import (
     VALUES,
@@ -167,8 +169,8 @@ def test_every_file_goes_out_and_in_again(
     np.testing.assert_allclose(recording.channels["position"], expected, rtol=0, atol=1e-17)
     opened(page, csv)
     assert page.evaluate("pindrive.page.view.overlay.recording.times.length") == len(recording.time)
-    events = saved(page, "events", tmp_path).read_text("utf-8").splitlines()
-    times = [float(row.split(",")[0]) for row in events[1:]]
+    events = CsvTable.read(saved(page, "events", tmp_path), "events", "")
+    times = events.column("time", SERIES["time"])
     assert times == pytest.approx([event.time for event in motion.events], rel=1e-14)
     svg = ET.fromstring(saved(page, "svg", tmp_path).read_text("utf-8"))
     drawn = {g.get("data-quantity") for g in svg.iter("{http://www.w3.org/2000/svg}g")}
@@ -216,7 +218,7 @@ def test_a_recording_is_dropped_and_shifted_by_hand(page: Any) -> None:
         """() => {
           const rows = Array.from({length: 20}, (_, i) => `${i},${Math.cos(i / 3)}`).join("\\n");
           const data = new DataTransfer();
-          data.items.add(new File([`t [ms],position [mm]\\n${rows}\\n`], "dropped.csv"));
+          data.items.add(new File([`time [ms],position [mm]\\n${rows}\\n`], "dropped.csv"));
           document.body.dispatchEvent(new DragEvent("drop", {dataTransfer: data, bubbles: true}));
         }"""
     )
@@ -334,7 +336,7 @@ def recorded(path: Path, rows: int, offset: float, **drive: Any) -> None:
         np.column_stack([1e3 * t, 1e3 * x]),
         "%.9g",
         ",",
-        header="t [ms],position [mm]",
+        header="time [ms],position [mm]",
         comments="",
     )
 

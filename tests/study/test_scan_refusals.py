@@ -36,7 +36,7 @@ WRONG = {
     (
         AXES,
         '[page]\ngrating = ["4 mm"]\npath = "study.toml"\n',
-    ): 'page: study.toml: the header must be like "t [s], x [mm], y [mm]"',
+    ): 'page: study.toml: the header must be like "time [s], x [m], y [m]"',
     (AXES, GRATING + 'font = "a.ttf"\n'): "page.font a.ttf: goes with page.text alone",
     ('[axes]\nmouse_velocity = ["1 mm/s"]\n', GRATING): "axes: motion.mouse_velocity has no part "
     "in a scan, in which the hand moves the mouse; leave out [page] to vary it",

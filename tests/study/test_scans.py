@@ -351,7 +351,7 @@ def test_the_identity_holds_the_page() -> None:
     assert study(axes, GRATING.replace("4 mm", "3 mm")).identity() != grating
     assert study(axes, device=DEVICE + "[judge]\necho = 0.6\n").identity() != grating
     assert study(axes, '[page]\ntext = "4"\n').identity() != grating
-    Path("hand.csv").write_text("t [s], x [mm], y [mm]\n0, 2, 2\n1, 18, 2\n")
+    Path("hand.csv").write_text("time [s], x [mm], y [mm]\n0, 2, 2\n1, 18, 2\n")
     page = '[page]\nimage = "page.png"\npath = "hand.csv"\n'
     picture("page.png", slice(80, 100))
     before = study(axes, page).identity()
@@ -359,7 +359,7 @@ def test_the_identity_holds_the_page() -> None:
     assert study(axes, page).identity() != before
     picture("page.png", slice(80, 100))
     assert study(axes, page).identity() == before
-    Path("hand.csv").write_text("t [s], x [mm], y [mm]\n0, 2, 2\n1, 17, 2\n")
+    Path("hand.csv").write_text("time [s], x [mm], y [mm]\n0, 2, 2\n1, 17, 2\n")
     assert study(axes, page).identity() != before
 
 

@@ -239,7 +239,7 @@ def test_an_evaluation_is_data() -> None:
     for i, line in enumerate(told.lines):
         assert int(data.pin[i]) == line.pin
         assert str(data.fate[i].item()) == line.fate
-        assert float(data.time_end[i]) == line.end.time
+        assert float(data.end_time[i]) == line.end.time
         for name, value in line.numbers.items():
             assert_array_equal(data[name.replace(".", "_")][i], value)
     assert int(data.judged_shown) == len(told.shown)

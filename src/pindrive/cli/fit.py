@@ -65,9 +65,9 @@ def fit(
 ) -> None:
     """Fit a device to recordings of its pin, and say what they cannot tell.
 
-    A recording has columns t and position, velocity, acceleration or force, and mouse_velocity and
-    plate_load where they change, such as "t [s], position [mm]". What may be fitted: the keys of a
-    drive and its motion, time_offset, and position_offset or that of another channel.
+    A recording has columns time and position, velocity, acceleration or force, and mouse_velocity
+    and plate_load where they change, such as "time [s], position [m]". What may be fitted: the
+    keys of a drive and its motion, time_offset, and position_offset or that of another channel.
     """
     from contextlib import ExitStack
 

@@ -9,8 +9,8 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from pindrive.cli.tables import new_table
-from pindrive.fitting.recording import CHANNELS
-from pindrive.quantities.quantity import DISPLAY, significant
+from pindrive.quantities.quantity import significant
+from pindrive.quantities.results import CHANNELS
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -53,14 +53,13 @@ def _noise(found: Fit) -> Table:
     )
     table = new_table("What is left", *heads)
     for left in found.residuals:
-        unit = CHANNELS[left.channel][0]
-        unit, scale = DISPLAY.get(unit, (unit, 1.0))
+        channel = CHANNELS[left.channel]
         table.add_row(
             found.recordings[left.recording].name,
             left.channel,
             str(left.count),
-            significant(left.noise * scale, 3) + (" given" if left.known else ""),
-            unit,
+            significant(left.noise * channel.display_scale, 3) + (" given" if left.known else ""),
+            channel.display_unit,
             f"{left.runs:.2g}",
             f"{left.ljung_box:.2g}",
             "structure" if left.structured else "noise",

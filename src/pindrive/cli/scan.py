@@ -44,7 +44,7 @@ def scan(
         Path | None, option(PAGE, "Font of the text; DejaVu Sans if none.", metavar="FILE")
     ] = None,
     path: Annotated[
-        str, option(PAGE, "How the hand moves: a CSV of t [s], x, y.", metavar="strokes|FILE")
+        str, option(PAGE, "How the hand moves: a CSV of time, x, y.", metavar="strokes|FILE")
     ] = STROKES,
     plot: PlotOption = None,
     pin: Annotated[
@@ -127,10 +127,10 @@ def scan(
                 export.write_scan_csv(done, parts[csv], times)
                 export.write_scan_events(done, parts[export.events_path(csv)])
         if lines:
-            from pindrive.cli.scan_tables import write_lines
+            from pindrive.files.export import write_lines
 
             with naming(lines):
-                write_lines(judgement, parts[lines])
+                write_lines(judgement.columns(), parts[lines])
         if plot:
             from pindrive.plot.scan import plot_scan
 

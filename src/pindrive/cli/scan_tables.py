@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 from math import isnan, nan
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from rich.console import Group, RenderableType
 
@@ -44,7 +42,6 @@ COUNTED: Final = (
     *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
 )
 """The counts in the order in which they are told: what was shown, what was missed, what was not."""
-PLACES: Final = ("begin_time", "begin_x", "begin_y", "end_time", "end_x", "end_y")
 
 
 def scan_report(scan: Scan) -> RenderableType:
@@ -163,24 +160,6 @@ def verdict_words(judgement: Judgement) -> list[str]:
 
 def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
-
-
-def write_lines(judgement: Judgement, file: Path) -> None:
-    """Each line under each pin, a row each, SI, with units in the header."""
-    with file.open("w", newline="", encoding="utf-8") as target:
-        writer = csv.writer(target)
-        names = [quantity.name for quantity in LINE]
-        units = ["s", "m", "m", "s", "m", "m"]
-        heads = [
-            *(f"{name} [{unit}]" for name, unit in zip(PLACES, units, strict=True)),
-            *(f"{q.name.removeprefix('line.')} [{q.unit}]" for q in LINE),
-        ]
-        writer.writerow(["pin", "fate", "cue_on", "cue_off", *heads])
-        for line in judgement.lines:
-            places = [(edge.time, edge.x, edge.y) for edge in (line.begin, line.end)]
-            row: list[Any] = [line.pin, line.fate, line.begin.cue, line.end.cue]
-            numbers = [*places[0], *places[1], *(line.numbers[name] for name in names)]
-            writer.writerow(row + ["" if isnan(value) else repr(value) for value in numbers])
 
 
 # ---- speed ---------------------------------------------------------------------------------------

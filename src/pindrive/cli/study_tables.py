@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pindrive.study.local_sensitivity import Elasticities
     from pindrive.study.outputs import Share
     from pindrive.study.robustness import Robustness, WorstCase
-    from pindrive.study.runner import Result
+    from pindrive.study.runner import Sweep
     from pindrive.study.sensitivity import Influence
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
@@ -44,7 +44,7 @@ _SLICE = 1 << 24
 """Points of which the status is read at a time."""
 
 
-def sweep_report(plan: Plan, done: Result) -> list[str]:
+def sweep_report(plan: Plan, done: Sweep) -> list[str]:
     """The result of a sweep, in lines."""
     points, size = counted(done.points, "point"), human_bytes(done.path.stat().st_size)
     if not done.complete:
@@ -82,7 +82,7 @@ def compliance_words(path: Path) -> list[str]:
     return [f"specification met: {percent(*counts)} of {of} that exist"]
 
 
-def _why_without(plan: Plan, done: Result, status: str, number: int, first: int) -> str:
+def _why_without(plan: Plan, done: Sweep, status: str, number: int, first: int) -> str:
     """How many points have a status, and why the first of them has."""
     columns = plan.columns(first, first + 1)
     at = {key: float(values.ravel()[0]) for key, values in columns.items()}
@@ -91,7 +91,7 @@ def _why_without(plan: Plan, done: Result, status: str, number: int, first: int)
     return f"  {percent(number, done.points)} {status}{shown}"
 
 
-def _statuses(done: Result) -> list[tuple[str, int, int]]:
+def _statuses(done: Sweep) -> list[tuple[str, int, int]]:
     """Each status but ok, at how many points it is, and the first of them; most first."""
     found: dict[int, tuple[int, int]] = {}
     with h5py.File(done.path, "r") as file:

@@ -15,7 +15,7 @@ from pindrive.motion.coefficients import Coefficients
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
 from pindrive.quantities.results import TRANSIENT
-from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.table import QUANTITIES, duration
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -132,7 +132,7 @@ def _phases(motion: Motion) -> Table:
 
 def _numbers(motion: Motion) -> Table:
     """The transient's numbers; those of an absent contact left out."""
-    followed = f"Transient, followed for {_TIME.text(motion.duration)}"
+    followed = f"Transient, followed for {duration(motion.duration)}"
     table = new_table(followed, "symbol", ">value", "unit", "meaning")
     values = motion.numbers()
     unseen = {"transient.settled"}
@@ -195,19 +195,19 @@ def ending(motion: Motion) -> str:
     """How the motion ends, in a sentence."""
     end, place = motion.ending, _POSITION.text(motion.ending.position)
     if end.kind == "resting":
-        return f"At rest at x = {place} since {_TIME.text(motion.transient.rest_time)}."
+        return f"At rest at x = {place} since {duration(motion.transient.rest_time)}."
     if end.kind == "decaying":
         last = motion.transient.last_event_time
-        events = f"last event at {_TIME.text(last)}" if last > 0.0 else "no event"
+        events = f"last event at {duration(last)}" if last > 0.0 else "no event"
         return f"Decays towards x = {place} and never comes to rest; {events}."
     if end.kind == "steady":
-        size, period = _POSITION.text(end.amplitude), _TIME.text(end.period)
-        since = _TIME.text(end.steady_since)
+        size, period = _POSITION.text(end.amplitude), duration(end.period)
+        since = duration(end.steady_since)
         return (
             f"Steady {end.cycle} oscillation about x = {place} since {since}: "
             f"amplitude {size}, period {period}."
         )
-    return f"Still moving after {_TIME.text(motion.duration)}."
+    return f"Still moving after {duration(motion.duration)}."
 
 
 def trust(motion: Motion) -> str:

@@ -22,7 +22,7 @@ PEAK: Final = 1.875
 """Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""
 SLOW: Final = 0.1
 """Below this part of the peak speed the direction of motion says nothing."""
-RECORDED: Final = "t [s], x [mm], y [mm]"
+RECORDED: Final = "time [s], x [m], y [m]"
 """The header of a CSV with a recorded path."""
 
 Point = tuple[float, float]

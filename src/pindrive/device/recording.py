@@ -32,11 +32,11 @@ from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import QUANTITIES, check, default
+from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-_USUAL: Final = {"t": "t [s]", "x": "x [mm]", "y": "y [mm]", "dx": "dx [count]", "dy": "dy [count]"}
 COUNTS: Final = ("count", "counts")
 """How a header calls the steps of a mouse."""
 INCH: Final = 0.0254
@@ -115,13 +115,13 @@ class Recording:
 
     def _time(self, i: int) -> str:
         """What a message calls the time of a place."""
-        return f"t[{i}]" if self.rows is None else f"row {self.rows[i]}: t"
+        return f"t[{i}]" if self.rows is None else f"row {self.rows[i]}: time"
 
     @classmethod
     def read(
         cls, path: str | PathLike[str], resolution: float = default("mouse_resolution")
     ) -> Recording:
-        """A recording from a CSV, UTF-8, whose header is like `t [s], x [mm], y [mm]`.
+        """A recording from a CSV, UTF-8, whose header is like `time [s], x [m], y [m]`.
 
         Args:
             path: the file; `dx` and `dy` instead are the ways since the row before. Places may be
@@ -135,14 +135,13 @@ class Recording:
         table = CsvTable.read(path, "a recorded path", EXAMPLE)
         relative = "dx" in table and "x" not in table
         names = ("dx", "dy") if relative else ("x", "y")
-        table.check_header(("t", *names), EXAMPLE)
-        times = table.column("t", "hand.time", "s", _USUAL["t"])
+        table.check_header({"time", *names} <= {*table.names}, f"like {quoted(EXAMPLE)}")
+        times = table.column("time", QUANTITIES["hand.time"])
         step = 1.0 / resolution
         counted = [table.unit(name) in COUNTS for name in names]
         places = [
             np.array(
-                table.column(name, "hand.place", "m", _USUAL[name], step if counts else None),
-                np.float64,
+                table.column(name, QUANTITIES["hand.place"], step if counts else None), np.float64
             )
             for name, counts in zip(names, counted, strict=True)
         ]
@@ -262,7 +261,7 @@ class Recording:
                 f"{jump[i]:.4g} m/s^2 at {self.t[i + 1]:g} s, where it moves at {before:.4g} mm/s "
                 f"before and {after:.4g} mm/s after"
             )
-            label = self._time(i + 1).removesuffix(": t")
+            label = self._time(i + 1).removesuffix(": time")
             raise ValueError(refusal(label, required, given, self.where))
         nodes = np.empty(2 * len(self.t) - 1)
         nodes[::2], nodes[1::2] = self.t, middles

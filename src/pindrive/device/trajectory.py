@@ -186,28 +186,40 @@ def roots(
     high: NDArray[np.float64],
     sign: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """The first times at which f no longer has its sign, shape (n,), by cutting brackets.
+    """The first times at which f no longer has its sign, shape (n,); see `brackets`."""
+    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)))[1]
+
+
+def brackets(
+    f: Callable[[Any], NDArray[np.float64]],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    sign: NDArray[np.float64],
+    pieces: int,
+    precision: float = 0.0,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The last places where f has its sign and the first where not, by cutting brackets.
 
     SciPy's brentq takes fewer steps, but loading scipy.optimize takes longer than a usual scan.
 
     Args:
-        f: of times of any shape.
-        low: where the brackets begin, s, shape (n,); f changes its sign once in each.
+        f: of places of shape (n, k), such as times.
+        low: where the brackets begin, shape (n,); f changes its sign once in each.
         high: where they end, shape (n,).
         sign: of f where they begin, 1 or -1, shape (n,).
+        pieces: into how many each is cut at once.
+        precision: how far apart both may be, a part of the first; 0: neighbouring floats.
     """
-    if not low.size:
-        return high
-    pieces = max(2, PIECES // low.size)
     grid, row = np.arange(pieces + 1) / pieces, np.arange(low.size)
-    while True:
+    while (high - low > precision * low).any():
         t = low[:, None] + (high - low)[:, None] * grid
         t[:, -1] = high
         first = np.argmax(sign[:, None] * f(t[:, 1:]) <= 0.0, axis=1) + 1
         before, after = t[row, first - 1], t[row, first]
         if not ((low < before) | (after < high)).any():
-            return high
+            break
         low, high = before, after
+    return low, high
 
 
 def root(f: Callable[[Any], NDArray[np.float64]], low: float, high: float) -> float:

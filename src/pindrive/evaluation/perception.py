@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isnan, nan, pi
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,7 +52,7 @@ from pindrive.evaluation.line_crossings import (
 )
 from pindrive.lazy import xr
 from pindrive.quantities.quantity import counted
-from pindrive.quantities.results import BAD_WHEN_SMALL, LINE, last_part
+from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
 
@@ -91,29 +92,40 @@ class Judgement(lazy.NotebookHtml):
         figure: Figure = lazy.call("pindrive.plot.scan:plot_scan", self, pin)
         return figure
 
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Each line under each pin, by the names of datasets and files; arrays of shape (n,), SI.
+
+        `pin`, `fate`, what the finger made of its edges, `cue_on` and `cue_off`, when and where
+        they passed under the spot, and the numbers of `Line.numbers`.
+        """
+        lines, rows = self.lines, [line.numbers for line in self.lines]
+        found: dict[str, NDArray[Any]] = {
+            "pin": np.array([line.pin for line in lines], np.int64),
+            "fate": np.array([line.fate for line in lines], "<U6"),
+            "cue_on": np.array([line.begin.cue for line in lines], "<U9"),
+            "cue_off": np.array([line.end.cue for line in lines], "<U9"),
+        }
+        for quantity in EDGES:
+            place = attrgetter(quantity.name)
+            found[quantity.variable] = np.array([place(line) for line in lines], np.float64)
+        for quantity in LINE:
+            found[quantity.variable] = np.array([row[quantity.name] for row in rows], np.float64)
+        return found
+
     def to_dataset(self) -> xr.Dataset:
         """Each line under each pin, each false line, and the counts, with units.
 
         Returns:
-            Variables over `line`: `pin`, `fate`, `time_begin` and `time_end` (s, when its edges
-            passed under the spot) and the numbers of `Line.numbers`; over `echo`: those of `Echo`;
-            a scalar for each of `counts`.
+            Variables over `line`: `columns`; over `echo`: those of `Echo`; a scalar for each of
+            `counts`.
         """
         from pindrive import __version__
 
-        lines, echoes = self.lines, self.echoes
+        echoes = self.echoes
+        stated = {quantity.variable: quantity.attributes for quantity in (*EDGES, *LINE)}
         data: dict[str, Any] = {
-            "pin": ("line", np.array([line.pin for line in lines], np.int64)),
-            "fate": ("line", np.array([line.fate for line in lines], "<U6")),
+            name: ("line", values, stated.get(name)) for name, values in self.columns().items()
         }
-        for end in ("begin", "end"):
-            times = np.array([getattr(line, end).time for line in lines], np.float64)
-            words = {"long_name": f"when the {end} of the line passed under the spot", "units": "s"}
-            data[f"time_{end}"] = ("line", times, words)
-        rows = [line.numbers for line in lines]
-        for quantity in LINE:
-            values = np.array([row[quantity.name] for row in rows], np.float64)
-            data[quantity.name.replace(".", "_")] = ("line", values, quantity.attributes)
         data["echo_pin"] = ("echo", np.array([echo.pin for echo in echoes], np.int64))
         for name, unit, meaning in (
             ("time", "s", "when it was highest"),

@@ -33,7 +33,7 @@ from pindrive.device.hand import HandPath
 from pindrive.device.page import Scene
 from pindrive.device.pin_array import PinArray
 from pindrive.device.scanning import PinState, Progress, scan
-from pindrive.device.trajectory import Way, check_vibration
+from pindrive.device.trajectory import Way, brackets, check_vibration
 from pindrive.evaluation.line_crossings import Line, Printed
 from pindrive.evaluation.perception import JudgedPin
 from pindrive.lazy import xr
@@ -45,6 +45,7 @@ from pindrive.quantities.table import QUANTITIES, check, default
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 PHASES: Final = 4
 TRIED: Final = 32
@@ -291,15 +292,18 @@ def _limit(
 
     def border(slow: float, fast: float, holds: Callable[[Trial], bool]) -> float:
         """The speed at which it begins or ceases to hold, on the side on which it holds."""
+
+        def sign(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+            new = [speed for speed in speeds.ravel().tolist() if speed not in trials]
+            trials.update(
+                (speed, two_lines(device, pitch, width, speed, criteria)) for speed in new
+            )
+            return np.array([[1.0 if holds(trials[v]) else -1.0 for v in speeds.ravel().tolist()]])
+
         before = holds(trials[slow])
-        while fast - slow > PRECISION * slow:
-            middle = 0.5 * (slow + fast)
-            trials[middle] = two_lines(device, pitch, width, middle, criteria)
-            if holds(trials[middle]) == before:
-                slow = middle
-            else:
-                fast = middle
-        return slow if before else fast
+        ends = np.array([slow]), np.array([fast])
+        low, high = brackets(sign, *ends, sign(ends[0]).ravel(), 2, PRECISION)
+        return float(low[0] if before else high[0])
 
     def distinct(trial: Trial) -> bool:
         return trial.distinct(part, criteria.direction)

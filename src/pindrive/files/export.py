@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.files.output import (
+    EVENT_HEADINGS,
     EVENTS_CSV,
     MOTION_CSV,
     SCAN_CSV,
@@ -29,11 +30,11 @@ from pindrive.files.output import (
 from pindrive.motion.dataset import columns
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
-from pindrive.quantities.results import SERIES
+from pindrive.quantities.results import EDGES, LINE, SERIES
 from pindrive.quantities.table import QUANTITIES, check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -85,12 +86,12 @@ def to_csv(motion: Motion, path: str | PathLike[str], rate: float) -> Path:
 def write_csv(motion: Motion, path: Path, times: NDArray[np.float64]) -> None:
     """Write the motion, SI, at times (s, shape (n,)), a row each; right-hand limits."""
     found = columns(motion, times)
-    _write_table(path, map(heading, found), _rows([*found.values()]))
+    _write_table(path, _headings(found), _rows([*found.values()]))
 
 
 def write_events(motion: Motion, path: Path) -> None:
     """Write the events of a motion, SI, a row each; of a cycle, one round."""
-    _write_table(path, _event_headings(), map(_event_row, motion.events))
+    _write_table(path, EVENT_HEADINGS, map(_event_row, motion.events))
 
 
 def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
@@ -116,13 +117,23 @@ def write_scan_csv(scan: Scan, path: Path, times: NDArray[np.float64]) -> None:
         for row in _rows([np.full(len(times), pin.number), *found(pin).values()])
     )
     names = columns(scan.pins[0].motion, scan.pins[0].since(times[:1]))
-    _write_table(path, ["pin", *map(heading, names)], rows)
+    _write_table(path, ["pin", *_headings(names)], rows)
 
 
 def write_scan_events(scan: Scan, path: Path) -> None:
     """Write the events of each pin, pin after pin, on the path's clock, a row each."""
     rows = ([pin.number, *_event_row(event)] for pin in scan.pins for event in pin.events)
-    _write_table(path, ["pin", *_event_headings()], rows)
+    _write_table(path, ["pin", *EVENT_HEADINGS], rows)
+
+
+def write_lines(found: Mapping[str, NDArray[Any]], path: Path) -> None:
+    """Write `Judgement.columns`, a row for each line; a number that does not exist is empty."""
+    stated = {quantity.variable: quantity.heading for quantity in (*EDGES, *LINE)}
+    rows = (
+        ["" if isinstance(cell, float) and isnan(cell) else cell for cell in row]
+        for row in _rows([*found.values()])
+    )
+    _write_table(path, [stated.get(name, name) for name in found], rows)
 
 
 def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
@@ -155,17 +166,12 @@ def _with_events(
     return events
 
 
-def _event_headings() -> list[str]:
-    return [heading("time"), "contact", "kind", heading("position"), heading("velocity")]
+def _headings(names: Iterable[str]) -> list[str]:
+    return [SERIES[name].heading for name in names]
 
 
 def _event_row(event: Event) -> list[Any]:
     return [event.time, event.contact, event.kind, event.position, event.velocity]
-
-
-def heading(name: str) -> str:
-    """A column's name with its unit: "velocity_m_per_s"."""
-    return f"{name}_{SERIES[name].unit.replace('/', '_per_').replace('^', '')}"
 
 
 def write_netcdf(motion: Motion, path: Path, samples: int) -> None:

@@ -104,7 +104,7 @@ def has_part(key: str, scans: bool) -> bool:
 
 def variable(key: str) -> str:
     """What a key of the device file is called in Python and in a NetCDF file."""
-    return NUMBERS[key].name.replace(".", "_")
+    return NUMBERS[key].variable
 
 
 def friction_parts(key: str) -> tuple[str, ...]:

@@ -17,9 +17,14 @@ from typing import Any, Final
 
 from pindrive.files.keys import STUDY_KEYS, TABLES
 from pindrive.lazy import h5py
+from pindrive.quantities.results import MOTION
 
 _HEAD = 4096
 """Bytes in which a file says what it is."""
+_ALWAYS: Final = tuple(quantity.heading for quantity in MOTION[:6])
+"""The first columns of any motion, with both friction forces, which no recording of a bench has."""
+EVENT_HEADINGS: Final = (_ALWAYS[0], "contact", "kind", *_ALWAYS[1:3])
+"""The columns of a file of events."""
 
 
 class OutputError(ValueError):
@@ -214,6 +219,11 @@ def _beginning(name: str, *beginnings: bytes) -> Kind:
     return Kind(name, lambda path: _head(path).startswith(beginnings))
 
 
+def _headed(name: str, headings: Sequence[str]) -> Kind:
+    """A CSV whose first columns are headed so."""
+    return _beginning(name, ",".join(headings).encode())
+
+
 def _head(path: Path) -> bytes:
     with path.open("rb") as file:
         return file.read(_HEAD)
@@ -265,13 +275,13 @@ FILMS: Final = {
     ".gif": _beginning("GIF film", b"GIF87a", b"GIF89a"),
     ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp"),
 }
-MOTION_CSV: Final = _beginning("CSV file of a motion", b"time_s,position_m,")
-EVENTS_CSV: Final = _beginning("CSV file of the events of a motion", b"time_s,contact,")
-SCAN_CSV: Final = _beginning("CSV file of a scan", b"pin,time_s,position_m,")
-SCAN_EVENTS_CSV: Final = _beginning("CSV file of the events of a scan", b"pin,time_s,contact,")
+MOTION_CSV: Final = _headed("CSV file of a motion", _ALWAYS)
+EVENTS_CSV: Final = _headed("CSV file of the events of a motion", EVENT_HEADINGS)
+SCAN_CSV: Final = _headed("CSV file of a scan", ("pin", *_ALWAYS))
+SCAN_EVENTS_CSV: Final = _headed("CSV file of the events of a scan", ("pin", *EVENT_HEADINGS))
 MOTION_JSON: Final = _beginning("JSON file of a motion", b'{\n  "pindrive": ')
 MOTION_NETCDF: Final = _titled("NetCDF file of a motion", "Motion of ")
-LINES_CSV: Final = _beginning("CSV file of lines", b"pin,fate,")
+LINES_CSV: Final = _headed("CSV file of lines", ("pin", "fate", "cue_on"))
 SCAN_NETCDF: Final = _titled("NetCDF file of a scan", "Scan of ")
 FMU: Final = Kind("FMU", lambda path: b"modelDescription.xml" in _head(path))
 STUDY_NETCDF: Final = Kind(

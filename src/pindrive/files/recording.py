@@ -11,14 +11,15 @@ from pindrive.files.keys import NUMBERS, Tables, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.results import SERIES
 from pindrive.quantities.rows import check_slopes, check_times
-from pindrive.quantities.table import QUANTITIES, default
+from pindrive.quantities.table import QUANTITIES, default, duration
 from pindrive.quantities.units import quoted
 
 SUFFIX: Final = ".csv"
 OVER_TIME: Final = ("profile", "steps")
 """What rows over time make: linear between them, or constant until the next."""
+_TIME: Final = QUANTITIES["profile.time"]
 SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
 
@@ -94,7 +95,7 @@ def profile_words(file: Path) -> str:
     for key, quantity in NUMBERS.items():
         if quantity.rows_of in OVER_TIME and quantity.name in table:
             rows = _profile(table, key)
-            lasts = QUANTITIES["profile.time"].text(rows[-1][0] - rows[0][0])
+            lasts = duration(rows[-1][0] - rows[0][0])
             low, high = (quantity.text(end([y for _, y in rows])) for end in (min, max))
             return (
                 f"{quantity.name}: {counted(len(rows), 'row')} over {lasts}, from {low} to {high}."
@@ -103,9 +104,8 @@ def profile_words(file: Path) -> str:
 
 
 def profile_header(quantity: Quantity) -> str:
-    """The header of a CSV with the rows of a quantity: "t [s], mouse_velocity [mm/s]"."""
-    unit = f" [{quantity.display_unit}]" if quantity.display_unit else ""
-    return f"t [s], {quantity.name}{unit}"
+    """The header of a CSV with the rows of a quantity: "time [s], mouse_velocity [m/s]"."""
+    return f"{SERIES['time'].heading}, {quantity.heading}"
 
 
 def _rows(file: Path, key: str, tables: Tables, read_path: Reader) -> Rows:
@@ -121,19 +121,17 @@ def _rows(file: Path, key: str, tables: Tables, read_path: Reader) -> Rows:
 def _profile(table: CsvTable, key: str) -> Rows:
     """The rows of a CSV that gives a key over time, SI."""
     quantity = NUMBERS[key]
-    name, example = quantity.name, profile_header(quantity)
-    if name not in table or "t" not in table:
-        also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
-        given = quoted(", ".join(table.headings))
-        raise ValueError(refusal("the header", f"like {quoted(example)}{also}", given, table.file))
-    times = table.column("t", "profile.time", "s", "t [s]")
-    values = table.column(name, name, quantity.unit, example.partition(", ")[2])
+    name = quantity.name
+    also = f", or {quoted(RECORDED)} of a recorded hand" if key == SPEED else ""
+    required = f"like {quoted(profile_header(quantity))}{also}"
+    table.check_header({"time", name} <= {*table.names}, required)
+    times, values = table.column("time", _TIME), table.column(name, quantity)
     table.check_rows(f"a CSV of {name}", 1)
     why = " (a jump would take an infinite force)" if name in CONTINUOUS else ""
     check_times(
         times,
         where=table.file,
-        label=lambda i: f"row {table.numbers[i]}: t",
+        label=lambda i: f"row {table.numbers[i]}: time",
         steps=not why,
         why=why,
     )

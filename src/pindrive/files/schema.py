@@ -182,12 +182,8 @@ def contact_of(values: Mapping[str, Value], table: str) -> Contact:
     contact = Contact(**given, stiffness=inf if stiffness is None else stiffness)
     if contact.coefficient is None:
         return contact
-    return contact.pressed_by(normal_force(table, by_name(values).__getitem__))
-
-
-def by_name(values: Mapping[str, Value]) -> dict[str, Any]:
-    """The values of the keys of the drive by the names of their quantities."""
-    return {DRIVE[key].name: value for key, value in values.items() if key in DRIVE}
+    pressing: dict[str, Any] = {DRIVE[k].name: value for k, value in values.items() if k in DRIVE}
+    return contact.pressed_by(normal_force(table, pressing.__getitem__))
 
 
 def drive_of(values: Mapping[str, Value]) -> Drive:

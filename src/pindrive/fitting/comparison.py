@@ -81,7 +81,9 @@ def _changed(
 ) -> tuple[Drive | None, list[str]]:
     """A drive of another law and what is free of it; None, and why it cannot be."""
     drive = found.drive
-    made: dict[str, Any] = {name: _coulomb(getattr(drive, name)) for name in ("plate", "finger")}
+    made: dict[str, Any] = {
+        name: Contact(getattr(drive, name).kinetic) for name in ("plate", "finger")
+    }
     keys = friction or [f"{name}.kinetic" for name in contacts]
     match law:
         case "static friction":
@@ -116,10 +118,6 @@ def _changed(
         Drive(mass=drive.mass, stiffness=drive.stiffness, damping=drive.damping, **made),
         keys,
     )
-
-
-def _coulomb(contact: Contact) -> Contact:
-    return Contact(contact.kinetic)
 
 
 def _fastest(found: Fit) -> float:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from pindrive.files.device_text import device_text
 from pindrive.files.keys import written
 from pindrive.files.schema import written_rows
-from pindrive.fitting.parameters import key_of
-from pindrive.fitting.results import Estimate, is_of_sensor
+from pindrive.fitting.parameters import SENSOR, key_of
+from pindrive.fitting.results import Estimate
 from pindrive.motion.profile import Profile
 from pindrive.quantities.quantity import significant
 
@@ -36,7 +36,7 @@ def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:
     values["drive.damping"] = written("drive.damping", found.drive.damping)
     comments: dict[str, list[str]] = {}
     for estimate in found.estimates:
-        if not is_of_sensor(estimate) and estimate.parameter.recording in (None, 0):
+        if estimate.parameter.key not in SENSOR and estimate.parameter.recording in (None, 0):
             comments.setdefault(key_of(estimate.parameter.key), []).append(_comment(estimate))
     names = ", ".join(recording.name for recording in found.recordings)
     lines = [

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from pindrive.fitting.recording import CHANNELS, Recording
+from pindrive.fitting.recording import Recording
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, entry
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.profile import Profile
@@ -23,6 +23,7 @@ from pindrive.motion.release import Release, core_numbers
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.refusal import refusal
+from pindrive.quantities.results import CHANNELS
 from pindrive.quantities.table import QUANTITIES, check
 
 DRIVE: Final = (
@@ -157,7 +158,7 @@ def _parameter(
             if any(channel in other.channels for other in recordings):
                 return []  # of another recording
             raise ValueError(refusal("free", "an offset of a recorded channel", key))
-        unit = "s" if channel == "time" else CHANNELS[channel][0]
+        unit = "s" if channel == "time" else CHANNELS[channel].unit
         start, allowed = 0.0, Bounds()
         if channel == "time":
             first, last = float(recording.time[0]), float(recording.time[-1])

@@ -14,24 +14,18 @@ from pindrive.motion.profile import Profile
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import brief, counted
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import check
+from pindrive.quantities.results import CHANNELS, SERIES
+from pindrive.quantities.table import QUANTITIES, check
 from pindrive.quantities.units import quoted, to_si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CHANNELS", "Recording", "read_recording"]
+__all__ = ["Recording", "read_recording"]
 
-CHANNELS: Final = {
-    "position": ("m", "mm"),
-    "velocity": ("m/s", "mm/s"),
-    "acceleration": ("m/s^2", "m/s^2"),
-    "force": ("N", "mN"),
-}
-"""What a recording may hold over time: the SI unit, and a usual unit in a heading."""
-INPUTS: Final = {"mouse_velocity": ("m/s", "mm/s"), "plate_load": ("1", "")}
-"""What it may hold of the inputs of its release."""
-EXAMPLE: Final = "t [s], position [mm]"
+INPUTS: Final = ("mouse_velocity", "plate_load")
+"""What a recording may hold of the inputs of its release."""
+EXAMPLE: Final = f"{SERIES['time'].heading}, {CHANNELS['position'].heading}"
 FEWEST: Final = 8
 """Samples in a recording."""
 INPUT_TOLERANCE: Final = 1e-3
@@ -157,9 +151,10 @@ def read_recording(
 ) -> Recording:
     """A recording from a CSV file whose header names columns with their units.
 
-    Columns are `t`, at least one of `position`, `velocity`, `acceleration`, `force`, and where the
-    inputs changed `mouse_velocity` and `plate_load`, apart by comma, semicolon or tab: "t [s],
-    position [mm]". Lines that begin with # are skipped; other columns are ignored.
+    Columns are `time`, at least one of `position`, `velocity`, `acceleration`, `force`, and where
+    the inputs changed `mouse_velocity` and `plate_load`, apart by comma, semicolon or tab: "time
+    [s], position [mm]". Lines that begin with # are skipped; other columns are ignored, so that
+    what `Motion.to_csv` writes can be read.
 
     Args:
         path: the file, UTF-8.
@@ -175,25 +170,23 @@ def read_recording(
     """
     file = str(path)
     table = CsvTable.read(path, "a recording", EXAMPLE)
-    if "t" not in table or not any(name in table for name in CHANNELS):
-        also = f"with t and at least one of {', '.join(CHANNELS)}, like {quoted(EXAMPLE)}"
-        given = quoted(", ".join(table.headings))
-        raise ValueError(refusal("the header", also, given, file))
+    required = f"with time and at least one of {', '.join(CHANNELS)}, like {quoted(EXAMPLE)}"
+    table.check_header("time" in table and any(name in table for name in CHANNELS), required)
     table.check_rows("a recording", FEWEST)
-    time = np.array(table.column("t", "profile.time", "s", "t [s]"))
+    time = np.array(table.column("time", SERIES["time"]))
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if back.size:
         row = table.numbers[int(back[0]) + 1]
         required = f"greater than the one before, {time[back[0]]:g} s; sort the rows, or split it"
-        raise ValueError(refusal(f"row {row}: t", required, f"{time[back[0] + 1]:g} s", file))
+        raise ValueError(refusal(f"row {row}: time", required, f"{time[back[0] + 1]:g} s", file))
 
-    def column(name: str, unit: str, usual: str) -> NDArray[np.float64]:
-        heading = f"{name} [{usual}]" if usual else name
-        return np.array(table.column(name, "profile.value", unit, heading))
-
-    channels = {name: column(name, *units) for name, units in CHANNELS.items() if name in table}
+    channels = {
+        name: np.array(table.column(name, quantity))
+        for name, quantity in CHANNELS.items()
+        if name in table
+    }
     inputs: dict[str, Any] = {
-        name: column(name, *units) for name, units in INPUTS.items() if name in table
+        name: np.array(table.column(name, QUANTITIES[name])) for name in INPUTS if name in table
     }
     if mouse_velocity is not None:
         if "mouse_velocity" in inputs:
@@ -240,7 +233,7 @@ def _noise(
     for channel, value in given.items():
         if channel not in channels:
             raise ValueError(refusal("noise", f"of {' or '.join(channels)}", channel, where))
-        unit = CHANNELS[channel][0]
+        unit = CHANNELS[channel].unit
         try:
             size = to_si(value, unit, f"1 {unit}") if isinstance(value, str) else float(value)
         except (TypeError, ValueError) as error:

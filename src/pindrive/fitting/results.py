@@ -13,14 +13,15 @@ import numpy as np
 from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
 from pindrive.fitting.model import Model
-from pindrive.fitting.parameters import SENSOR, Parameter
+from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import Profile
-from pindrive.fitting.recording import CHANNELS, Recording
+from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals
 from pindrive.lazy import xr
 from pindrive.motion.motion import Motion
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import counted, significant
+from pindrive.quantities.results import CHANNELS
 from pindrive.quantities.status import Status
 
 if TYPE_CHECKING:
@@ -265,7 +266,7 @@ class Fit(lazy.NotebookHtml):
             "unit": ("parameter", [e.parameter.unit for e in self.estimates]),
             "recording": ("block", [self.recordings[b.recording].name for b in blocks]),
             "channel": ("block", [b.channel for b in blocks]),
-            "block_unit": ("block", [CHANNELS[b.channel][0] for b in blocks]),
+            "block_unit": ("block", [CHANNELS[b.channel].unit for b in blocks]),
         }
         attributes = {"status": self.status.name, "confidence": self.confidence}
         return xr.Dataset(data, coords=coords, attrs=attributes)
@@ -343,8 +344,3 @@ class ModelComparison(lazy.NotebookHtml):
         }
         attributes = {"status": self.status.name, "best": self.best}
         return xr.Dataset(data, coords={"law": [*self.fits]}, attrs=attributes)
-
-
-def is_of_sensor(estimate: Estimate) -> bool:
-    """Whether it describes the bench and not the drive or its release."""
-    return estimate.parameter.key in SENSOR

@@ -100,12 +100,12 @@ _BOUNDS: Final = [
 _SETTLED: Final = "transient_settled"
 _SETTLING_TIME: Final = "transient_settling_time"
 _USUAL: Final = {
-    name.replace(".", "_"): name
-    for name in (*(q.name for q in (*TRANSIENT, *ENDING)), "duration")
-    if name.replace(".", "_") != _SETTLED
+    q.variable: q.name
+    for q in (*TRANSIENT, *ENDING, QUANTITIES["duration"])
+    if q.variable != _SETTLED
 }
-_LEDGER: Final = {q.name.replace(".", "_"): q.name for q in ENERGY}
-_NUMBERS: Final = _USUAL | _LEDGER | {q.name.replace(".", "_"): q.name for q in FINAL}
+_LEDGER: Final = {q.variable: q.name for q in ENERGY}
+_NUMBERS: Final = _USUAL | _LEDGER | {q.variable: q.name for q in FINAL}
 _OTHERS: Final = ("ending", "events", _SETTLED)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from pindrive.files.keys import NUMBERS, keys_meant
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import refusal
+from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import quoted
 from pindrive.study.axes import sweepable
 
@@ -82,18 +83,14 @@ def read_catalogue(name: str, path: Path, place: str, scans: bool) -> Catalogue:
             if key in keys:
                 raise ValueError(f"{path}: {key} is given twice, as {keys[key]} and {column}")
             keys[key] = column
-    if "part" not in table or not keys:
-        required = f"have a column part and one for each key that a part sets, like {_EXAMPLE!r}"
-        given = quoted(", ".join(table.headings))
-        raise ValueError(f"{path}: the header must {required}, got {given}".replace("'", '"'))
+    required = f"with part and a column for each key that a part sets, like {quoted(_EXAMPLE)}"
+    table.check_header("part" in table and bool(keys), required)
     table.check_rows("the parts", 1)
     columns = {}
     for key, column in keys.items():
-        quantity = NUMBERS[key]
-        heading = f"{column} [{quantity.display_unit or '1'}]"
-        columns[key] = table.column(column, quantity.name, quantity.unit or "1", heading)
+        columns[key] = table.column(column, NUMBERS[key])
     prices = (
-        table.column("price", "design.price", "1", "price", 1.0)
+        table.column("price", QUANTITIES["design.price"], 1.0)
         if "price" in table
         else [nan] * len(table.cells)
     )

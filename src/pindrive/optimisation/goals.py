@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pindrive.optimisation.catalogue import Catalogue
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
-from pindrive.study.outputs import NUMBERS, Demand, label
+from pindrive.study.outputs import Demand, label
 
 Array = NDArray[np.float64]
 
@@ -133,8 +133,3 @@ class Wish:
         """What varies and what is best, in a line."""
         what = ", ".join(variable.name for variable in self.variables)
         return f"<Wish {' and '.join(goal.text() for goal in self.goals)} over {what}>"
-
-
-def unit_of(name: str) -> tuple[str, float]:
-    """The unit in which a person reads a number, and how many of it make one in SI."""
-    return NUMBERS[name].display_unit, NUMBERS[name].display_scale

@@ -15,8 +15,7 @@ from pindrive.files.device_text import device_text
 from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import variable
 from pindrive.lazy import xr
-from pindrive.optimisation.goals import Goal, Variable, Wish, unit_of
-from pindrive.quantities.quantity import significant
+from pindrive.optimisation.goals import Goal, Variable, Wish
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
@@ -289,8 +288,7 @@ class Design(lazy.NotebookHtml):
 
 def shown(name: str, value: float) -> str:
     """A number of a motion, a scan or a design for display: "12.34 ms"."""
-    unit, scale = unit_of(name)
-    return f"{significant(value * scale)} {unit}".rstrip()
+    return NUMBERS[name].text(value)
 
 
 def designed_file(found: Design, target: Path) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.device.trajectory import roots
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
@@ -359,13 +360,14 @@ def limit_damping_ratio(r: Releases) -> Array:
     the case occurs. It depends on v_p / (ω_0 d) alone. 0 where no drive with damping reverses
     (x_0 <= x_d), 1 for v_p = 0. The damping of `r` does not matter.
     """
-    low, high = np.zeros(r.shape), np.ones(r.shape)
-    for _ in range(53):
-        ratio = (low + high) / 2
-        damped = r.replace(damping=2 * ratio * np.sqrt(r.mass * r.stiffness))
-        reverses = forward_velocity(damped) >= r.mouse_velocity
-        low, high = np.where(reverses, ratio, low), np.where(reverses, high, ratio)
-    return (low + high) / 2
+    each = r.replace(**{f.name: getattr(r, f.name).reshape(-1, 1) for f in fields(r)})
+
+    def reverses(ratio: Array) -> Array:
+        damped = each.replace(damping=2 * ratio * np.sqrt(each.mass * each.stiffness))
+        return np.where(forward_velocity(damped) >= each.mouse_velocity, 1.0, -1.0)
+
+    least, most = np.full(each.mass.size, np.finfo(float).eps), np.ones(each.mass.size)
+    return roots(reverses, least, most, most).reshape(r.shape)
 
 
 # ---- the steady state, and rest ------------------------------------------------------------------

@@ -76,7 +76,8 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
         text: Markdown as GitHub reads it; a paragraph of a picture alone is a figure.
         pictures: the SVG of each figure, by the name of its file without ending.
     """
-    written = re.sub(r"\$([^$]+)\$", lambda tex: _mathml(tex[1]), text)
+    plain = text.replace(r"\mathrm", r"\text")
+    written = re.sub(r"\$([^$]+)\$", lambda tex: convert(tex[1], display="inline"), plain)
     body = MarkdownIt("commonmark", {"html": True}).enable("table").render(written)
     body = re.sub(
         r"<h([1-3])>(.*)</h\1>",
@@ -111,10 +112,6 @@ def anchor(title: str) -> str:
     """Where GitHub puts a heading: lower case, no punctuation, hyphens."""
     plain = re.sub(r"<[^>]+>", "", title).lower()
     return "".join(c for c in plain if c.isalnum() or c in " -_").replace(" ", "-")
-
-
-def _mathml(tex: str) -> str:
-    return convert(tex.replace(r"\mathrm", r"\text"), display="inline")
 
 
 def _figure(picture: bytes, name: str, title: str) -> str:

@@ -99,9 +99,12 @@ def _closest(lines: list[Line]) -> tuple[int, int]:
 
 
 def draw_history(
-    judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec
+    judgement: Judgement, chosen: Moment, figure: Figure, place: SubplotSpec, where: str
 ) -> list[Artist]:
-    """Draw it: four panels over one time axis; what their signs mean, for a legend."""
+    """Draw it: four panels over one time axis; what their signs mean, for a legend.
+
+    `where` says where on the page that is.
+    """
     scan = judgement.scan
     pin = scan.pins[chosen.pin]
     rows = place.subgridspec(4, 1, height_ratios=(0.8, 0.8, 2.0, 1.2))
@@ -122,7 +125,7 @@ def draw_history(
     _draw_force(judgement, pin, force, t, ms)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
-        f"pin{number} from {chosen.begin:.3f} s on, along the thick line above",
+        f"pin{number} from {chosen.begin:.3f} s on, {where}",
         loc="left",
         fontsize=SMALL + 0.5,
         pad=3.0,

@@ -62,6 +62,8 @@ RELIEF: Final = LinearSegmentedColormap.from_list(
 """Back is orange, at rest is white, forward is blue."""
 BACK: Final = 0.1
 """What is deflected back by more than this part of the scale is dotted, which grey print keeps."""
+SEEN: Final = 0.01
+"""Of the width of the page, what is a line; a shorter one is hidden by its dot."""
 DOTTED: Final[dict[str, Any]] = {"fc": "none", "ec": "0.35", "hatch": "....", "lw": 0.0}
 
 
@@ -112,7 +114,10 @@ def plot_scan(judgement: Judgement, pin: int | None = None) -> Figure:
         else:
             felt.set_ylabel("")
             felt.tick_params(labelleft=False)
-        handles = [*_key(scan, [felt]), *draw_history(judgement, chosen, figure, rows[3])]
+        handles = [
+            *_key(scan, [felt]),
+            *draw_history(judgement, chosen, figure, rows[3], _where(scan, chosen)),
+        ]
         lines = -(-len(handles) // KEY_COLUMNS)
         figure.set_figheight((pages + 106.0 + 2.0 * APART + 4.0 * lines) / 25.4)
         _draw_key(figure, handles, KEY_COLUMNS)
@@ -308,10 +313,26 @@ def _scale(figure: Figure, image: AxesImage, place: Axes) -> None:
 
 def _draw_moment(scan: Scan, axes: Axes, chosen: Moment) -> None:
     """Where on the page the history below takes place."""
-    t = np.linspace(chosen.begin, chosen.end, 200)
-    x, y = MM * scan.spots(t)[chosen.pin].T
+    x, y = MM * _track(scan, chosen)
     axes.plot(x, y, color=PALETTE["slip"], lw=1.6, solid_capstyle="butt", gid="moment")
     axes.plot(x[:1], y[:1], "o", color=PALETTE["slip"], ms=3.5, gid="moment")
+
+
+def _track(scan: Scan, chosen: Moment) -> NDArray[np.float64]:
+    """Where the pin's spot is in that time, m, of shape (2, n)."""
+    spots: NDArray[np.float64] = scan.spots(np.linspace(chosen.begin, chosen.end, 200))[chosen.pin]
+    return spots.T
+
+
+def _where(scan: Scan, chosen: Moment) -> str:
+    """What of that is seen of it in the pictures above: a line, its dot, or nothing."""
+    left, right, top, bottom = view(scan)
+    x, y = _track(scan, chosen)
+    inside = (left <= x) & (x <= right) & (top <= y) & (y <= bottom)
+    length = np.hypot(np.diff(x), np.diff(y))[inside[1:]].sum()
+    if length > SEEN * (right - left):
+        return "along the thick line above"
+    return "at the dot above" if inside[0] else "beyond the page"
 
 
 def _frame(axes: Axes, title: str) -> None:

@@ -15,16 +15,17 @@ from pindrive._core import settling_band
 from pindrive.plot.contours import MAP, draw_contours, jump_key, line_colours
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
-from pindrive.study.slices import QUANTITY, axis_label, value, values
+from pindrive.study.slices import QUANTITY, View, axis_label, value, values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
-    from pindrive.study.slices import Panel, View
+    from pindrive.study.slices import Panel
 
 _HATCH: Final[dict[str, Any]] = {
     "facecolor": "0.93",
@@ -77,6 +78,12 @@ def plot_study(
         still = {**rows[0][0].at} if columns == 1 and y else _common(rows[0])
         _title(figure, view, {**view.told, **still}, int(width * 0.66))
     return figure
+
+
+def plot_sweep(path: Path) -> Figure:
+    """Draw the file of a complete sweep: its usual number over the first two keys that vary."""
+    with View(path) as view:
+        return plot_study(view, view.usual_numbers(), *view.axes(None, None, {}), {})
 
 
 def _common(panels: Sequence[Panel]) -> dict[str, float]:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Final
 
 from pindrive.quantities import budgets
+from pindrive.quantities.quantity import Quantity, heading
 from pindrive.quantities.refusal import refusal
-from pindrive.quantities.table import check
 from pindrive.quantities.units import UnitError, expected, quoted, to_si
 
 _HEADING: Final = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")
@@ -72,9 +72,9 @@ class CsvTable:
     def _columns(self) -> dict[str, list[tuple[int, str | None]]]:
         """The place and the unit of each column, by its name in small letters."""
         found: dict[str, list[tuple[int, str | None]]] = {}
-        for index, heading in enumerate(self.headings):
-            match = _HEADING.fullmatch(heading)
-            name = (match["name"] if match else heading).strip().lower()
+        for index, text in enumerate(self.headings):
+            match = _HEADING.fullmatch(text)
+            name = (match["name"] if match else text).strip().lower()
             found.setdefault(name, []).append((index, match["unit"].strip() if match else None))
         return found
 
@@ -86,11 +86,11 @@ class CsvTable:
         """The unit in the heading of a column; None where it has none."""
         return self._columns[name][0][1]
 
-    def check_header(self, names: tuple[str, ...], example: str) -> None:
-        """Refuse a header that lacks one of these columns."""
-        if not all(name in self for name in names):
+    def check_header(self, holds: bool, required: str) -> None:
+        """Refuse the header unless it holds what is required of it."""
+        if not holds:
             given = quoted(", ".join(self.headings))
-            raise ValueError(refusal("the header", f"like {quoted(example)}", given, self.file))
+            raise ValueError(refusal("the header", required, given, self.file))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -108,16 +108,12 @@ class CsvTable:
             required = f"at least {least} row{'s' if least > 1 else ''}"
             raise ValueError(refusal(what, required, len(self.cells), self.file))
 
-    def column(
-        self, name: str, quantity: str, unit: str, usual: str, scale: float | None = None
-    ) -> list[float]:
+    def column(self, name: str, quantity: Quantity, scale: float | None = None) -> list[float]:
         """The numbers of a column, SI.
 
         Args:
             name: of the column, in small letters; it must be there.
-            quantity: whose bounds hold, a name of the table of quantities.
-            unit: SI unit, "1" for none.
-            usual: a heading, for messages.
+            quantity: whose unit and bounds hold.
             scale: how many SI units one of its numbers is; as its heading says unless given.
 
         Raises:
@@ -127,7 +123,7 @@ class CsvTable:
         if len(self._columns[name]) > 1:
             raise ValueError(refusal(f"column {name}", "given once", "it twice", self.file))
         index, written = self._columns[name][0]
-        factor = self._scale(name, written, unit, usual) if scale is None else scale
+        factor = self._scale(name, written, quantity.unit or "1") if scale is None else scale
         found = []
         for number, row in zip(self.numbers, self.cells, strict=True):
             cell = row[index].strip() if index < len(row) else ""
@@ -136,17 +132,18 @@ class CsvTable:
                 value = float(cell) * factor
             except ValueError:
                 raise ValueError(refusal(label, "a number", quoted(cell), self.file)) from None
-            given = quoted(cell)
-            found.append(check(quantity, value, where=self.file, label=label, given=given))
+            if required := quantity.required(value):
+                raise ValueError(refusal(label, required, quoted(cell), self.file))
+            found.append(value)
         return found
 
-    def _scale(self, name: str, written: str | None, unit: str, usual: str) -> float:
-        heading = quoted(self.headings[self._columns[name][0][0]])
+    def _scale(self, name: str, written: str | None, unit: str) -> float:
+        like, given = quoted(heading(name, unit)), quoted(self.headings[self._columns[name][0][0]])
         if written is None and unit != "1":
-            required = f"given with its unit, like {quoted(usual)}"
-            raise ValueError(refusal(f"column {name}", required, heading, self.file))
+            required = f"given with its unit, like {like}"
+            raise ValueError(refusal(f"column {name}", required, given, self.file))
         try:
             return to_si(f"1 {written or ''}", unit, f"1 {unit}")
         except UnitError:
-            required = f"{expected(unit, written or '')}, like {quoted(usual)}"
-            raise ValueError(refusal(f"column {name}", required, heading, self.file)) from None
+            required = f"{expected(unit, written or '')}, like {like}"
+            raise ValueError(refusal(f"column {name}", required, given, self.file)) from None

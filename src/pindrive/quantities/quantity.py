@@ -128,6 +128,11 @@ class Quantity:
         return f"{self.section}.{self.name}" if self.section else self.name
 
     @property
+    def variable(self) -> str:
+        """Its name in datasets and CSV files: "line_stroke" for "line.stroke"."""
+        return self.name.replace(".", "_")
+
+    @property
     def may_be_constant(self) -> bool:
         """Whether one value may stand for it, or it must be rows."""
         return not self.rows or self.default is not None or self.example is not None
@@ -151,6 +156,11 @@ class Quantity:
     def display_scale(self) -> float:
         """How many display units make one SI unit."""
         return DISPLAY.get(self.unit, (self.unit, 1.0))[1]
+
+    @property
+    def heading(self) -> str:
+        """The heading of a column of it in a CSV, SI: "position [m]", "line_stroke [m]"."""
+        return heading(self.variable, self.unit)
 
     @property
     def usual(self) -> str:
@@ -214,6 +224,11 @@ def optional(section: str, *rows: Quantity) -> tuple[Quantity, ...]:
         replace(row, absent=row.default) if row.absent is None else row
         for row in in_table(section, *rows)
     )
+
+
+def heading(name: str, unit: str) -> str:
+    """The heading of a column in a CSV: "position [m]", without a unit where there is none."""
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:

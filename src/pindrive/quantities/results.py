@@ -173,6 +173,12 @@ SCANNED: Final[tuple[Quantity, ...]] = (
 SERIES: Final[dict[str, Quantity]] = {quantity.name: quantity for quantity in (*MOTION, *SCANNED)}
 """The columns over time of files and datasets, by their names."""
 
+CHANNELS: Final[dict[str, Quantity]] = {
+    **{name: SERIES[name] for name in ("position", "velocity", "acceleration")},
+    "force": Quantity("force", "R", "N", "friction force of both contacts on the pin"),
+}
+"""What a recording of a release may hold over time, by the names of its columns."""
+
 # ---- scans ------------------------------------------------------------------------------------
 
 GLEESON: Final = "Gleeson, Horschel & Provancher: direction of tangential motion of skin"
@@ -248,6 +254,19 @@ LINE: Final[tuple[Quantity, ...]] = tuple(
     Quantity(f"line.{name}", symbol, unit, meaning) for name, symbol, unit, meaning in _FOUND
 )
 """What is found of each line under each pin."""
+
+EDGES: Final[tuple[Quantity, ...]] = tuple(
+    Quantity(
+        f"{end}.{name}", symbol, unit, f"{meaning} the {end} of the line passed under the spot"
+    )
+    for end in ("begin", "end")
+    for name, symbol, unit, meaning in (
+        ("time", "t", "s", "when"),
+        ("x", "x", "m", "where across the page"),
+        ("y", "y", "m", "where down the page"),
+    )
+)
+"""When and where it passed."""
 
 BAD_WHEN_SMALL: Final = ("stroke", "skin_on", "skin_off", "contrast")
 """Numbers of a line, by their last parts, whose worst value is the least."""

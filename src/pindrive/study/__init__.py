@@ -6,9 +6,9 @@ A study file, or Python, names a device and says which of its keys change and ho
 - `Elasticities`: by how many per cent each number changes when a key grows by one per cent
 - `Influence`: which key matters to which number, by Sobol' indices
 - `load_study`: a study from its file
-- `Result`: the result of a sweep
 - `Robustness`: what `robustness` found
 - `Study`: a device, and what is varied of it
+- `Sweep`: what `sweep` computed, and the file that holds it
 - `sweep`: computes every point of a study into a file
 """
 

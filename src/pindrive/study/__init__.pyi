@@ -2,7 +2,7 @@
 
 from pindrive.study.local_sensitivity import Elasticities as Elasticities
 from pindrive.study.robustness import Robustness as Robustness
-from pindrive.study.runner import Result as Result
+from pindrive.study.runner import Sweep as Sweep
 from pindrive.study.runner import sweep as sweep
 from pindrive.study.sensitivity import Influence as Influence
 from pindrive.study.study import Study as Study

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, fields
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
@@ -276,9 +275,6 @@ def _motion(given: Mapping[str, Any]) -> Motion:
     )
 
 
-_LONG_NUMBER: Final = re.compile(r"\d+\.\d{6,}(e[-+]?\d+)?")
-
-
 @dataclass(frozen=True, slots=True)
 class RefusedPoints:
     """Points that cannot exist for one reason."""
@@ -313,7 +309,16 @@ def refusals(plan: Plan, columns: Columns, reasons: NDArray[Any]) -> tuple[Refus
 
 
 def why(plan: Plan, at: Mapping[str, float]) -> str:
-    """Why there is no motion or scan at a point, which the keys' values (SI) say; empty: it is."""
+    """Why there is no motion or scan at a point, which the keys' values (SI) say; empty: it is.
+
+    It is said of the values to six digits, where these are refused too.
+    """
+    rounded = {key: float(f"{x:.6g}") for key, x in at.items()}
+    return _reason(plan, rounded) or _reason(plan, at)
+
+
+def _reason(plan: Plan, at: Mapping[str, float]) -> str:
+    """What is refused of a point; empty where nothing is."""
     try:
         if plan.page:
             scan_numbers(plan, at)
@@ -321,6 +326,5 @@ def why(plan: Plan, at: Mapping[str, float]) -> str:
             motion_of(device_at(plan, at))
     except (ValueError, ArithmeticError, MemoryError) as error:
         told = told_by(error)
-        said = told.said if isinstance(told, Refusal) else told
-        return _LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", said)
+        return told.said if isinstance(told, Refusal) else told
     return ""

@@ -63,7 +63,7 @@ COUNTED: Final = tuple(quantity.name for quantity in JUDGED)
 
 def variables(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
     """Quantities by the names of their variables."""
-    return {quantity.name.replace(".", "_"): quantity for quantity in quantities}
+    return {quantity.variable: quantity for quantity in quantities}
 
 
 _OF_MOTIONS: Final = variables(TRANSIENT + ENDING + ENERGY)

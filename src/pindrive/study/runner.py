@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pindrive import lazy
 from pindrive.files.keys import variable
 from pindrive.files.output import (
     STUDY_NETCDF,
@@ -25,9 +26,10 @@ from pindrive.files.output import (
     check_unread,
     naming,
 )
-from pindrive.lazy import h5py
+from pindrive.lazy import h5py, xr
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
+from pindrive.quantities.status import Status
 from pindrive.study import outputs
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
@@ -43,7 +45,7 @@ from pindrive.study.store import (
 from pindrive.study.workers import DIED, check_installed, cluster_executor, workers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from matplotlib.figure import Figure
 
     from pindrive.device.scanning import Progress
     from pindrive.study.design import Plan
@@ -53,9 +55,9 @@ Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
 """Computes chunks of a plan, and yields each when it is done, in any order."""
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
-    """The result of a sweep."""
+@dataclass(frozen=True, slots=True, repr=False)
+class Sweep(lazy.NotebookHtml):
+    """What `sweep` computed, and the file that holds it."""
 
     path: Path
     points: int
@@ -68,6 +70,30 @@ class Result:
     seconds: float
     complete: bool
 
+    def __repr__(self) -> str:
+        """How many points are in the file, in a line."""
+        points = counted(self.points, "point")
+        refused = f", {self.refused} without numbers" if self.refused else ""
+        return f"<Sweep {self.path.name} of {points}{refused}, {self.status.name}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where points are still to be computed, or cannot exist."""
+        return Status.ok if self.complete and not self.refused else Status.incomplete
+
+    def plot(self) -> Figure:
+        """The settling time, or the part of lines shown, over the first two keys that vary.
+
+        Raises:
+            ValueError: the sweep is not complete, or holds a single point.
+        """
+        figure: Figure = lazy.call("pindrive.plot.slices:plot_sweep", self.path)
+        return figure
+
+    def to_dataset(self) -> xr.Dataset:
+        """The points, as `Study.run` gives them; read from the file when they are needed."""
+        return xr.open_dataset(self.path, engine="h5netcdf")
+
 
 def sweep(
     plan: Plan,
@@ -78,7 +104,7 @@ def sweep(
     stop_after: int | None = None,
     work: Work | None = None,
     tell: Progress = lambda done, total: None,
-) -> Result:
+) -> Sweep:
     """Compute all points of a study and write them into the NetCDF file `target`.
 
     Until it is whole the file is called TARGET.partial, with TARGET.journal beside it.
@@ -106,7 +132,7 @@ def sweep(
     for path in (part, notes):
         check_unread(path, plan.inputs)
     if resume and not notes.exists() and _is_complete(target, plan):
-        return Result(target, plan.size, 0, *_counted(target, plan), 0.0, True)
+        return Sweep(target, plan.size, 0, *_counted(target, plan), 0.0, True)
     _check_target(target, notes, resume or restart)
     with _journal(notes, part, plan, restart) as journal:
         if not (journal.done and part.exists()):
@@ -135,7 +161,7 @@ def sweep(
     if complete:
         notes.unlink(missing_ok=True)
     refused, settled = (sum(column) for column in list(zip(*tallies, strict=True))[1:] or ((), ()))
-    return Result(
+    return Sweep(
         target if complete else part,
         done,
         done - before,

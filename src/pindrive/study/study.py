@@ -153,8 +153,8 @@ class Study(Plan):
                 sweep(self, target, work=work, tell=progress)
                 return xr.load_dataset(target, engine="h5netcdf")
         target = Path(path)
-        sweep(self, target, resume=resume, restart=restart, work=work, tell=progress)
-        return xr.open_dataset(target, engine="h5netcdf")
+        done = sweep(self, target, resume=resume, restart=restart, work=work, tell=progress)
+        return done.to_dataset()
 
 
 def load_study(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Study:
