@@ -60,7 +60,7 @@ def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(finger: Contact, spee
         path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, y))
         first, second = judge(scan(device, scene, path, start=[steady(device)])).lines
         merged = "merged" in (first.fate, second.fate)
-        backs.append(0.0 if merged else first.returned / (first.height - device.drag))
+        backs.append(0.0 if merged else first.returned / (first.height - device.drag()))
         skins += [
             max(edge.skin for edge in (line.begin, line.end) if edge.skin == edge.skin)
             for line in (first, second)

@@ -75,13 +75,16 @@ class Device:
         ends = self.drive.rigid_travel
         return reach if ends is None else min(reach, ends)
 
-    @property
-    def drag(self) -> float:
-        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it."""
+    def drag(self, finger_load: float = 1.0) -> float:
+        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it.
+
+        Args:
+            finger_load: factor on the finger's friction, 0 where it is lifted.
+        """
         plate = self.drive.plate.kinetic * self.load(self.magnet.residual)
-        if plate <= self.drive.finger.static_friction:
+        if plate <= self.drive.finger.static_friction * finger_load:
             return 0.0
-        return (plate - self.drive.finger.kinetic) / self.drive.stiffness
+        return (plate - self.drive.finger.kinetic * finger_load) / self.drive.stiffness
 
     @overload
     def load(self, pull: float) -> float: ...

@@ -403,10 +403,10 @@ def steady(device: Device) -> PinState:
     """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
     finger = device.drive.finger
     if finger.rigid:
-        return PinState(position=device.drag)
+        return PinState(position=device.drag())
     plate = device.drive.plate.kinetic * device.load(device.magnet.residual)
     held = plate if plate <= finger.static_friction else finger.kinetic
-    return PinState(position=device.drag, skin_stretch=held / finger.stiffness)
+    return PinState(position=device.drag(), skin_stretch=held / finger.stiffness)
 
 
 def _page(begins: Sequence[float], width: float, left: float, right: float, pixel: float) -> Scene:
@@ -422,7 +422,7 @@ def _back(device: Device, line: Line) -> float:
     """The part of its way back to its place of rest that the pin comes after a line."""
     if isnan(line.returned):
         return 0.0
-    high = line.height - device.drag
+    high = line.height - device.drag()
     return line.returned / high if high > 0.0 else 0.0
 
 

@@ -172,6 +172,20 @@ SCAN: Final = optional(
         "assumed",
     ),
     Quantity(
+        "touch",
+        "N_f(t)",
+        "N",
+        "touch force of the finger on each pin, over the time of the scan",
+        NON_NEGATIVE,
+        source="assumed: a finger that rests for 0.4 s, lifts within 20 ms, and presses again",
+        remark="one value, rows over time, or a CSV of them, for a finger with a coefficient; "
+        "finger.touch_force throughout unless given",
+        example=0.060,
+        rows_of="profile",
+        rows=((0.4, 0.060), (0.42, 0.0), (0.8, 0.0), (0.82, 0.060)),
+        seen=between(0.0, 100.0),
+    ),
+    Quantity(
         "line_pitch",
         "h_l",
         "m",
