@@ -281,10 +281,8 @@ def touch_words(touch: float | Profile | None) -> list[str]:
     if not isinstance(touch, Profile):
         return [f"The finger presses on each pin with {force.text(touch)} in a scan."]
     low, high = (force.text(end(touch.values)) for end in (min, max))
-    return [
-        f"The finger presses on each pin with {low} to {high} over the time of a scan, and "
-        f"{'is lifted' if 0.0 in touch.values else 'never lifted'} in between."
-    ]
+    lifted = "; at 0 mN it is lifted" if 0.0 in touch.values else ""
+    return [f"The finger presses on each pin with {low} to {high} over the time of a scan{lifted}."]
 
 
 def meeting_words(device: Device, speed: float) -> list[str]:

@@ -75,13 +75,15 @@ class Device:
         ends = self.drive.rigid_travel
         return reach if ends is None else min(reach, ends)
 
-    def drag(self, finger_load: float = 1.0) -> float:
+    def drag(self, finger_load: float = 1.0, along: float = 1.0) -> float:
         """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it.
 
         Args:
             finger_load: factor on the finger's friction, 0 where it is lifted.
+            along: the part of the plate's friction along the drive axis, the cosine of the angle
+                between that and the hand's motion.
         """
-        plate = self.drive.plate.kinetic * self.load(self.magnet.residual)
+        plate = self.drive.plate.kinetic * self.load(self.magnet.residual) * along
         if plate <= self.drive.finger.static_friction * finger_load:
             return 0.0
         return (plate - self.drive.finger.kinetic * finger_load) / self.drive.stiffness

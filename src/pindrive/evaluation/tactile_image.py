@@ -56,7 +56,7 @@ def paint(scan: Scan) -> Painting:
     columns, rows = (max(1, round(side / cell)) for side in (right - left, bottom - top))
     t, sign = _reading(scan, cell)
     half = _brush(scan) + 0.5 * cell
-    offsets = np.linspace(-half, half, 2 * max(1, round(half / cell)) + 1)
+    offsets = np.linspace(-half, half, 2 * int(half / cell) + 3)
     ax, ay = scan.device.array.direction
     total, count = np.zeros(rows * columns), np.zeros(rows * columns)
     of = f"{len(scan.pins)} pins at {len(t)} times, {len(offsets)} side by side"
