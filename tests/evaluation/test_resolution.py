@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, isnan
+from math import isnan
 from pathlib import Path
 
 import numpy as np
@@ -64,8 +64,7 @@ def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(
         path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, y))
         first, second = judge(scan(device, scene, path, start=[steady(device)])).lines
         merged = "merged" in (first.fate, second.fate)
-        drag = device.drag(along=abs(cos(axis)))
-        backs.append(0.0 if merged else first.returned / (first.height - drag))
+        backs.append(0.0 if merged else first.returned / (first.height - device.drag(axis)))
         skins += [
             max(edge.skin for edge in (line.begin, line.end) if edge.skin == edge.skin)
             for line in (first, second)

@@ -423,7 +423,7 @@ class JudgedPin:
         settles = limit - since >= self._patience or self.course.rests(limit)
         load = self.pin.finger_load
         pressed = load(limit) if isinstance(load, Profile) else load
-        place = end if settles else self.scan.device.drag(pressed)
+        place = end if settles else self.scan.device.drag(finger_load=pressed)
         over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
         return since if settles else nan, over
 

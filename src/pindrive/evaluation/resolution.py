@@ -405,7 +405,7 @@ def _clear(device: Device) -> float:
 def steady(device: Device) -> PinState:
     """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
     finger, along = device.drive.finger, cos(device.array.axis)
-    position = copysign(device.drag(along=abs(along)), along)
+    position = copysign(device.drag(device.array.axis), along)
     if finger.rigid:
         return PinState(position=position)
     plate = device.drive.plate.kinetic * device.load(device.magnet.residual) * abs(along)
@@ -426,7 +426,7 @@ def _back(device: Device, line: Line) -> float:
     """The part of its way back to its place of rest that the pin comes after a line."""
     if isnan(line.returned):
         return 0.0
-    high = line.height - device.drag(along=abs(cos(device.array.axis)))
+    high = line.height - device.drag(device.array.axis)
     return line.returned / high if high > 0.0 else 0.0
 
 

@@ -353,6 +353,10 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "source": "assumed, an elastic sleeve: half as much again as the largest of 0.04, 0.16, "
         '0.32 in Fig. 4 of "Dynamics of tactile device drive", read as ratios; it settles sooner',
     },
+    "drive.travel": {
+        "example": 0.0013,
+        "source": "assumed: stops just within the 1.35 mm that the slot below leaves either way",
+    },
     "plate.kinetic": {
         "default": None,
         "example": 0.0022,
