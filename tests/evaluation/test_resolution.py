@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import isnan
+from math import copysign, cos, isnan
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +83,10 @@ def test_a_steady_pin_stays(axis: float) -> None:
         (pin,) = scan(device, page, path, start=[steady(device)]).pins
         assert pin.position([0.0, 0.1, 0.2]) == pytest.approx(steady(device).position, abs=1e-12)
         assert abs(float(pin.velocity(0.1))) < 1e-9
+        pulled = PLATE.kinetic * cos(axis)  # spring and finger hold it there, as it slid there
+        slid = abs(pulled) > finger.static_friction
+        rest = pulled - copysign(finger.kinetic, pulled) if slid else 0.0
+        assert pin.position(0.2) == pytest.approx(rest / device.drive.stiffness, abs=1e-12)
 
 
 def test_a_drive_at_an_angle_has_a_limit_of_its_own(limits: SpeedLimits) -> None:

@@ -223,17 +223,13 @@ def _draw_force(
 
 def _draw_lifted(pin: PinScan, chosen: Moment, axes: Axes) -> list[Artist]:
     """While the finger is lifted; the sign for it, where it is."""
-    inside = [
-        (max(touch, chosen.begin - pin.begin), min(lift, chosen.end - pin.begin))
-        for touch, lift in spans(pin.finger_load)
-    ]
-    ends = [chosen.begin - pin.begin]
-    ends += [time for span in inside if span[0] < span[1] for time in span]
-    ends.append(chosen.end - pin.begin)
+    begin, end = chosen.begin - pin.begin, chosen.end - pin.begin
+    touched = [(max(t, begin), min(u, end)) for t, u in spans(pin.finger_load)]
+    ends = [begin, *(time for t, u in touched if t < u for time in (t, u)), end]
     lifted = [
-        (MS * (pin.begin + begin - chosen.begin), MS * (end - begin))
-        for begin, end in zip(ends[::2], ends[1::2], strict=True)
-        if begin < end
+        (MS * (lift - begin), MS * (touch - lift))
+        for lift, touch in zip(ends[::2], ends[1::2], strict=True)
+        if lift < touch
     ]
     if not lifted:
         return []
