@@ -40,7 +40,8 @@ export function fits(values: Found, given: Readonly<Record<string, object>>): Fi
     keys: ["array.slot_length", "array.pin_diameter"],
   });
   const touch = values["scan.touch"] as number | Rows | null;
-  if (touch !== null) found.push({ check: () => checkPresses(values, touch), keys: ["scan.touch", "finger"] });
+  if (touch !== null)
+    found.push({ check: () => checkPresses(values, touch), keys: ["scan.touch", "finger"] });
   const counts = ["array.columns", "array.rows"];
   for (const key of counts) {
     found.push({ check: () => checkCount(key.split(".")[1]!, at(key)), keys: [key] });

@@ -84,9 +84,7 @@ def test_a_scan_goes_on_with_the_touch_where_it_is(finger: Contact, at: float) -
     given, (scene, path) = device(finger), page()
     (whole,) = scan(given, scene, path, touch=LIFTS).pins
     before = scan(given, scene, path.between(path.begin, at), touch=LIFTS)
-    (after,) = scan(
-        given, scene, path.between(at, path.end), start=before.state, touch=LIFTS
-    ).pins
+    (after,) = scan(given, scene, path.between(at, path.end), start=before.state, touch=LIFTS).pins
     t = np.linspace(at, path.end, 500)
     assert np.abs(after.position(t) - whole.position(t)).max() < 1e-12
 
@@ -113,7 +111,7 @@ def test_nothing_is_felt_under_a_lifted_finger() -> None:
     partly = scan(given, scene, path, touch=LIFTS).evaluate()
     for line in partly.lines:
         touched = line.begin.response < 0.17 or line.end.time > 0.47
-        apart = 0.17 < line.begin.time and line.end.response < 0.45
+        apart = line.begin.time > 0.17 and line.end.response < 0.45
         assert (line.fate == "shown") or not touched
         assert (line.fate == "faint") or not apart
     assert {line.fate for line in partly.lines} == {"shown", "faint"}

@@ -393,7 +393,9 @@ class ExplicitModes:
             needed = abs(self.plate_needed(self.t, self.y)) if self.on_plate and less else 0.0
             if needed > self.plate_static(self.t):
                 self.break_loose("plate")
-            if self.on_finger and abs(self.finger_needed(self.t, self.y)) > self.finger_static(self.t):
+            if self.on_finger and abs(self.finger_needed(self.t, self.y)) > self.finger_static(
+                self.t
+            ):
                 self.break_loose("finger")
             if self.soft and self.f and not self.grips and self.on_plate and self.vp == 0:
                 self.skin_grips()

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Group, RenderableType
 
-from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words, touch_words, whole_lines
+from pindrive.cli.tables import (
+    TRUSTED,
+    device_words,
+    new_table,
+    path_words,
+    touch_words,
+    whole_lines,
+)
 from pindrive.device.dataset import gap_words, numbers, peak_warming
 from pindrive.evaluation.resolution import criterion
 from pindrive.quantities.device import PIN

@@ -14,9 +14,7 @@ if TYPE_CHECKING:
     from pindrive.motion.drive import Contact
 
 
-def finger_load(
-    drive: Drive, touch: float | str | Profile | None, begin: float
-) -> float | Profile:
+def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float) -> float | Profile:
     """The factor on the finger's friction, over the time since `begin`.
 
     Args:

@@ -291,9 +291,7 @@ def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
         raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
 
 
-def check_presses(
-    touch: object, by_coefficient: bool, touch_force: float | None
-) -> float:
+def check_presses(touch: object, by_coefficient: bool, touch_force: float | None) -> float:
     """Refuse a touch force over time where friction does not follow it; the usual one, N."""
     if by_coefficient and touch_force:
         return touch_force
