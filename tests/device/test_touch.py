@@ -137,7 +137,7 @@ def test_when_a_finger_touches() -> None:
     ],
 )
 def test_a_touch_that_cannot_be(touch: str | Profile, said: str) -> None:
-    with pytest.raises(ValueError, match=".") as caught:
+    with pytest.raises(ValueError, match=r".") as caught:
         scan(device(), *page(), touch=touch)
     assert str(caught.value).replace('"', "'").startswith(said)
 
@@ -215,7 +215,7 @@ def test_a_device_file_says_how_the_finger_presses(tmp_path: Path) -> None:
 )
 def test_a_device_file_that_cannot_be(tmp_path: Path, touch: str, finger: str, said: str) -> None:
     file = written(tmp_path, touch, finger)
-    with pytest.raises(ValueError, match=".") as caught:
+    with pytest.raises(ValueError, match=r".") as caught:
         load_device(file)
     assert str(caught.value) == f"{file}: {said}"
 
@@ -223,7 +223,7 @@ def test_a_device_file_that_cannot_be(tmp_path: Path, touch: str, finger: str, s
 def test_a_csv_names_file_row_and_column(tmp_path: Path) -> None:
     file = written(tmp_path, 'touch = "press.csv"')
     (tmp_path / "press.csv").write_text("t [ms], touch [mN]\n0, 60\n200, -1\n")
-    with pytest.raises(ValueError, match=".") as caught:
+    with pytest.raises(ValueError, match=r".") as caught:
         load_device(file)
     said = str(caught.value)
     assert said.startswith(f"{file}: scan.touch: {tmp_path / 'press.csv'}: row 3")

@@ -283,7 +283,7 @@ class ExplicitModes:
         return (y[0], y[1], self.acceleration(t, y), force, -force / self.finger.stiffness)
 
     def react(self, watch: Watch) -> None:
-        name, law = watch.contact, self.finger if watch.contact == "finger" else self.plate
+        name = watch.contact
         if watch.kind in ("up", "down"):
             self.pieces[name] += 1 if watch.kind == "up" else -1
             self.left = {f"{name} {'down' if watch.kind == 'up' else 'up'}"}

@@ -402,7 +402,8 @@ def scan(
 
     Raises:
         ValueError: the page or the recording cannot be read, a state is missing or cannot be, the
-            finger's friction does not follow a touch force, `threads` is no count, or there is more to do than `pindrive.quantities.budgets` allow.
+            finger's friction does not follow a touch force, `threads` is no count, or there is more
+            to do than `pindrive.quantities.budgets` allow.
         SimulationError: the simulation of a pin had to be given up.
 
     Examples:

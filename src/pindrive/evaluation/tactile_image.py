@@ -40,7 +40,7 @@ class Painting:
     """The tactile image of a scan."""
 
     deflection: NDArray[np.float64]
-    """Mean deflection forward, m, shape (rows, columns); NaN where no pin passed that was touched."""
+    """Mean deflection forward, m, (rows, columns); NaN where no pin passed that was touched."""
     extent: tuple[float, float, float, float]
     """Left, right, top and bottom on the page, m."""
 
