@@ -39,6 +39,9 @@ export function fits(values: Found, given: Readonly<Record<string, object>>): Fi
     check: () => checkSlot(slot, at("array.pin_diameter")),
     keys: ["array.slot_length", "array.pin_diameter"],
   });
+  const touch = values["scan.touch"] as number | Rows | null;
+  if (touch !== null)
+    found.push({ check: () => checkPresses(values, touch), keys: ["scan.touch", "finger"] });
   const counts = ["array.columns", "array.rows"];
   for (const key of counts) {
     found.push({ check: () => checkCount(key.split(".")[1]!, at(key)), keys: [key] });
@@ -194,6 +197,19 @@ function checkSlot(slot: number | null, pin: number): void {
   if (slot === null || slot >= pin) return;
   const words = `at least array.pin_diameter, ${floatRepr(pin)} m, which moves in it`;
   throw new Refusal("slot_length", words, `${floatRepr(slot)} m`);
+}
+
+/** A touch force over time where friction does not follow it. */
+function checkPresses(values: Found, touch: number | Rows): void {
+  const keys = ["finger.coefficient", "finger.coefficient_curve"];
+  const byCoefficient = keys.some((key) => values[key] !== null);
+  if (byCoefficient && values["finger.touch_force"]) return;
+  const friction = byCoefficient ? "no force" : "given as a force";
+  const words =
+    `left out where the finger's friction is ${friction}; ` +
+    "it needs finger.coefficient and a finger.touch_force greater than 0 N";
+  const given = typeof touch === "number" ? `${floatRepr(touch)} N` : "one over time";
+  throw new Refusal("touch", words, given);
 }
 
 function checkCount(name: string, value: number): void {

@@ -13,12 +13,16 @@ import pytest
 import xarray as xr
 
 from command import GOOD, refused, run
-from pindrive import Contact, Drive
+from pindrive import Contact, Drive, load_device
 from pindrive.device import Coil, Device, Electromagnet, PinArray, scan
+from pindrive.device.coil import COIL_NEEDS
+from pindrive.device.electromagnet import DIRECT
 from pindrive.device.geometry import COPPER, doubts, nearest_pins
 from pindrive.device.reading import Reading
 from pindrive.evaluation import judge
+from pindrive.files.keys import NUMBERS, line, template
 from pindrive.plot.scan import plot_reliefs, plot_scan
+from pindrive.quantities.device import READER
 
 DRIVE = Drive(
     mass=0.010,
@@ -206,3 +210,21 @@ def test_the_picture_says_it() -> None:
     assert title[-1].startswith(f"Pin {room.pin} would go {-1e3 * room.size:.4g}")
     relief = plot_reliefs([judged]).axes[1].get_title(loc="left")
     assert f"magnets overlap by {-1e3 * gap.size:.2g} mm" in relief
+
+
+def test_the_device_that_is_written_can_be_built_with_end_stops_and_a_coil(tmp_path: Path) -> None:
+    """As its comments have them."""
+    given = replace(NUMBERS["drive.travel"], **READER["drive.travel"])
+    text = template(whole=True).replace(f"# {line(given)}", line(given))
+    for key in COIL_NEEDS:
+        row = line(NUMBERS[f"magnet.{key}"])
+        text = text.replace(f"# {row}", row)
+    direct = [line(NUMBERS[f"magnet.{name}"]) for name in DIRECT]
+    text = "\n".join(row for row in text.splitlines() if row not in direct)
+    file = tmp_path / "device.toml"
+    file.write_text(text)
+    made = load_device(file).device
+    assert made.drive.travel == 0.0013
+    assert made.magnet.coil is not None
+    assert made.magnet.hold_force == pytest.approx(1.08, abs=0.005)
+    assert list(doubts(made)) == []

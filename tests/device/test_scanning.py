@@ -197,8 +197,8 @@ def test_a_pin_that_is_off_is_dragged_no_further_than_the_plate_can() -> None:
     device = Device(drive=drive())
     path = HandPath([0.0, 0.1, 1.0], [0.0, 0.04, 0.04], [0.0] * 3, (0.01, 0.005))
     (pin,) = scan(device, blank(), path).pins
-    assert device.drag == pytest.approx((0.022 - 0.005) / 100.0)
-    assert pin.position(1.0) == pytest.approx(device.drag, rel=0.5)
+    assert device.drag() == pytest.approx((0.022 - 0.005) / 100.0)
+    assert pin.position(1.0) == pytest.approx(device.drag(), rel=0.5)
     assert pin.motion.segments[-1].finger == 0
 
 

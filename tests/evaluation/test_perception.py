@@ -151,7 +151,7 @@ def sampled(done: Scan, pin: PinScan, passed: Any, felt: float) -> list[dict[str
         out = np.flatnonzero(np.abs(x[released:last] - end) >= band)
         settled = t[released + (out[-1] + 1 if out.size else 0)]
         settles = limit - settled >= np.pi / done.device.drive.natural_frequency
-        place = end if settles else done.device.drag
+        place = end if settles else done.device.drag()
         found.append(
             {
                 "line.latency_on": t[i] - line.begin,

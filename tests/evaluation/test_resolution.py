@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import isnan
+from math import copysign, cos, isnan
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from pindrive import Contact, Drive
 from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
-from pindrive.device import Device, Electromagnet, HandPath, Scene, scan
+from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scene, scan
 from pindrive.evaluation import Criteria, judge
 from pindrive.evaluation.resolution import (
     SpeedLimit,
@@ -47,10 +47,14 @@ def limits() -> SpeedLimits:
 
 
 @pytest.mark.parametrize("finger", [RIGID, SKIN], ids=["rigid", "skin"])
-@pytest.mark.parametrize("speed", [0.02, 0.09, 0.3])
-def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(finger: Contact, speed: float) -> None:
+@pytest.mark.parametrize(
+    ("speed", "axis"), [(0.02, 0.0), (0.09, 0.0), (0.3, 0.0), (0.09, 0.35), (0.09, 2.5)]
+)
+def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(
+    finger: Contact, speed: float, axis: float
+) -> None:
     """A quarter of a look apart; every number as `judge` finds it on a page."""
-    device = Device(drive=drive(finger))
+    device = Device(drive=drive(finger), array=PinArray(axis=axis))
     scene = Scene.from_grating([0.004], count=2, margin=0.15, height=0.001, pixel=5e-5)
     y, look = 0.5 * scene.extent[3], 1.0 / device.control.sample_rate
     backs, skins = [], []
@@ -60,7 +64,7 @@ def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(finger: Contact, spee
         path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, y))
         first, second = judge(scan(device, scene, path, start=[steady(device)])).lines
         merged = "merged" in (first.fate, second.fate)
-        backs.append(0.0 if merged else first.returned / (first.height - device.drag))
+        backs.append(0.0 if merged else first.returned / (first.height - device.drag(axis)))
         skins += [
             max(edge.skin for edge in (line.begin, line.end) if edge.skin == edge.skin)
             for line in (first, second)
@@ -70,14 +74,26 @@ def test_a_trial_is_the_worst_of_four_scans_of_drawn_lines(finger: Contact, spee
     assert trial.skin == pytest.approx(min(skins), rel=1e-6)
 
 
-def test_a_steady_pin_stays() -> None:
+@pytest.mark.parametrize("axis", [0.0, 0.35, 2.5])
+def test_a_steady_pin_stays(axis: float) -> None:
     page = Scene.from_grating([0.004], count=1, margin=0.03, height=0.001)
     for finger in (RIGID, SKIN, Contact(0.030, 0.045), Contact(0.030, 0.045, stiffness=400.0)):
-        device = Device(drive=drive(finger))
+        device = Device(drive=drive(finger), array=PinArray(axis=axis))
         path = HandPath([0.0, 0.2], [0.06] * 2, [0.0] * 2, (0.001, 0.001))
         (pin,) = scan(device, page, path, start=[steady(device)]).pins
         assert pin.position([0.0, 0.1, 0.2]) == pytest.approx(steady(device).position, abs=1e-12)
         assert abs(float(pin.velocity(0.1))) < 1e-9
+        pulled = PLATE.kinetic * cos(axis)  # spring and finger hold it there, as it slid there
+        slid = abs(pulled) > finger.static_friction
+        rest = pulled - copysign(finger.kinetic, pulled) if slid else 0.0
+        assert pin.position(0.2) == pytest.approx(rest / device.drive.stiffness, abs=1e-12)
+
+
+def test_a_drive_at_an_angle_has_a_limit_of_its_own(limits: SpeedLimits) -> None:
+    """The plate carries its pin less far."""
+    turned = replace(DEVICE, array=PinArray(axis="30 deg"))
+    (limit,) = largest_speeds(turned, [0.004], slowest=TRIED[0], fastest=TRIED[1])
+    assert limit.speed != pytest.approx(limits[0].speed, rel=1e-3)
 
 
 def test_the_limit_lies_between_distinct_and_not(limits: SpeedLimits) -> None:

@@ -146,7 +146,7 @@ def test_columns_are_those_of_the_table_on_every_face() -> None:
 def test_columns_of_a_scan_are_those_of_the_table() -> None:
     """In its dataset and in its CSV, which has fewer, they have one name and one value."""
     device = pd.load_device(READER, ["array.columns=1", "array.rows=1"])
-    scan = pd.scan(device, pd.Page(grating=[0.004]))
+    scan = pd.scan(device, pd.Page(grating=[0.004]), touch=0.060)
     scan.to_csv("s.csv", rate=100.0)
     rows = table("s.csv")
     data = scan.to_dataset([float(row["time [s]"]) for row in rows])

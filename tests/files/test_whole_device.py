@@ -141,7 +141,11 @@ def test_every_key_takes_its_usual_value_and_no_nonsense(write: Write, key: str)
         value = '[["0 mm", "1 mm"], ["1 mm", "0 mm"]]'
     if name == "voltage":
         value = '[["0 ms", "1 V"], ["5 ms", "0.5 V"]]'
-    assert load_device(write(f"\n[{table}]\n{coil}\n{name} = {value}\n")).whole
+    path = write(f"\n[{table}]\n{coil}\n{name} = {value}\n")
+    if name == "touch":  # of a finger with a coefficient
+        pressed = 'coefficient = 0.5\ntouch_force = "10 mN"'
+        path.write_text(path.read_text("utf-8").replace('kinetic = "5 mN"', pressed), "utf-8")
+    assert load_device(path).whole
     with pytest.raises(ConfigError) as error:
         load_device(write(f'\n[{table}]\n{coil}\n{name} = "three"\n'))
     assert any(f"device.toml: {key} must be" in line for line in error.value.problems)

@@ -73,6 +73,7 @@ class ExplicitModes:
         self.soft = not self.finger.absent and self.finger.stiffness < inf
         self.mouse, self.load = (np.array(inputs[n], float).T for n in ("mouse_velocity", "load"))
         self.push = np.array(inputs.get("force", [[0.0, 0.0]]), float).T
+        self.touch = np.array(inputs.get("touch", [[0.0, 1.0]]), float).T  # no steps, no skin
         self.across = np.array(inputs.get("across", [[0.0, 0.0]]), float).T
         self.oblique = bool(self.across[1].any())  # then it never is 0
         self.samples, self.tool = list(samples), tool
@@ -101,9 +102,8 @@ class ExplicitModes:
 
     def enter_knot(self) -> None:
         """The lines of mouse velocity and load from the knot t on."""
-        later = [
-            u for u in (*self.mouse[0], *self.load[0], *self.push[0], *self.across[0]) if u > self.t
-        ]
+        rows = (self.mouse, self.load, self.push, self.across, self.touch)
+        later = [u for given in rows for u in given[0] if u > self.t]
         self.t0, self.t1 = self.t, min(later, default=inf)
         self.vp, self.lam = np.interp(self.t, *self.mouse), np.interp(self.t, *self.load)
         self.pushed = np.interp(self.t, *self.push)
@@ -118,6 +118,9 @@ class ExplicitModes:
 
     def load_at(self, t: float) -> float:
         return float(self.lam + self.rise * (t - self.t0))
+
+    def touch_at(self, t: float) -> float:
+        return float(np.interp(t, *self.touch))
 
     # -- forces on the pin ---------------------------------------------------------------------
 
@@ -139,13 +142,13 @@ class ExplicitModes:
             * self.plate(self.pieces["plate"], self.p * (v - self.mouse_at(t)))
         )
 
-    def finger_force(self, v: float, s: float) -> float:
+    def finger_force(self, t: float, v: float, s: float) -> float:
         """Of the finger that slides or grips."""
         if self.finger.absent:
             return 0.0
         if self.grips:
             return float(-self.finger.stiffness * s)
-        return float(-self.f) * self.finger(self.pieces["finger"], self.f * v)
+        return float(-self.f) * self.touch_at(t) * self.finger(self.pieces["finger"], self.f * v)
 
     def free(self, t: float, x: float, v: float) -> float:
         """All but friction."""
@@ -154,7 +157,7 @@ class ExplicitModes:
 
     def plate_needed(self, t: float, y: State) -> float:
         v = self.mouse_at(t)
-        return float(self.m * self.w - self.free(t, y[0], v) - self.finger_force(v, y[2]))
+        return float(self.m * self.w - self.free(t, y[0], v) - self.finger_force(t, v, y[2]))
 
     def finger_needed(self, t: float, y: State) -> float:
         return float(-self.free(t, y[0], 0.0) - self.sliding_plate(t, 0.0))
@@ -166,7 +169,7 @@ class ExplicitModes:
             return float(self.w)
         x, v, s = y
         return float(
-            (self.free(t, x, v) + self.sliding_plate(t, v) + self.finger_force(v, s)) / self.m
+            (self.free(t, x, v) + self.sliding_plate(t, v) + self.finger_force(t, v, s)) / self.m
         )
 
     def rhs(self, t: float, y: State) -> list[float]:
@@ -183,10 +186,10 @@ class ExplicitModes:
         elif self.on_plate:
             found += self.limit("plate", self.plate_needed, self.plate_static)
         elif self.on_finger:
-            found += self.limit("finger", self.finger_needed, lambda t: self.finger.static)
+            found += self.limit("finger", self.finger_needed, self.finger_static)
         if self.grips:
             found += self.limit(
-                "finger", lambda t, y: self.finger.stiffness * y[2], lambda t: self.finger.static
+                "finger", lambda t, y: self.finger.stiffness * y[2], self.finger_static
             )
         for watch in found:
             watch.scale = force
@@ -203,8 +206,11 @@ class ExplicitModes:
     def plate_static(self, t: float) -> float:
         return self.plate.static * self.load_at(t)
 
+    def finger_static(self, t: float) -> float:
+        return self.finger.static * self.touch_at(t)
+
     def both_static(self, t: float) -> float:
-        return self.plate_static(t) + self.finger.static
+        return self.plate_static(t) + self.finger_static(t)
 
     def limit(self, contact: str, force: Function, most: Callable[[float], float]) -> list[Watch]:
         return [
@@ -271,13 +277,13 @@ class ExplicitModes:
 
     def row(self, t: float, y: State) -> tuple[float, ...]:
         if self.on_plate and self.on_finger:
-            force = self.k * y[0] * self.finger.static / self.both_static(t)
+            force = self.k * y[0] * self.finger_static(t) / self.both_static(t)
         else:
-            force = self.finger_needed(t, y) if self.on_finger else self.finger_force(y[1], y[2])
+            force = self.finger_needed(t, y) if self.on_finger else self.finger_force(t, y[1], y[2])
         return (y[0], y[1], self.acceleration(t, y), force, -force / self.finger.stiffness)
 
     def react(self, watch: Watch) -> None:
-        name, law = watch.contact, self.finger if watch.contact == "finger" else self.plate
+        name = watch.contact
         if watch.kind in ("up", "down"):
             self.pieces[name] += 1 if watch.kind == "up" else -1
             self.left = {f"{name} {'down' if watch.kind == 'up' else 'up'}"}
@@ -301,7 +307,7 @@ class ExplicitModes:
             self.arrive_plate()
         else:
             self.v = 0.0
-            self.arrive("finger", self.finger_needed(self.t, self.y), law.static)
+            self.arrive("finger", self.finger_needed(self.t, self.y), self.finger_static(self.t))
 
     @property
     def y(self) -> State:
@@ -387,7 +393,9 @@ class ExplicitModes:
             needed = abs(self.plate_needed(self.t, self.y)) if self.on_plate and less else 0.0
             if needed > self.plate_static(self.t):
                 self.break_loose("plate")
-            if self.on_finger and abs(self.finger_needed(self.t, self.y)) > self.finger.static:
+            if self.on_finger and abs(self.finger_needed(self.t, self.y)) > self.finger_static(
+                self.t
+            ):
                 self.break_loose("finger")
             if self.soft and self.f and not self.grips and self.on_plate and self.vp == 0:
                 self.skin_grips()
@@ -426,6 +434,7 @@ class ExplicitModes:
             self.left = {"plate level", "finger level"}
             force = self.m * self.w - self.k * self.x
             fp, ff = self.plate(0, 0.0) * self.lam_now, self.finger(0, 0.0)
+            ff *= self.touch_at(self.t)
             if self.w == 0:
                 self.on_plate = self.on_finger = abs(force) <= self.both_static(self.t)
                 if not self.on_plate:
@@ -433,7 +442,7 @@ class ExplicitModes:
                 return
             way = copysign(1.0, self.w)
             plate = abs(self.m * self.w - force + way * ff) <= self.plate_static(self.t)
-            finger = abs(-force - way * fp) <= self.finger.static
+            finger = abs(-force - way * fp) <= self.finger_static(self.t)
             if plate and not (finger and was_finger and not was_plate):
                 self.on_plate, self.f = True, way
             elif finger:
@@ -450,7 +459,7 @@ class ExplicitModes:
             self.p, self.left = -copysign(1.0, needed), {"plate level"}
         elif at_finger:
             needed = self.finger_needed(self.t, self.y)
-            self.on_finger = abs(needed) <= self.finger.static
+            self.on_finger = abs(needed) <= self.finger_static(self.t)
             self.f, self.left = -copysign(1.0, needed), {"finger level"}
 
     @property

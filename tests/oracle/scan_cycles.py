@@ -66,7 +66,7 @@ def distance(pin: PinScan, tool: Integrator | None = None) -> Distance:
 def _inputs(pin: PinScan) -> dict[str, Any]:
     motion, load = pin.motion, pin.load
     assert isinstance(motion.release.mouse_velocity, Profile)
-    across = motion.release.across_velocity
+    across, touch = motion.release.across_velocity, pin.finger_load
     return {
         "mass": motion.drive.mass,
         "stiffness": motion.drive.stiffness,
@@ -75,6 +75,7 @@ def _inputs(pin: PinScan) -> dict[str, Any]:
         "finger": _contact(motion.drive.finger),
         "mouse_velocity": [list(row) for row in motion.release.mouse_velocity.rows],
         "load": [list(row) for row in load.rows] if isinstance(load, Profile) else [[0.0, load]],
+        "touch": touch.rows if isinstance(touch, Profile) else [[0.0, touch]],
         "across": across.rows if isinstance(across, Profile) else [[0.0, across]],
         "displacement": 0.0,
         "velocity": 0.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from itertools import product
 from math import isnan
 from pathlib import Path
@@ -14,7 +15,7 @@ from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 from figure_reading import collisions, data, events, legend_of, lines, panel, points, spans
-from pindrive import Contact, Drive
+from pindrive import Contact, Drive, Profile
 from pindrive.cli.app import app
 from pindrive.device import Device, HandPath, PinArray, Scene, scan
 from pindrive.device import lines as lines_of
@@ -350,3 +351,20 @@ def test_the_command_writes_figure_and_lines(tmp_path: Path) -> None:
         assert refused.exit_code == 2
         assert words in refused.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.svg", "lines.csv"]
+
+
+def test_the_history_marks_when_the_finger_is_lifted(judged: Judgement) -> None:
+    """In the panel of the skin's force, and in the key where it is."""
+    finger = Contact(coefficient=0.5, static_coefficient=0.75, stiffness=300.0)
+    device = Device(drive=replace(DRIVE, finger=finger, touch_force=0.040))
+    plain = judge(scan(device, judged.scan.scene, judged.scan.path))
+    begin = moment(plain).begin
+    off, on = begin + 0.05, begin + 0.15
+    touch = Profile([off, off, on, on], [0.040, 0.0, 0.0, 0.040])
+    lifted = judge(scan(device, judged.scan.scene, judged.scan.path, touch=touch))
+    assert moment(lifted).begin == begin
+    drawn = plot_scan(lifted, 0)
+    (span,) = spans(panel(drawn, "force"), "lifted")
+    assert span == pytest.approx((50.0, 150.0), abs=1e-6)
+    assert "finger lifted" in legend_of(drawn)
+    assert "finger lifted" not in legend_of(plot_scan(plain, 0))

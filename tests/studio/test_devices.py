@@ -138,6 +138,10 @@ WRONG_AROUND = [
         'places = [["0 m", "0 m"], ["1 m", "0 m"], ["0 m", "0 m"]]',
         'slot_length = "1 mm"\npin_diameter = "2 mm"',
     )),
+    *(("scan", line) for line in (
+        'touch = "10 mN"', 'touch = [["0 s", "10 mN"], ["1 s", "0 N"]]', 'touch = "-10 mN"',
+        'touch = [["0 s", "10 mN"], ["1 s", "-1 N"]]', 'touch = [["1 s", "10 mN"], ["0 s", "1 N"]]',
+    )),
     ("plate", ""),
 ]  # fmt: skip
 """A table of the whole device, and what stands in it."""

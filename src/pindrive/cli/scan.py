@@ -115,7 +115,14 @@ def scan(
         if film:
             frame_times(hand, slow)
         with bar("Pins") as progress:
-            done = follow(device, scene, hand, max_angle=reading.max_angle, progress=progress)
+            done = follow(
+                device,
+                scene,
+                hand,
+                touch=device_file.touch,
+                max_angle=reading.max_angle,
+                progress=progress,
+            )
         judgement = judge(done, device_file.criteria)
         if output:
             from pindrive.device.dataset import write_netcdf

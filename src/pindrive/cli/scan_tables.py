@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Final
 
 from rich.console import Group, RenderableType
 
-from pindrive.cli.tables import TRUSTED, device_words, new_table, path_words, whole_lines
+from pindrive.cli.tables import (
+    TRUSTED,
+    device_words,
+    new_table,
+    path_words,
+    touch_words,
+    whole_lines,
+)
 from pindrive.device.dataset import gap_words, numbers, peak_warming
 from pindrive.evaluation.resolution import criterion
 from pindrive.quantities.device import PIN
@@ -90,6 +97,7 @@ def _words(scan: Scan) -> list[str]:
         *([path.about] if path.about else []),
         *gap_words(scan),
         *device_words(device),
+        *touch_words(scan.touch),
         *([] if peak is None else [f"A coil warms by up to {peak:.3g} K in this scan."]),
         f"Laws checked without the solver: largest relative residual {worst:.1e}.{doubt}",
     ]

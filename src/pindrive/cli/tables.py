@@ -12,6 +12,7 @@ from rich.text import Text
 
 from pindrive.device.geometry import COPPER, IRON, heaviest
 from pindrive.motion.coefficients import Coefficients
+from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
 from pindrive.quantities.results import TRANSIENT
@@ -77,7 +78,7 @@ def device_report(device: DeviceFile) -> RenderableType:
     lines = [f"{device.name or 'The drive'}: {words}."]
     if device.whole:
         whole, hand = device.device, device.reading
-        lines += device_words(whole)
+        lines += device_words(whole) + touch_words(device.touch)
         lines += meeting_words(whole, max(hand.hand_speed, hand.return_speed))
     elif not drive.plate.frictionless:
         lines.append(f"The plate: {Coefficients.of(drive).words}.")
@@ -230,7 +231,7 @@ def path_words(path: HandPath, axis: float) -> str:
 def device_words(device: Device) -> list[str]:
     """What follows from a device's numbers."""
     length, force = QUANTITIES["displacement"], QUANTITIES["hold_force"]
-    drag = f" Off, the plate drags it {length.text(device.drag)}." if device.drag else ""
+    drag = f" Off, the plate drags it {length.text(device.drag())}." if device.drag() else ""
     if device.reach:
         words = [f"A magnet carries its pin up to {length.text(device.reach)}.{drag}"]
     else:
@@ -270,6 +271,18 @@ def closing_words(magnet: Electromagnet) -> list[str]:
         driven = "pulses" if magnet.steps is None else "voltage"
         words.append(f"With the {driven} given, its gap does not stay closed while it is on.")
     return words
+
+
+def touch_words(touch: float | Profile | None) -> list[str]:
+    """How the finger presses over a scan, where that is given."""
+    force = QUANTITIES["touch"]
+    if touch is None:
+        return []
+    if not isinstance(touch, Profile):
+        return [f"The finger presses on each pin with {force.text(touch)} in a scan."]
+    low, high = (force.text(end(touch.values)) for end in (min, max))
+    lifted = "; at 0 mN it is lifted" if 0.0 in touch.values else ""
+    return [f"The finger presses on each pin with {low} to {high} over the time of a scan{lifted}."]
 
 
 def meeting_words(device: Device, speed: float) -> list[str]:

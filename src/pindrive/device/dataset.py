@@ -15,6 +15,7 @@ from pindrive.device.page import AT_ONCE
 from pindrive.device.trajectory import peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
+from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
@@ -51,6 +52,9 @@ def dataset(scan: Scan, times: ArrayLike | None = None) -> xr.Dataset:
     t = np.atleast_1d(np.asarray(times, np.float64))
     plate_velocity = path.plate_velocity(device.array.axis)(t - path.begin)
     over_time = dict(zip(("hand_x", "hand_y"), path.position(t), strict=True))
+    if scan.touch is not None:
+        touch = scan.touch
+        over_time["touch"] = touch(t) if isinstance(touch, Profile) else np.full(t.shape, touch)
     data: dict[str, Any] = {
         name: ("time", values, SERIES[name].attributes)
         for name, values in (over_time | {"plate_velocity": plate_velocity}).items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import cos
 from typing import TYPE_CHECKING, overload
 
 from pindrive.device.controller import ControlBlock
@@ -75,13 +76,19 @@ class Device:
         ends = self.drive.rigid_travel
         return reach if ends is None else min(reach, ends)
 
-    @property
-    def drag(self) -> float:
-        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it."""
-        plate = self.drive.plate.kinetic * self.load(self.magnet.residual)
-        if plate <= self.drive.finger.static_friction:
+    def drag(
+        self, angle: float = default("axis"), finger_load: float = default("finger_load")
+    ) -> float:
+        """How far the plate drags a pin that is off, m, slowly; 0 where the finger holds it.
+
+        Args:
+            angle: between the hand's motion and the drive axis, rad.
+            finger_load: factor on the finger's friction, 0 where it is lifted.
+        """
+        plate = self.drive.plate.kinetic * self.load(self.magnet.residual) * abs(cos(angle))
+        if plate <= self.drive.finger.static_friction * finger_load:
             return 0.0
-        return (plate - self.drive.finger.kinetic) / self.drive.stiffness
+        return (plate - self.drive.finger.kinetic * finger_load) / self.drive.stiffness
 
     @overload
     def load(self, pull: float) -> float: ...

@@ -26,12 +26,13 @@ from pindrive.device.page import AT_ONCE, FINER, Scene
 from pindrive.device.page_description import Page, recorded
 from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Reading
+from pindrive.device.touch import finger_load, held_stretch
 from pindrive.device.trajectory import Way, check_vibration, peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import Release
+from pindrive.motion.release import Release, input_of
 from pindrive.motion.results import Event
 from pindrive.motion.simulate import simulated
 from pindrive.quantities import budgets
@@ -67,6 +68,10 @@ class DescribedDevice(Protocol):
     def criteria(self) -> Criteria:
         """What counts as felt."""
 
+    @property
+    def touch(self) -> float | Profile | None:
+        """Touch force over the time of a scan, N; None: that of its drive."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PinState:
@@ -77,7 +82,7 @@ class PinState:
     velocity: float | None = 0.0
     """In the housing, m/s; None: carried by the plate."""
     skin_stretch: float | None = None
-    """Of a compliant finger that grips, m; None: it slides, or is rigid, or unstretched."""
+    """Of a compliant finger that grips, or under a pin at rest, m; None: it slides, or is rigid."""
     coil: CoilState | None = None
     """The coil's last switching; None: it is off, without current."""
     decision: Decision = field(default_factory=Decision)
@@ -164,6 +169,11 @@ class PinScan:
         return self.release.plate_load
 
     @property
+    def finger_load(self) -> float | Profile:
+        """Factor on the finger's friction, over the time since `begin`: 0 where it is lifted."""
+        return self.release.finger_load
+
+    @property
     def events(self) -> tuple[Event, ...]:
         """What happened at its contacts, in order, on the path's clock."""
         return tuple(
@@ -194,7 +204,8 @@ class PinScan:
         velocity = self.motion.velocity(lasts, "left")
         # a rigid stop that is struck at the end has taken the velocity: the skin grips as it was
         strikes = abs(position) == drive.rigid_travel and position * velocity > 0.0
-        grips = (last.finger == 0 or strikes) and not drive.finger.rigid
+        # as its touch decreases, skin slips under a pin at rest too, and keeps a stretch
+        grips = (last.finger == 0 or strikes or velocity == 0.0) and not drive.finger.rigid
         return PinState(
             position=position,
             velocity=0.0 if strikes else None if last.plate == 0 else velocity,
@@ -224,6 +235,8 @@ class Scan(lazy.NotebookHtml):
     pins: tuple[PinScan, ...]
     max_angle: float
     """Between motion and drive axis beyond which a warning is given, rad."""
+    touch: float | Profile | None = None
+    """Touch force on each pin over the path's clock, N; None: that of the drive."""
     criteria: Criteria | None = None
     """What counts as felt unless `evaluate` is given other ones; None: the literature's."""
 
@@ -360,6 +373,7 @@ def scan(
     page: Page | Scene | str,
     hand: HandPath | Reading | str | PathLike[str] | None = None,
     *,
+    touch: float | str | Profile | None = None,
     start: Sequence[PinState] | None = None,
     max_angle: float | str | None = None,
     threads: int | None = None,
@@ -373,6 +387,9 @@ def scan(
         hand: how the hand moves: a `HandPath`, whose places are where the hand's axis crosses the
             array's middle; a `Reading`, which strokes along the lines of the page; or the CSV of a
             recorded path. None: as the device file says, and strokes along the page's lines.
+        touch: force with which the finger presses on each pin, N, at least 0: a number, or a
+            `Profile` on the path's clock, 0 where it is lifted; for a finger with a coefficient.
+            None: as the device file says, or that of the drive throughout.
         start: where each pin stands at the path's begin, as `Scan.state` of a scan that ended
             there; None: at the springs' rest, all magnets off.
         max_angle: between motion and drive axis beyond which a warning is given, rad, from 0 to a
@@ -384,8 +401,9 @@ def scan(
         The scan, with its warnings.
 
     Raises:
-        ValueError: the page or the recording cannot be read, a state is missing or cannot be,
-            `threads` is no count, or there is more to do than `pindrive.quantities.budgets` allow.
+        ValueError: the page or the recording cannot be read, a state is missing or cannot be, the
+            finger's friction does not follow a touch force, `threads` is no count, or there is more
+            to do than `pindrive.quantities.budgets` allow.
         SimulationError: the simulation of a pin had to be given up.
 
     Examples:
@@ -425,7 +443,9 @@ def scan(
         raise ValueError(refusal("start", required, str(len(start))))
     angle = reading.max_angle if max_angle is None else check("max_angle", max_angle)
     workers = worker_count(threads)
-    pins = prepare(whole, scene, path, start)
+    if touch is None and described is not None:
+        touch = described.touch
+    pins = prepare(whole, scene, path, start, touch)
     segments = 0
     pool = ThreadPoolExecutor(max_workers=min(workers, len(pins)))
     try:
@@ -442,12 +462,17 @@ def scan(
         path=path,
         pins=tuple(pins),
         max_angle=angle,
+        touch=None if touch is None else input_of("touch", touch),
         criteria=None if described is None else described.criteria,
     )
 
 
 def prepare(
-    device: Device, scene: Scene, path: HandPath, start: Sequence[PinState] | None = None
+    device: Device,
+    scene: Scene,
+    path: HandPath,
+    start: Sequence[PinState] | None = None,
+    touch: float | str | Profile | None = None,
 ) -> list[PinScan]:
     """Read the scene under each spot and switch the coils; nothing moves yet.
 
@@ -457,6 +482,7 @@ def prepare(
     looks = device.control.looks(path.begin, path.end)
     plate_velocity = path.plate_velocity(device.array.axis)
     across_velocity = path.across_velocity(device.array.axis)
+    pressed = finger_load(device.drive, touch, path.begin)
     states = [PinState()] * len(device.array) if start is None else start
     prepared: list[PinScan] = []
     rows = switchings = 0
@@ -468,7 +494,9 @@ def prepare(
         switchings += len(current.begins) - 1
         budgets.SWITCHINGS.check(switchings, f"up to pin {number} of {len(states)}")
         load, coil = _load(device, commands, current, before, path)
-        rows += len(path.times) + (len(load.times) if isinstance(load, Profile) else 1)
+        loads = (load, pressed)
+        rows += sum(len(given.times) if isinstance(given, Profile) else 1 for given in loads)
+        rows += len(path.times)
         budgets.INPUT_ROWS.check(rows, f"up to pin {number} of {len(states)}")
         prepared.append(
             PinScan(
@@ -485,8 +513,11 @@ def prepare(
                     state.position,
                     state.velocity,
                     load,
-                    state.skin_stretch,
+                    None
+                    if state.skin_stretch is None
+                    else held_stretch(state.skin_stretch, device.drive.finger, pressed),
                     across_velocity=across_velocity,
+                    finger_load=pressed,
                 ),
                 coil=coil,
                 decision=decision,

@@ -18,7 +18,8 @@ plate passes under the mouse while the line is read.
   after it, before the next line or the hand's stop (Michelson's, of crest and trough): 1 where the
   pin comes all the way back, 0 where it stays.
 - **Skin** moves as far as a compliant finger stretches. A rigid finger has no skin that gives: the
-  pin's own way is taken, which is the most that skin could move.
+  pin's own way is taken, which is the most that skin could move. A finger that is lifted feels
+  nothing: skin moves as far as it does in any one time of touch.
 - **False lines** are swings forward that no magnet made, at least `echo` times as high as the line
   before (before the first of a stroke of the hand: as that one), which move the skin enough for
   its direction; in a stroke without lines, enough for a sure direction. The height of a line is
@@ -37,6 +38,7 @@ import numpy as np
 from pindrive import lazy
 from pindrive._core import settling_band
 from pindrive.device.device import Criteria
+from pindrive.device.touch import spans
 from pindrive.device.trajectory import Course, Signal, Way
 from pindrive.evaluation.line_crossings import (
     CUES,
@@ -51,6 +53,7 @@ from pindrive.evaluation.line_crossings import (
     turnings,
 )
 from pindrive.lazy import xr
+from pindrive.motion.profile import Profile
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
 from pindrive.quantities.status import Status
@@ -259,6 +262,7 @@ class JudgedPin:
         self.course, self.end = Course(pin.motion), pin.motion.duration
         self.held = self.course.held()
         self.plate = scan.path.plate_velocity(scan.device.array.axis)
+        self.touching = spans(pin.finger_load)
         self.pulls = self._pulls()
 
     # ---- what the magnet did -----------------------------------------------------------------
@@ -401,6 +405,12 @@ class JudgedPin:
 
     def _moved(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
         """How far the skin moves forward between two times, and what the finger makes of it."""
+        times = [(max(begin, touch), min(end, lift)) for touch, lift in self.touching]
+        moved = [self._moved_in(skin, touch, lift) for touch, lift in times if touch < lift]
+        return max(moved, key=lambda found: (CUES.index(found[1]), found[0]), default=(0.0, "none"))
+
+    def _moved_in(self, skin: Signal, begin: float, end: float) -> tuple[float, Cue]:
+        """The same between two times from one to the other of which the finger touches."""
         limits = self.criteria
         base = float(skin(begin, "left"))
         way = self.course.highest(skin, begin, end)[1] - base
@@ -423,7 +433,9 @@ class JudgedPin:
         band = settling_band * abs(float(x(release)) - end)
         since = self.course.last_beyond(x, end, band, release, limit)
         settles = limit - since >= self._patience or self.course.rests(limit)
-        place = end if settles else self.scan.device.drag
+        load = self.pin.finger_load
+        pressed = load(limit) if isinstance(load, Profile) else load
+        place = end if settles else self.scan.device.drag(finger_load=pressed)
         over = max(0.0, (place - low) / (peak - place)) if peak > place else nan
         return since if settles else nan, over
 

@@ -1,6 +1,7 @@
 """How fast the hand may move before two lines run into one.
 
-Two lines, black, stand `pitch` apart; an even hand goes over them. They are **distinct** at its
+Two lines, black, stand `pitch` apart; an even hand goes straight over them, at the angle of the
+drive axis (`array.axis`) to the drive. They are **distinct** at its
 speed if, wherever the control block's looks happen to fall (`PHASES` of them are tried),
 
 - between them the pin comes back at least `part` of its way from its highest place to where spring
@@ -22,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, isnan, nan, pi
+from math import copysign, cos, inf, isnan, nan, pi, sin
 from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
@@ -382,7 +383,9 @@ def _pass(
     begin, end = -speed * (MOMENT + look), begins[-1] + width + speed * after
     pixel = min(width, pitch - width) / FINE
     shifts = [speed * look * i / PHASES for i in range(PHASES)]
-    phases = PinArray([(0.0, float(i)) for i in range(PHASES)], [(s, 0.0) for s in shifts])
+    axis = device.array.axis
+    spots = [(s * cos(axis), -s * sin(axis)) for s in shifts]  # s ahead along the hand's way
+    phases = PinArray([(0.0, float(i)) for i in range(PHASES)], spots, axis)
     page = _page(begins, width, begin - pixel, end + speed * look + pixel, pixel)
     lasts = (end - begin) / speed
     path = HandPath([0.0, lasts], [speed] * 2, [0.0] * 2, (begin, 0.5 * pixel))
@@ -405,12 +408,13 @@ def _clear(device: Device) -> float:
 
 def steady(device: Device) -> PinState:
     """How a pin stands under a hand that has gone evenly for long: dragged, and at rest."""
-    finger = device.drive.finger
+    finger, along = device.drive.finger, cos(device.array.axis)
+    position = copysign(device.drag(device.array.axis), along)
     if finger.rigid:
-        return PinState(position=device.drag)
-    plate = device.drive.plate.kinetic * device.load(device.magnet.residual)
+        return PinState(position=position)
+    plate = device.drive.plate.kinetic * device.load(device.magnet.residual) * abs(along)
     held = plate if plate <= finger.static_friction else finger.kinetic
-    return PinState(position=device.drag, skin_stretch=held / finger.stiffness)
+    return PinState(position=position, skin_stretch=copysign(held / finger.stiffness, along))
 
 
 def _page(begins: Sequence[float], width: float, left: float, right: float, pixel: float) -> Scene:
@@ -426,7 +430,7 @@ def _back(device: Device, line: Line) -> float:
     """The part of its way back to its place of rest that the pin comes after a line."""
     if isnan(line.returned):
         return 0.0
-    high = line.height - device.drag
+    high = line.height - device.drag(device.array.axis)
     return line.returned / high if high > 0.0 else 0.0
 
 

@@ -2,7 +2,7 @@
 
 Each pin's way is a brush stroke as wide as the pins' tracks are apart, its colour the deflection,
 counted forward: the way the plate goes while the hand reads. Where several pins passed, their mean.
-The way back to the next line is not painted.
+The way back to the next line is not painted, nor is what passes under a finger that is lifted.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pindrive.device.touch import spans
 from pindrive.device.trajectory import Way
 from pindrive.quantities import budgets
 
@@ -39,7 +40,7 @@ class Painting:
     """The tactile image of a scan."""
 
     deflection: NDArray[np.float64]
-    """Mean deflection forward, m, shape (rows, columns); NaN where no pin passed."""
+    """Mean deflection forward, m, (rows, columns); NaN where no pin passed that was touched."""
     extent: tuple[float, float, float, float]
     """Left, right, top and bottom on the page, m."""
 
@@ -55,7 +56,7 @@ def paint(scan: Scan) -> Painting:
     columns, rows = (max(1, round(side / cell)) for side in (right - left, bottom - top))
     t, sign = _reading(scan, cell)
     half = _brush(scan) + 0.5 * cell
-    offsets = np.linspace(-half, half, 2 * max(1, round(half / cell)) + 1)
+    offsets = np.linspace(-half, half, 2 * int(half / cell) + 3)
     ax, ay = scan.device.array.direction
     total, count = np.zeros(rows * columns), np.zeros(rows * columns)
     of = f"{len(scan.pins)} pins at {len(t)} times, {len(offsets)} side by side"
@@ -101,7 +102,11 @@ def _reading(scan: Scan, cell: float) -> tuple[NDArray[np.float64], float]:
     lasts = ends - begins
     forward = bool(lasts[along > 0.0].sum() >= lasts[along < 0.0].sum())
     sign = 1.0 if forward else -1.0
-    return t[sign * plate(t - path.begin) > 0.0], sign
+    t = t[sign * plate(t - path.begin) > 0.0]
+    touched = np.zeros(t.shape, bool)
+    for touch, lift in spans(scan.pins[0].finger_load):  # alike at all pins
+        touched |= (t - path.begin >= touch) & (t - path.begin < lift)
+    return t[touched], sign
 
 
 def _brush(scan: Scan) -> float:

@@ -39,6 +39,7 @@ from pindrive.files.schema import (
     drive_of,
     drive_problems,
     keep_ratios,
+    over_time,
     read_values,
     release_of,
     table_of,
@@ -133,7 +134,14 @@ class DeviceFile:
     @property
     def reading(self) -> Reading:
         """How a hand reads with it."""
-        return Reading(**table_of(self._whole.values, "scan"))
+        given = table_of(self._whole.values, "scan")
+        del given["touch"]
+        return Reading(**given)
+
+    @property
+    def touch(self) -> float | Profile | None:
+        """Touch force over the time of a scan, N; None: that of the drive."""
+        return over_time(self._whole.values["scan.touch"])
 
     @property
     def criteria(self) -> Criteria:

@@ -32,6 +32,7 @@ from pindrive.motion.drive import (
     Drive,
     check_curve,
     check_one_kind,
+    check_presses,
     check_static,
     check_stops,
     check_stretch,
@@ -314,6 +315,11 @@ class Whole:
             problems.check(check_apart, places, keys=("array.places",))
         slot = values["array.slot_length"], values["array.pin_diameter"]
         problems.check(check_slot, *slot, keys=("array.slot_length", "array.pin_diameter"))
+        if (touch := values["scan.touch"]) is not None:
+            given_by = contact_of(values, "finger").coefficient is not None
+            force = values["finger.touch_force"]
+            keys = ("scan.touch", "finger")
+            problems.check(check_presses, touch, given_by, force, keys=keys)
         counts = "array.columns", "array.rows"
         for key in counts:
             problems.check(check_count, key.partition(".")[2], values[key], keys=(key,))

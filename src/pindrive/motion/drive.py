@@ -291,6 +291,19 @@ def check_touch(by_coefficient: bool, touch_force: float | None) -> None:
         raise ValueError(refusal("touch_force", required, f"{touch_force!r} N"))
 
 
+def check_presses(touch: object, by_coefficient: bool, touch_force: float | None) -> float:
+    """Refuse a touch force over time where friction does not follow it; the usual one, N."""
+    if by_coefficient and touch_force:
+        return touch_force
+    friction = "no force" if by_coefficient else "given as a force"
+    required = (
+        f"left out where the finger's friction is {friction}; "
+        "it needs finger.coefficient and a finger.touch_force greater than 0 N"
+    )
+    given = f"{touch!r} N" if isinstance(touch, float) else "one over time"
+    raise ValueError(refusal("touch", required, given))
+
+
 def check_stops(travel: float | None, stiffness: float | None, damping: float | None) -> None:
     """Refuse what describes end stops (m, N/m, N*s/m) without what they need."""
     for name, value, unit in (

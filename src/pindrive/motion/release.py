@@ -74,15 +74,15 @@ class Release:
     ) -> None:
         """Validate, and keep plain floats."""
         put = object.__setattr__
-        put(self, "mouse_velocity", _input("mouse_velocity", mouse_velocity))
+        put(self, "mouse_velocity", input_of("mouse_velocity", mouse_velocity))
         put(self, "displacement", check("displacement", displacement))
         put(self, "velocity", None if velocity is None else check("velocity", velocity))
-        put(self, "plate_load", _input("plate_load", plate_load))
+        put(self, "plate_load", input_of("plate_load", plate_load))
         stretch = None if skin_stretch is None else check("skin_stretch", skin_stretch)
         put(self, "skin_stretch", stretch)
-        put(self, "force", _input("force", force))
-        put(self, "across_velocity", _input("across_velocity", across_velocity))
-        put(self, "finger_load", _input("finger_load", finger_load))
+        put(self, "force", input_of("force", force))
+        put(self, "across_velocity", input_of("across_velocity", across_velocity))
+        put(self, "finger_load", input_of("finger_load", finger_load))
 
     @property
     def initial_velocity(self) -> float:
@@ -97,7 +97,7 @@ def initial(given: float | Profile) -> float:
     return given(0.0) if isinstance(given, Profile) else given
 
 
-def _input(name: str, given: float | str | Profile) -> float | Profile:
+def input_of(name: str, given: float | str | Profile) -> float | Profile:
     """A constant or a profile, each value of it checked."""
     if not isinstance(given, Profile):
         return check(name, given)

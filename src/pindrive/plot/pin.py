@@ -9,10 +9,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from pindrive.device.touch import spans
 from pindrive.device.trajectory import Course
 from pindrive.evaluation.line_crossings import printed
 from pindrive.plot.style import (
     GREY,
+    LIFTED,
     MM,
     MS,
     PALETTE,
@@ -123,6 +125,7 @@ def draw_history(
     pull.set_ylim(0.0, 1.15 * scan.device.magnet.hold_force)
     signs = _draw_motion(pin, chosen, x, t, ms)
     _draw_force(judgement, pin, force, t, ms)
+    lifted = _draw_lifted(pin, chosen, force)
     number = f" {chosen.pin}" if len(scan.pins) > 1 else ""
     seen.set_title(
         f"pin{number} from {chosen.begin:.3f} s on, {where}",
@@ -134,7 +137,7 @@ def draw_history(
     force.set_xlabel("time (ms)")
     force.set_xlim(0.0, MS * (chosen.end - chosen.begin))
     figure.align_ylabels((seen, pull, x, force))
-    return _key(signs)
+    return [*_key(signs), *lifted]
 
 
 def _times(pin: PinScan, chosen: Moment) -> NDArray[np.float64]:
@@ -219,6 +222,22 @@ def _draw_force(
         other.set_ylim(*(1e3 / finger.stiffness * force for force in axes.get_ylim()))
         other.set_ylabel("stretch (µm)")
         other.spines["right"].set_visible(True)
+
+
+def _draw_lifted(pin: PinScan, chosen: Moment, axes: Axes) -> list[Artist]:
+    """While the finger is lifted; the sign for it, where it is."""
+    begin, end = chosen.begin - pin.begin, chosen.end - pin.begin
+    touched = [(max(t, begin), min(u, end)) for t, u in spans(pin.finger_load)]
+    ends = [begin, *(time for t, u in touched if t < u for time in (t, u)), end]
+    lifted = [
+        (MS * (lift - begin), MS * (touch - lift))
+        for lift, touch in zip(ends[::2], ends[1::2], strict=True)
+        if lift < touch
+    ]
+    if not lifted:
+        return []
+    shade(axes, lifted, "lifted", **LIFTED, zorder=0.2)
+    return [Patch(**LIFTED, label="finger lifted")]
 
 
 def _key(signs: list[Sign]) -> list[Artist]:

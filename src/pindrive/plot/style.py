@@ -63,6 +63,8 @@ CURVES: Final[tuple[dict[str, Any], ...]] = (
 
 PRINTED: Final[dict[str, Any]] = {"fc": "0.96", "ec": "0.72", "hatch": "/////", "lw": 0.0}
 """Where a printed line passes: hatched, so that what the plate carries is told from it in grey."""
+LIFTED: Final[dict[str, Any]] = {"fc": "none", "ec": "#0072B2", "hatch": "....", "lw": 0.0}
+"""While the finger is lifted: dotted, as nothing is felt."""
 HANDS: Final[dict[str, Any]] = {"fc": "#FBF0D8", "ec": "#E69F00", "hatch": "\\\\\\\\", "lw": 0.0}
 """A band that other areas cover."""
 HALO: Final = [withStroke(linewidth=2.0, foreground="white")]

@@ -172,6 +172,20 @@ SCAN: Final = optional(
         "assumed",
     ),
     Quantity(
+        "touch",
+        "N_f(t)",
+        "N",
+        "touch force of the finger on each pin, over the time of the scan",
+        NON_NEGATIVE,
+        source="assumed: a finger that rests for 0.4 s, lifts within 20 ms, and presses again",
+        remark="one value, rows over time, or a CSV of them, for a finger with a coefficient; "
+        "finger.touch_force throughout unless given",
+        example=0.060,
+        rows_of="profile",
+        rows=((0.4, 0.060), (0.42, 0.0), (0.8, 0.0), (0.82, 0.060)),
+        seen=between(0.0, 100.0),
+    ),
+    Quantity(
         "line_pitch",
         "h_l",
         "m",
@@ -338,6 +352,10 @@ READER: Final[dict[str, dict[str, Any]]] = {
         "default": 0.5,
         "source": "assumed, an elastic sleeve: half as much again as the largest of 0.04, 0.16, "
         '0.32 in Fig. 4 of "Dynamics of tactile device drive", read as ratios; it settles sooner',
+    },
+    "drive.travel": {
+        "example": 0.0013,
+        "source": "assumed: stops just within the 1.35 mm that the slot below leaves either way",
     },
     "plate.kinetic": {
         "default": None,

@@ -143,7 +143,7 @@ COIL: Final = optional(
         "m",
         "gap between each pole and the steel: paint, roughness",
         between(1e-9, 0.1),
-        source="assumed",
+        source="assumed: with the coil below it pulls with 1.08 N",
         example=5e-5,
     ),
     Quantity(
@@ -172,7 +172,7 @@ COIL: Final = optional(
         "m",
         "diameter of the copper in its wire",
         between(1e-7, 0.1),
-        source="assumed",
+        source="assumed: 250 turns fill 36 % of a winding 0.45 mm thick and 12 mm high",
         example=1e-4,
     ),
     Quantity(

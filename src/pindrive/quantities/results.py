@@ -162,6 +162,7 @@ MOTION: Final[tuple[Quantity, ...]] = (
 SCANNED: Final[tuple[Quantity, ...]] = (
     Quantity("hand_x", "x_h", "m", "place of the hand across the page"),
     Quantity("hand_y", "y_h", "m", "place of the hand down the page"),
+    Quantity("touch", "N_f", "N", "touch force of the finger on each pin"),
     Quantity("luminance", "L", "1", "luminance under the pin's spot"),
     Quantity("command", "u", "", "whether the magnet is switched on"),
     Quantity("current", "c", "1", "current in the coil, a part of the full one"),

@@ -53,7 +53,7 @@ def scan_numbers(plan: Plan, at: Mapping[str, float]) -> dict[str, float]:
     device, reading = file.device, file.reading
     scene = plan.page.scene(reading, device.array)
     path = plan.page.hand(reading, scene, device.array)
-    done = scan(device, scene, path, max_angle=reading.max_angle, threads=1)
+    done = scan(device, scene, path, touch=file.touch, max_angle=reading.max_angle, threads=1)
     numbers: dict[str, float] = done.evaluate(file.criteria).numbers
     return numbers
 

@@ -110,6 +110,10 @@ def _around(plan: Plan, axes: Mapping[str, Axis]) -> Iterator[str]:
         for key in ("array.columns", "array.rows", "array.pitch"):
             if key in axes:
                 yield f"{key} cannot be varied beside array.places"
+    if "scan.touch" in axes and plan.device.drive.finger.coefficient is None:
+        yield "scan.touch cannot be varied where finger.kinetic is a force"
+    if "finger.touch_force" in axes and "touch" in plan.device.tables["scan"]:
+        yield "finger.touch_force has no effect beside scan.touch, which gives the touch force"
     for key in COUNTS:
         axis = axes.get(key)
         if isinstance(axis, Distribution):

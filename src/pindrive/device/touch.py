@@ -1,0 +1,57 @@
+"""How the finger presses over a scan: the load on its friction, and when it touches the pins."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import copysign, inf
+from typing import TYPE_CHECKING
+
+from pindrive.motion.drive import Drive, check_presses
+from pindrive.motion.profile import Profile
+from pindrive.motion.release import initial, input_of
+
+if TYPE_CHECKING:
+    from pindrive.motion.drive import Contact
+
+
+def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float) -> float | Profile:
+    """The factor on the finger's friction, over the time since `begin`.
+
+    Args:
+        drive: of each pin, whose friction is that under its `touch_force`.
+        touch: touch force, N, over the time of the scan; None: that of the drive.
+        begin: of the scan, s.
+
+    Raises:
+        ValueError: a value is no number or out of its range, or friction does not follow it.
+    """
+    if touch is None:
+        return 1.0
+    given = input_of("touch", touch)
+    usual = check_presses(given, drive.finger.coefficient is not None, drive.touch_force)
+    if not isinstance(given, Profile):
+        return given / usual
+    return Profile([t - begin for t in given.times], [force / usual for force in given.values])
+
+
+def spans(load: float | Profile) -> list[tuple[float, float]]:
+    """From when to when a finger under a load touches, s; in between it is lifted."""
+    if not isinstance(load, Profile):
+        return [(-inf, inf)] if load > 0.0 else []
+    first, last = load.values[0], load.values[-1]
+    rows = [(-inf, first), *load.rows, (inf, last)]
+    found: list[tuple[float, float]] = []
+    for (begin, y), (end, z) in pairwise(rows):
+        if end > begin and max(y, z) > 0.0:
+            if found and found[-1][1] == begin and y > 0.0:
+                begin, _ = found.pop()
+            found.append((begin, end))
+    return found
+
+
+def held_stretch(stretch: float, finger: Contact, load: float | Profile) -> float:
+    """What a finger keeps of its skin's stretch (m) as a load begins: beyond it, the skin slips."""
+    pressed = initial(load)
+    if abs(stretch) <= finger.static_friction * pressed / finger.stiffness:
+        return stretch
+    return copysign(finger.kinetic * pressed / finger.stiffness, stretch)
