@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "pindrive/series.hpp"
+#include "pindrive/slow_slider.hpp"
 
 namespace pindrive {
 
@@ -269,9 +270,12 @@ class CreepFlow : public SeriesStep<T> {
   bool converged_{false}, holds_{false};
 };
 
-/// The step to take from a state: of creep where the pin creeps, else the Taylor series.
+/// The step to take from a state: the Taylor series, but without its fast part where that is over: where the
+/// pin creeps, or on a slider of stiff skin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
+  if (SlowSliderFlow<T>::stiff(e))
+    if (const SlowSliderFlow<T> slow(e, start, limit); slow.holds()) return slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;
   const bool slides = plain(start.v) != plain(e.plate_velocity.value) || plain(e.across.value) != 0;

@@ -47,9 +47,11 @@ class SeriesFlow : public SeriesStep<T> {
     this->trim();
   }
 
- private:
+ protected:
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::beyond, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
+
+ private:
   /// So many times the time of the fastest rate at most, even where nothing changes: what rounding puts into
   /// the start is then followed too, and remains rounding. And so often a step is made shorter.
   static constexpr Real longest = 8;
@@ -103,6 +105,9 @@ class SeriesFlow : public SeriesStep<T> {
            plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
   }
 
+ protected:
+  SeriesFlow() = default;
+
   /// The recurrences, in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
     if (sets_out(e, start)) return expand_from_rest(e, start, step);
@@ -149,6 +154,7 @@ class SeriesFlow : public SeriesStep<T> {
     }
   }
 
+ private:
   /// The same where u and w begin at 0: the direction is that of u/σ and w/σ, so that its order n needs the
   /// velocity of the order n + 1, in which the equation is linear.
   void expand_from_rest(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {

@@ -50,6 +50,7 @@ struct SeriesEquation {
   Line<T> skin_factor{T(0), T(0)};     ///< f: 1, or N s/m
   T skin_stiffness{0}, skin_decay{0};  ///< K and D, N/m
   T skin_drift{0};                     ///< E, N/s
+  const T* stretching{nullptr};        ///< the orders of (f y)', where that is known, N/s
   bool held{false};                    ///< by a surface of this velocity, m/s
   Line<T> surface{T(0), T(0)};
 
@@ -69,7 +70,9 @@ struct SeriesEquation {
   template <class Coefficients>
   void follow(Coefficients& y, const Coefficients& v, int n, T step) const {
     const T turns = skin_factor.rate * T(n + 1);
-    if (skin_factor.value != 0) {
+    if (stretching != nullptr) {
+      y[n] = (skin_stiffness * v[n] - (n == 0 ? skin_drift : T(0)) - stretching[n]) / skin_decay;
+    } else if (skin_factor.value != 0) {
       const T stretches = skin_stiffness * v[n] - skin_decay * y[n] - (n == 0 ? skin_drift : T(0));
       y[n + 1] = step / T(n + 1) * (stretches - turns * y[n]) / skin_factor.value;
     } else if (n > 0 && skin_factor.rate != 0) {

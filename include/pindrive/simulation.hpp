@@ -267,8 +267,7 @@ class Simulation : private Selection<T> {
     else
       look_ahead();
     const T now = finger_.load.value, known = rounding<T> * (abs(value) + 2 * abs(rate) * time_);
-    if (abs(value - now) > known + rounding<T> * abs(now))
-      return abs(value) > known ? value : T(0);
+    if (abs(value - now) > known + rounding<T> * abs(now)) return abs(value) > known ? value : T(0);
     finger_.keeps_force(state_, value);
     return now;
   }

@@ -162,6 +162,9 @@ class BySeries {
         mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
     const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
+    if (segment.creeps && SlowSliderFlow<T>::stiff(mode.equation()))
+      if (const SlowSliderFlow<T> slow(mode.equation(), start, span, true); slow.holds())
+        return slow;
     if (segment.creeps)
       for (const bool within_step : {true, false})
         if (const CreepFlow<T> creep(mode.equation(), start, span, within_step); creep.holds())
