@@ -175,7 +175,7 @@ def written(folder: Path, touch: str, finger: str = BY_COEFFICIENT) -> Path:
 
 
 def test_a_device_file_says_how_the_finger_presses(tmp_path: Path) -> None:
-    (tmp_path / "press.csv").write_text("t [ms], touch [mN]\n0, 60\n200, 60\n220, 0\n")
+    (tmp_path / "press.csv").write_text("time [ms], touch [mN]\n0, 60\n200, 60\n220, 0\n")
     rows = Profile([0.0, 0.2, 0.22], [0.06, 0.06, 0.0])
     for touch in (
         'touch = "press.csv"',
@@ -222,7 +222,7 @@ def test_a_device_file_that_cannot_be(tmp_path: Path, touch: str, finger: str, s
 
 def test_a_csv_names_file_row_and_column(tmp_path: Path) -> None:
     file = written(tmp_path, 'touch = "press.csv"')
-    (tmp_path / "press.csv").write_text("t [ms], touch [mN]\n0, 60\n200, -1\n")
+    (tmp_path / "press.csv").write_text("time [ms], touch [mN]\n0, 60\n200, -1\n")
     with pytest.raises(ValueError, match=r".") as caught:
         load_device(file)
     said = str(caught.value)
