@@ -61,8 +61,8 @@ FMU_PLATFORMS = {
     "aarch64-darwin": ("aarch64-macos", "dylib"),
 }
 
-# Small, and linked as C: fmu/runtime.cpp takes the place of what a runtime of C++ would add. Nothing
-# is thrown, so that no frame needs a table for unwinding: on Windows these are a tenth of the file.
+# Small, and linked as C: fmu/runtime.cpp takes the place of what a runtime of C++ adds. Nothing
+# is thrown, so that no frame needs a table to unwind it: on Windows these are a tenth of the file.
 FMU_COMPILE = (
     *("-std=c++17", "-Os", "-Xclang", "-Oz", "-g0", "-DPINDRIVE_WITHIN", "-ffp-contract=off"),
     *("-fno-math-errno", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections"),
