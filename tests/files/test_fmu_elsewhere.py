@@ -1,4 +1,4 @@
-"""The library of FMUs for Windows, run by Wine where it is installed."""
+"""The libraries of FMUs for other platforms, run where Wine and QEMU are installed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from platform import machine
 from zipfile import ZipFile
 
 import fmpy
@@ -22,6 +23,9 @@ MOUSE = ROOT / "examples" / "tactile-mouse.toml"
 OUTPUTS = ("position", "velocity", "acceleration", "plate_force", "finger_force", "next_event_time")
 # The x86-64 Wine of Debian and of others.
 WINE = shutil.which("wine64", path=os.pathsep.join([os.environ.get("PATH", ""), "/usr/lib/wine"]))
+# The user-mode emulator, and the C library of aarch64 as Debian's libc6-arm64-cross has it.
+QEMU = shutil.which("qemu-aarch64-static") or shutil.which("qemu-aarch64")
+SYSROOT = Path("/usr/aarch64-linux-gnu")
 
 
 def driven(folder: Path, target: str, runs: list[str], resources: str, library: Path) -> str:
@@ -38,6 +42,7 @@ def driven(folder: Path, target: str, runs: list[str], resources: str, library: 
     asked += [f"o{numbers[name]}" for name in OUTPUTS]
     token = description.instantiationToken
     environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+    environment["WINEDLLOVERRIDES"] = "mscoree=;mshtml="  # no offer to install Mono and Gecko
     done = subprocess.run(
         [*runs, str(program), str(library), resources, token, *asked],
         env=environment,
@@ -50,23 +55,38 @@ def driven(folder: Path, target: str, runs: list[str], resources: str, library: 
     return done.stdout
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="Wine on Linux")
-def test_the_windows_library_says_what_that_of_linux_does(tmp_path: Path) -> None:
-    if not WINE or not find_spec("ziglang"):
-        pytest.skip("needs wine64, and ziglang, which `python3 run.py fmu-binaries` installs")
+@pytest.fixture
+def unit(tmp_path: Path) -> Path:
+    """The folder of an FMU."""
+    if not find_spec("ziglang"):
+        pytest.skip("needs ziglang, which `python3 run.py fmu-binaries` installs")
     archive = tmp_path / "drive.fmu"
     write_fmu(load_device(MOUSE), archive)
-    with ZipFile(archive) as unit:
-        unit.extractall(tmp_path)
-    windows, linux = (
-        tmp_path / "binaries" / place
-        for place in ("x86_64-windows/pindrive.dll", "x86_64-linux/pindrive.so")
-    )
-    if not windows.exists() or not linux.exists():
-        pytest.skip("needs the libraries for x86-64 of `python3 run.py fmu-binaries`")
-    folder = f"{tmp_path / 'resources'}/"
-    here = driven(tmp_path, "x86_64-linux-gnu", [], folder, linux)
-    there = driven(tmp_path, "x86_64-windows-gnu", [WINE], f"Z:{folder}", windows)
+    with ZipFile(archive) as packed:
+        packed.extractall(tmp_path)
+    return tmp_path
+
+
+def library(unit: Path, name: str) -> Path:
+    found = unit / "binaries" / name
+    if not found.exists():
+        pytest.skip(f"needs {name} of `python3 run.py fmu-binaries`")
+    return found
+
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux" or machine() != "x86_64", reason="emulators on Linux on x86-64"
+)
+
+
+def test_the_windows_library_says_what_that_of_linux_does(unit: Path) -> None:
+    if not WINE:
+        pytest.skip("needs wine64")
+    windows = library(unit, "x86_64-windows/pindrive.dll")
+    linux = library(unit, "x86_64-linux/pindrive.so")
+    folder = f"{unit / 'resources'}/"
+    here = driven(unit, "x86_64-linux-gnu", [], folder, linux)
+    there = driven(unit, "x86_64-windows-gnu", [WINE], f"Z:{folder}", windows)
     expected, found = (
         np.array(
             [[float.fromhex(word) for word in line.split()] for line in said.splitlines()[:-1]]
@@ -78,3 +98,20 @@ def test_the_windows_library_says_what_that_of_linux_does(tmp_path: Path) -> Non
     assert there.splitlines()[-1] == here.splitlines()[-1]
     largest = np.where(expected < 1e300, np.abs(expected), 0.0).max(axis=0)
     assert (np.abs(found - expected) <= 1e-12 * largest).all()
+
+
+def test_the_library_of_aarch64_has_the_bits_of_x86_64(unit: Path) -> None:
+    if not QEMU or not SYSROOT.exists():
+        pytest.skip("needs qemu-user-static and libc6-arm64-cross")
+    here, there = (
+        driven(
+            unit,
+            f"{name}-linux-gnu",
+            runs,
+            f"{unit / 'resources'}/",
+            library(unit, f"{name}-linux/pindrive.so"),
+        )
+        for name, runs in (("x86_64", []), ("aarch64", [QEMU, "-L", str(SYSROOT)]))
+    )
+    assert len(here.splitlines()) == 201
+    assert there == here
