@@ -115,7 +115,7 @@ void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T m
   using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
   const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
-  const T crept = 100 * abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
+  const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
                   4 * rounding<T> * time * changes;
   if (abs(state.v - plate.surface.value) > crept) return;
   if (on_finger)
