@@ -32,7 +32,8 @@ TOO_WIDE = """() => {
     return box.width > 0 && box.right > innerWidth + 1 && !reached(e) && e.checkVisibility();
   });
   const named = lost.map((e) => `${e.localName}: ${(e.textContent || "").trim().slice(0, 40)}`);
-  return {width: Math.max(innerWidth, document.documentElement.scrollWidth), lost: named.slice(0, 5)};
+  const width = Math.max(innerWidth, document.documentElement.scrollWidth);
+  return {width, lost: named.slice(0, 5)};
 }"""
 """How wide a page is, and what of it is beyond its right edge where no reader can scroll to it."""
 
@@ -57,7 +58,7 @@ def address() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def telephone(address: str) -> Iterator[Any]:
-    """A page in a browser that emulates a telephone; it fails where the site asks another machine."""
+    """A page of a browser like a telephone; it fails where the site asks another machine."""
     program = shutil.which("chromium")
     sync_api = pytest.importorskip("playwright.sync_api")
     if not program:
