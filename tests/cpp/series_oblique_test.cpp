@@ -110,7 +110,10 @@ void sets_out_and_lands() {
   state.v = 0.101;
   pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
   expect(state.v == 0.101, "... one that slides does not");
-  state.v = 0.1 + 1e-8;
+  state.v = 0.1 + 3e-9;
+  pd::detail::land_along_axis(state, touch, false, 1e-9, mass, 1.0);
+  expect(state.v == 0.1 + 3e-9, "... nor one that is faster along than its plate was across");
+  state.v = 0.1 + 5e-10;
   pd::detail::land_along_axis(state, touch, true, 1e-9, mass, 1.0);
   expect(touch.surface.value == state.v, "... and a pin on the finger keeps its own");
 }

@@ -350,7 +350,7 @@ def test_the_ranges_of_the_printed_forms(made: Report) -> None:
     r = population.damped()
     ratio, light = damping_ratio(r), damping_ratio(r) <= 0.32
     assert of["8"].good.startswith("x_0 > x_d (1847 ")
-    assert "by π to $< 10^{-15}$ where x_0 < x_d" in of["8"].against
+    assert "by π to $< 10^{-12}$ where x_0 < x_d" in of["8"].against
     assert of["2"].right == of["2"].good == ""
     assert of["25, 26"].good == "nowhere"
     for number, name in (("14", "peak_displacement"), ("17", "swing")):

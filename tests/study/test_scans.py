@@ -242,7 +242,7 @@ def test_every_number_of_the_device_file_may_be_varied(table: str) -> None:
             f"[axes]\n{key} = {json.dumps([quantity.written(x) for x in (base, other)])}\n",
             device=(
                 BY_COEFFICIENT
-                if "coefficient" in key or key == "finger.touch_force"
+                if "coefficient" in key or "touch" in key
                 else STOPPED
                 if key.startswith("drive.stop_")
                 else DEVICE + (coiled or (PULSED if "pwm" in key else ""))

@@ -187,7 +187,7 @@ def roots(
     sign: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """The first times at which f no longer has its sign, shape (n,); see `brackets`."""
-    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)))[1]
+    return brackets(f, low, high, sign, max(2, PIECES // max(1, low.size)), 0.0)[1]
 
 
 def brackets(
@@ -196,7 +196,7 @@ def brackets(
     high: NDArray[np.float64],
     sign: NDArray[np.float64],
     pieces: int,
-    precision: float = 0.0,
+    precision: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The last places where f has its sign and the first where not, by cutting brackets.
 
