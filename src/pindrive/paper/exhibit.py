@@ -122,8 +122,10 @@ def by_case(found: dict[str, str]) -> str:
 
 
 def at_most(value: float) -> str:
-    """A bound on a rounding error: the next power of a thousand, as TeX, that the rounding of another
-    machine, ten times as large, does not pass either."""
+    """A bound on a rounding error, as TeX: the next power of a thousand.
+
+    Ten times the value for safety: other processors round otherwise.
+    """
     return "0" if value == 0.0 else rf"< 10^{{{3 * ceil(log10(10 * value) / 3)}}}"
 
 
