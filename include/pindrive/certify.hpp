@@ -76,11 +76,10 @@ class Certifier {
         segment, [&](const auto& along) -> Numbers { return evaluate(segment, along).at(T(0)); });
   }
 
-  bool on_skin() const { return drive_.finger.present() && !drive_.finger.rigid(); }
-
   T energy(const Numbers& s) const {
-    const T skin =
-        on_skin() ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness) : T(0);
+    const T skin = drive_.finger.compliant()
+                       ? s.finger_force * s.finger_force / (2 * drive_.finger.stiffness)
+                       : T(0);
     return drive_.mass * s.v * s.v / 2 + drive_.stiffness * s.x * s.x / 2 + skin +
            motion_.stop_energy(s.x);
   }
@@ -355,7 +354,7 @@ class Certifier {
       const T known = detail::rounding<T> * before.end * std::max(abs(left.a), abs(right.a));
       worst(result_.continuity, std::max(abs(left.v - right.v) - known, T(0)), scales_.v);
     }
-    if (!on_skin()) return;
+    if (!drive_.finger.compliant()) return;
     const T asked = abs(left.finger_force), drop = asked - abs(right.finger_force);
     if (event.finger != Transition::slip) {
       const Line<T> load = motion_.inputs().finger_load.from(before.begin);

@@ -76,7 +76,6 @@ class EvaluatedSegment {
         finger_rate(along.derivative(along.finger_force())) {}
 
   const Mode& mode() const { return segment.mode; }
-  bool on_skin() const { return drive.finger.present() && !drive.finger.rigid(); }
   bool oblique() const { return mode().plate == ContactState::slip_oblique; }
 
   State at(T tau) const {
@@ -99,7 +98,7 @@ class EvaluatedSegment {
 
   /// The sliding velocity on the finger, m/s.
   T on_finger(const State& s) const {
-    if (!on_skin()) return s.v;
+    if (!drive.finger.compliant()) return s.v;
     return s.v + along.at(finger_rate, s.moment) / drive.finger.stiffness;
   }
 
@@ -121,14 +120,19 @@ class EvaluatedSegment {
                      : by_velocity;
   }
 
-  /// What the forces are unsure by, N: …
+  /// What the forces are unsure by, N.
   T unsure(const PinState<T>& s) const {
     const T time = segment.begin + s.tau;
     const T of_skin = slips(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
     return of_skin + turning_unsure(s, time);
   }
-  /// … that of a plate that slides across too turns with the velocity, which is known to its rounding and to
-  /// that of the time.
+  /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
+  /// changes, and by that of the force, of whose change it is known.
+  const T slider_unsure = unsure_slider();
+
+ private:
+  /// Of that, what a plate that slides across too brings: its force turns with the velocity, which is known to
+  /// its rounding and to that of the time.
   T turning_unsure(const PinState<T>& s, T time) const {
     using std::abs;
     if (!oblique()) return T(0);
@@ -142,14 +146,9 @@ class EvaluatedSegment {
     return 4 * rounding<T> * moves * strength * turns * turns / speed;
   }
 
-  /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
-  /// changes, and by that of the force, of whose change it is known.
-  const T slider_unsure = unsure_slider();
-
- private:
   T unsure_slider() const {
     using std::abs;
-    if (!on_skin() || finger_load.rate == 0) return T(0);
+    if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
     const auto bend = along.derivative(finger_rate);
     T most{0};
     for (const T tau : {T(0), span}) {

@@ -74,6 +74,8 @@ struct Contact {
   int branches{0};
 
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
+  /// Whether skin stretches between it and the pin.
+  bool compliant() const { return present() && !rigid(); }
   /// Whether the slider may lag behind the pin: that of skin on a friction curve.
   bool may_lag() const { return branches > 0 && !rigid(); }
   Branch<T> branch(int index) const {

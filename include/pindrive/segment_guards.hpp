@@ -49,7 +49,7 @@ class SegmentGuards {
     else if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
       within(drive.plate.branch(mode.plate_branch), along_.sliding_speed(), false);
     // A slider is slower than the pin by what its skin stretches.
-    if (segment.on_skin()) {
+    if (drive.finger.compliant()) {
       const int others = count_;
       slipping(drive.finger, mode.finger, mode.finger_branch,
                along_.velocity() + 1 / drive.finger.stiffness * segment.finger_rate);

@@ -162,14 +162,13 @@ class BySeries {
         mode.lags() ? v.start + of_finger.drift / drive.finger.stiffness : -of_finger.start;
     const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
-    if (segment.creeps && SlowSliderFlow<T>::stiff(mode.equation()))
-      if (const SlowSliderFlow<T> slow(mode.equation(), start, span, true); slow.holds())
-        return slow;
+    const SeriesEquation<T> e = mode.equation();
+    if (segment.creeps && SlowSliderFlow<T>::stiff(e))
+      if (const SlowSliderFlow<T> slow(e, start, span, true); slow.holds()) return slow;
     if (segment.creeps)
       for (const bool within_step : {true, false})
-        if (const CreepFlow<T> creep(mode.equation(), start, span, within_step); creep.holds())
-          return creep;
-    return SeriesFlow<T>(mode.equation(), start, span, true);
+        if (const CreepFlow<T> creep(e, start, span, within_step); creep.holds()) return creep;
+    return SeriesFlow<T>(e, start, span, true);
   }
   /// Of a rigid finger, or skin, that slips.
   Polynomial<T> of_finger(const Drive<T>& drive, const Mode& mode, const Line<T>& load) const {
