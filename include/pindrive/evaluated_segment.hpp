@@ -150,15 +150,23 @@ class EvaluatedSegment {
     using std::abs;
     if (!drive.finger.compliant() || finger_load.rate == 0) return T(0);
     const auto bend = along.derivative(finger_rate);
-    T most{0};
+    T most{0}, terms{0};  // of its rate, and of the force, whose parts may cancel
     for (const T tau : {T(0), span}) {
       const auto now = along.moment(tau);
       const T faster = along.at(acceleration, now) + along.at(bend, now) / drive.finger.stiffness;
       most = std::max(most, abs(faster));
+      terms = std::max(terms, abs(along.at(along.finger_force(), now)) +
+                                  2 * finger_load.at(tau) * finger_at_rest());
     }
-    most *= rounding<T> * (segment.begin + span);
-    const T carries = abs(along.at(along.finger_force(), along.moment(T(0))));
-    return most + rounding<T> * carries / (drive.finger.stiffness * span);
+    return rounding<T> * (most * (segment.begin + span) + terms / (drive.finger.stiffness * span));
+  }
+  /// How large the friction of the finger's branch is, continued to no speed, N.
+  T finger_at_rest() const {
+    using std::abs;
+    if (!slips(mode().finger)) return T(0);
+    const int last = std::max(drive.finger.branches - 1, 0);
+    const Branch<T> branch = drive.finger.branch(std::clamp(mode().finger_branch, 0, last));
+    return abs(branch.force - branch.slope * branch.from);
   }
 };
 

@@ -75,8 +75,8 @@ struct SeriesEquation {
     } else if (skin_factor.value != 0) {
       const T stretches = skin_stiffness * v[n] - skin_decay * y[n] - (n == 0 ? skin_drift : T(0));
       y[n + 1] = step / T(n + 1) * (stretches - turns * y[n]) / skin_factor.value;
-    } else if (n > 0 && skin_factor.rate != 0) {
-      y[n] = skin_stiffness * v[n] / (skin_decay + turns);
+    } else if (skin_factor.rate != 0) {
+      y[n] = (skin_stiffness * v[n] - (n == 0 ? skin_drift : T(0))) / (skin_decay + turns);
     }
   }
   /// The most that y is off over a step of length h, where f y is off by no more than `pull`, x' by `faster`

@@ -207,7 +207,8 @@ class Simulation : private Selection<T> {
     limit_ = 0;
     struck_ = false;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
-    T rest{0};  // velocity of what is on the finger
+    bool known = on_finger;
+    T rest{0};  // velocity of what is on the finger, or at an end of a branch there, where it is known
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
       if (meets_stop(guard, row)) continue;
@@ -223,14 +224,17 @@ class Simulation : private Selection<T> {
         state_.v = (guard.plate ? side.surface.value : level) + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
-        if (!guard.plate) rest = state_.v;
+        if (!guard.plate) {
+          known = true;
+          rest = state_.v;
+        }
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit * loaded;
       } else if (!row) {
         limit_ = guard.side;
       }
     }
-    if (on_plate && on_finger) plate_.surface.value = rest;
+    if (on_plate && known) plate_.surface.value = rest;
     if (on_finger || on_plate) state_.v = on_finger ? rest : plate_.surface.value;
     if (finger_.sliding() && !drive_.finger.rigid())
       state_.skin = finger_.skin_force(state_, loaded);
