@@ -41,8 +41,9 @@ class Certifier {
       if (segment.end > duration_) break;
       const Segment<T>* next = motion_.after(segment);
       if (next == nullptr) break;
-      if (next == &segment + 1) worst(result_.continuity, segment.end - next->begin, segment.end);
-      junction(segment, last, start_of(*next));
+      const bool in_order = next == &segment + 1;
+      if (in_order) worst(result_.continuity, segment.end - next->begin, segment.end);
+      junction(segment, last, start_of(*next), in_order ? next->begin : segment.end);
     }
     const T energy = std::max({stored_, input_, dissipated_});
     worst(result_.energy, unaccounted_, energy);
@@ -341,7 +342,7 @@ class Certifier {
 
   // ---- from segment to segment -------------------------------------------------------------------
 
-  void junction(const Segment<T>& before, const Numbers& left, const Numbers& right) {
+  void junction(const Segment<T>& before, const Numbers& left, const Numbers& right, T time) {
     using std::abs;
     const Event event = before.event;
     worst(result_.continuity, left.x - right.x, scales_.x);
@@ -363,12 +364,12 @@ class Certifier {
       worst(result_.continuity, std::max(jump - known, T(0)), scales_.force);
       return;
     }
-    const T load = motion_.inputs().finger_load.from(before.end).value;
+    const T load = motion_.inputs().finger_load.from(time).value;
     const bool gripped = before.mode.finger == ContactState::elastic_stick;
     if (gripped)
       worst(result_.transitions, std::max(drive_.finger.static_limit * load - asked, T(0)),
             scales_.force);
-    const bool lifts = !(load > 0) || lifts_off(before.mode, left.v, before.end);
+    const bool lifts = !(load > 0) || lifts_off(before.mode, left.v, time);
     const T most = !lifts ? load * most_from(gripped ? 0 : before.mode.finger_branch + 1) : T(0);
     const T unmet = std::max(most - asked, T(0));
     worst(result_.continuity, drop > 0 ? std::min(drop, unmet) : drop, scales_.force);

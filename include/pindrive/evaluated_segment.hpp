@@ -158,7 +158,8 @@ class EvaluatedSegment {
       terms = std::max(terms, abs(along.at(along.finger_force(), now)) +
                                   2 * finger_load.at(tau) * finger_at_rest());
     }
-    return rounding<T> * (most * (segment.begin + span) + terms / (drive.finger.stiffness * span));
+    const T rate = span > 0 ? terms / (drive.finger.stiffness * span) : T(0);
+    return rounding<T> * (most * (segment.begin + span) + rate);
   }
   /// How large the friction of the finger's branch is, continued to no speed, N.
   T finger_at_rest() const {

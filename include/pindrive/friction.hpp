@@ -99,7 +99,7 @@ struct Touch : SlidingSkin<T> {
       return this->after_landing(rest_ == ContactState::absent ? sense_ : -sense_, index);
     if (rest_ == ContactState::absent) {
       if (index == 0) return {goes_on_, at_, branch_, sense_};
-      if (!contact.rigid()) return this->after_landing(sense_);
+      if (!contact.rigid()) return this->after_landing(sense_, index);
       const bool faster = at_ == Bound::upper;
       return {goes_on_, faster ? Bound::lower : Bound::upper, branch_ + (faster ? 1 : -1), sense_};
     }

@@ -98,8 +98,11 @@ class SlidingSkin : public TouchState<T> {
   TouchOption<T> after_landing(T sense, int index = 0) const {
     if (lifted()) return {};
     const Landing<T>& there = turns_back(index) ? other_ : landing_;
-    if (there.grips) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
-    return slip(there.turns ? -sense : sense, there.at, there.branch);
+    if (!there.grips) return slip(there.turns ? -sense : sense, there.at, there.branch);
+    if (!either_way_) return {ContactState::elastic_stick, Bound::none, 0, T(0)};
+    const int way = breaks_ ? index : index - 1;
+    if (way == 0) return {ContactState::elastic_stick, Bound::upper, 0, T(0)};
+    return slip(way == 1 ? sense : -sense, Bound::lower);
   }
 
   /// The slider of a pin that slips at the start; where its curve falls it is no faster than it can be.
@@ -181,10 +184,16 @@ class SlidingSkin : public TouchState<T> {
     count = breaks_ ? 1 : either_way_ && u == 0 ? 3 : 2;
     comes_to_rest(goes, -sense_, u);
   }
-  /// What follows where it has landed: without static friction what grips slips on with the pin, and where
-  /// it meets the speed of the pin at the begin of a branch, only the pin's acceleration tells which way it goes.
+  /// What follows where it has landed: without static friction what grips slips on with the pin, or the way that
+  /// a pin at rest sets out, and where it meets the speed of the pin at the begin of a branch, only the pin's
+  /// acceleration tells which way it goes.
   void comes_to_rest(const Slider<T>& goes, T sense, T u) {
-    if (landing_.grips && landing_.drops && contact.static_limit == 0 && u != 0) {
+    if (landing_.grips && landing_.drops && contact.static_limit == 0) {
+      either_way_ = u == 0;
+      if (either_way_) {
+        count += 2;
+        return;
+      }
       landing_ = slider(-sense, u).faster(0, T(0));
       landing_.drops = landing_.turns = true;
     }
@@ -204,7 +213,9 @@ class SlidingSkin : public TouchState<T> {
     const T u = s.v < 0 ? -s.v : s.v, known = first_grip<T> * row;
     if (load.value == 0 && load.rate > 0) {
       const T most = stretching(contact.static_limit);
-      if (!contact.may_lag() || !(u > most) || !slider(T(1), u).from_zero().grips) return row;
+      if (!contact.may_lag() || u == 0 || u < most) return row;
+      const Landing<T> there = slider(T(1), u).from_zero();
+      if (!there.grips && there.at != Bound::lower) return row;
       load.rate = T(0);
       return std::min(row, time + u / most * known);
     }
