@@ -20,9 +20,15 @@ struct Verdict {
   pd::Status status{};
   std::size_t segments{};
   std::size_t instants{};  ///< segments of zero length
+  std::size_t changes{};   ///< events at which a contact does something else
 
+  /// Whether the motion itself, and not how it is computed, has more events than are followed: it is judged until
+  /// there.
+  bool beyond_limit() const {
+    return status == pd::Status::too_many_events && instants == 0 && 16 * changes > segments;
+  }
   bool good() const {
-    return status == pd::Status::ok && certificate.worst() <= largest_residual && mirror == 0 &&
+    return (status == pd::Status::ok || beyond_limit()) && certificate.worst() <= largest_residual && mirror == 0 &&
            cut <= largest_residual;
   }
 };
@@ -30,9 +36,15 @@ struct Verdict {
 /// What is said of a run before it is judged.
 inline Verdict seen(const pd::Outcome<double>& outcome,
                     const std::vector<pd::Segment<double>>& segments) {
-  const auto instants = std::count_if(segments.begin(), segments.end(),
-                                      [](const auto& s) { return !(s.end > s.begin); });
-  return {{}, 0, 0, outcome.status, segments.size(), static_cast<std::size_t>(instants)};
+  const auto count = [&](auto&& is) {
+    return static_cast<std::size_t>(std::count_if(segments.begin(), segments.end(), is));
+  };
+  const auto instants = count([](const auto& s) { return !(s.end > s.begin); });
+  const auto changes = count([](const auto& s) {
+    const auto none = pd::Transition::none;
+    return s.event.plate != none || s.event.finger != none || s.event.stop != none;
+  });
+  return {{}, 0, 0, outcome.status, segments.size(), instants, changes};
 }
 
 inline Verdict simulated(const Case& c, std::vector<pd::Segment<double>>& segments) {
@@ -48,10 +60,10 @@ inline Verdict judge(const Case& c, bool thoroughly, std::vector<pd::Segment<dou
   const pd::Motion<double> motion(given.drive, given.inputs, segments.data(), segments.size(),
                                   outcome);
   Verdict verdict = seen(outcome, segments);
-  if (outcome.status != pd::Status::ok) return verdict;
+  if (outcome.status != pd::Status::ok && !verdict.beyond_limit()) return verdict;
   pd::Certificate<double>& certificate = verdict.certificate;
-  certificate = pd::Certifier<double>(motion, c.duration).certify();
-  if (!thoroughly) return verdict;
+  certificate = pd::Certifier<double>(motion, std::min(c.duration, outcome.until)).certify();
+  if (!thoroughly || verdict.beyond_limit()) return verdict;
   const auto ledger = pd::energy_ledger(motion, c.duration);
   double rest = std::abs(ledger.residual());
   if (rest >

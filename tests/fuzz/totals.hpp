@@ -49,6 +49,7 @@ struct Totals {
   long long drives{0}, segments{0};
   long long instants{0};      ///< segments of zero length
   long long inconsistent{0};  ///< drives in which no candidate was consistent
+  long long beyond_limit{0};  ///< drives with more events than are followed
   Largest most_segments;
   std::array<Largest, laws.size()> worst;
   std::vector<long long> failed;
@@ -60,6 +61,7 @@ struct Totals {
     segments += count;
     instants += static_cast<long long>(verdict.instants);
     inconsistent += verdict.status == pd::Status::inconsistent ? 1 : 0;
+    beyond_limit += verdict.beyond_limit() ? 1 : 0;
     most_segments.meet({static_cast<double>(count), number});
     for (std::size_t i = 0; i < laws.size(); ++i)
       worst[i].meet({laws[i].residual(verdict), number});
@@ -71,6 +73,7 @@ struct Totals {
     segments += other.segments;
     instants += other.instants;
     inconsistent += other.inconsistent;
+    beyond_limit += other.beyond_limit;
     most_segments.meet(other.most_segments);
     for (std::size_t i = 0; i < laws.size(); ++i) worst[i].meet(other.worst[i]);
     failed.insert(failed.end(), other.failed.begin(), other.failed.end());
@@ -109,6 +112,7 @@ inline void write(std::ostream& out, const Range& range, const Totals& totals) {
       << "segments " << totals.segments << '\n'
       << "of_zero_length " << totals.instants << '\n'
       << "inconsistent " << totals.inconsistent << '\n'
+      << "beyond_event_limit " << totals.beyond_limit << '\n'
       << "most_segments " << totals.most_segments.value << " case " << totals.most_segments.at
       << '\n'
       << "seconds " << totals.seconds << '\n';
@@ -125,7 +129,7 @@ inline bool read(std::istream& in, Range& range, Totals& totals) {
   std::size_t failures = 0;
   in >> word >> range.seed >> word >> range.from >> word >> family >> word >> totals.drives >>
       word >> range.count >> word >> totals.segments >> word >> totals.instants >> word >>
-      totals.inconsistent >> word >> totals.most_segments.value >> word >>
+      totals.inconsistent >> word >> totals.beyond_limit >> word >> totals.most_segments.value >> word >>
       totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
