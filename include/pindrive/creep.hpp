@@ -61,10 +61,11 @@ class CreepFlow : public SeriesStep<T> {
       const bool converged = converged_;
       const Real changed = change(part);
       converged_ = changed <= unit * size(plate_force, part) / plain(e.mass);
-      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
+      const bool stays = round > 2 && !converged_ && changed > last / 2;  // nor would it converge
+      if (stays && !within_step) return;
       last = changed;
       // The derivatives of a dual number converge one round later.
-      if (!converged && (!within_step || round + 1 != most_rounds)) continue;
+      if (!converged && !(within_step && (stays || round + 1 == most_rounds))) continue;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       holds_ = within_step || bound(e, plain(e.mass) * change(part));

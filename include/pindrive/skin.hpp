@@ -213,11 +213,14 @@ class SlidingSkin : public TouchState<T> {
     const T u = s.v < 0 ? -s.v : s.v, known = first_grip<T> * row;
     if (load.value == 0 && load.rate > 0) {
       const T most = stretching(contact.static_limit);
-      if (!contact.may_lag() || u == 0 || u < most) return row;
-      const Landing<T> there = slider(T(1), u).from_zero();
+      if (!contact.may_lag() || !(most > 0) || u < most) return row;
+      const Slider<T> goes = slider(T(1), u);
+      const Landing<T> there = goes.from_zero();
       if (!there.grips && there.at != Bound::lower) return row;
+      const T slope = contact.branch(goes.faster(0, contact.static_limit).branch).slope;
+      const T slips = slope > 0 ? contact.stiffness / (slope * load.rate) : T(0);
       load.rate = T(0);
-      return std::min(row, time + u / most * known);
+      return std::min(row, time + std::max(u / most, slips) * known);
     }
     if (load.rate > 0) return row;
     const T ends = load.at(row - time);
