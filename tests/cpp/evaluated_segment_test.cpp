@@ -89,6 +89,29 @@ void skin() {
   });
 }
 
+/// The force of a steep branch is a difference of terms far larger.
+void steep_skin() {
+  const pd::Branch<double> curve[] = {{0, 0.05, 0.02, 0, 0}, {0.05, 1e9, 0.02, 1e4, 0}};
+  Drive drive{0.01, 100, 0.4, {0.02, 0.02}, {0.02, 0.02, 300}};
+  drive.finger.curve = curve;
+  drive.finger.branches = 2;
+  pd::Inputs<double> inputs{pd::Profile<double>(0.1), 0, 0.1};  // NOLINT: cannot throw
+  const double times[] = {0, 0.01}, loads[] = {1, 0.1};
+  inputs.finger_load = {times, loads, 2};
+  inputs.duration = 0.01;
+  const auto steep = [](const pd::Segment<double>& s) { return s.mode.finger_branch == 1; };
+  in_segment(drive, inputs, steep, [&](const auto& there) {
+    const double load = there.finger_load.at(there.span), terms = 2 * load * (1e4 * 0.05 - 0.02);
+    expect(there.slider_unsure > 1e-16 * terms / (300 * there.span) &&
+               there.slider_unsure < 1e-13 * terms / (300 * there.span),
+           "the speed of a slider is known to the rounding of the terms of its force");
+    using Segment = std::decay_t<decltype(there)>;
+    const Segment empty(drive, there.scales, inputs, 0, there.segment, there.along);
+    expect(empty.span == 0 && empty.slider_unsure >= 0 && empty.slider_unsure < 1e-9,
+           "nothing follows from a segment of zero length");
+  });
+}
+
 void oblique() {
   const Drive drive{0.01, 100, 0.4, {0.02, 0.02}, {}};
   pd::Inputs<double> inputs{pd::Profile<double>(0.03), 1e-4, 0};  // NOLINT: cannot throw
@@ -121,6 +144,7 @@ int main() {
   free_of_stops();
   stops();
   skin();
+  steep_skin();
   oblique();
   return check::status();
 }

@@ -23,6 +23,12 @@ const pd::Contact<double> skin{0.2, 0.3, 1000};
 const pd::Branch<double> viscous[] = {{0, never, 0.2, 1, 0}};
 const pd::Contact<double> lagging{0.2, 0.3, 1000, viscous, 1};
 
+/// Falls by 100 N s/m from 0.3 N at rest to 0.2 N at 1 mm/s.
+const pd::Branch<double> falling[] = {{0, 1e-3, 0.3, -100, 0}, {1e-3, never, 0.2, 0, 0}};
+/// Rises from nothing to 0.02 N at 10 mm/s, and falls to nothing at 30 mm/s.
+const pd::Branch<double> peak[] = {
+    {0, 0.01, 0, 2, 0}, {0.01, 0.03, 0.02, -1, 0}, {0.03, never, 0, 0, 0}};
+
 State at(double v, double force) { return {1e-3, v, force, 1e-3, 1e-16}; }
 
 Touch gripping(const pd::Contact<double>& contact, double load = 1) {
@@ -72,6 +78,30 @@ void slips() {
   expect(near(even.stretching(0.2), 4e-4, 1e-15), "less what it stretches as its load grows");
 }
 
+void runs_away_at_rest() {
+  Touch touch(pd::Contact<double>{0, 0, 1000, peak, 3});
+  touch.load = {1, 0};
+  touch.does = Touch::slip(1, Bound::none);
+  touch.reached = Bound::upper;
+  State state = at(0, 0.02);
+  state.slide = 0.01;
+  touch.ask(state);
+  expect(touch.count == 4 && touch.option(1).state == ContactState::elastic_stick &&
+             touch.option(2).state == ContactState::slip_forward &&
+             touch.option(3).state == ContactState::slip_backward,
+         "skin that has lost its force beside a pin at rest may set out either way");
+  const auto holds = [&](int option, double acceleration) {
+    touch.does = touch.option(option);
+    return touch.goes_inside(state, acceleration);
+  };
+  expect(holds(1, 0) && !holds(1, 1), "it rests with a pin that rests");
+  expect(holds(2, 1) && !holds(2, -1) && holds(3, -1) && !holds(3, 1),
+         "and follows one that does not");
+  touch.does = touch.option(2);
+  touch.land(state);
+  expect(state.skin == 0 && state.slide == 0, "without force");
+}
+
 void lifts() {
   Touch touch = gripping(skin);
   touch.load = {0, 5};
@@ -79,6 +109,14 @@ void lifts() {
   touch.ask(state);
   expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.rate == 5,
          "a load that grows from zero is followed by skin without a curve");
+  Touch falls(pd::Contact<double>{0.2, 0.3, 1000, falling, 2});
+  falls.load = {0, 5};  // its limit grows as fast as a pin of 1.5 mm/s stretches it
+  State slow = at(1.4e-3, 0), just = at(1.5e-3, 0);
+  expect(falls.keeps_off_zero(slow, 1, 2) == 2 && falls.load.rate == 5,
+         "by one that it can grip under, too");
+  const double asked = falls.keeps_off_zero(just, 1, 2);
+  expect(asked > 1 && asked < 1 + 1e-9 && falls.load.rate == 0,
+         "where it could grip at its limit only, it waits until its rounds have times");
   touch.load = {1, -1};
   expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.value == 1,
          "one far from zero is followed until its row");
@@ -96,6 +134,7 @@ void lifts() {
 int main() {
   grips();
   slips();
+  runs_away_at_rest();
   lifts();
   return check::status();
 }
