@@ -46,6 +46,8 @@ class CreepFlow : public SeriesStep<T> {
     if (!(step > 0)) return;
     this->begin(step);
     Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
+    SeriesStep<T> nearest;    // that the rounds have come to, where rounding keeps them from converging
+    Real least = std::numeric_limits<Real>::infinity();
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
       // What the rounds still change is less than what they changed.
       const Real v = plain(e.plate_velocity.value + e.across.value * t_), off = plain(start.v) - v;
@@ -61,11 +63,16 @@ class CreepFlow : public SeriesStep<T> {
       const bool converged = converged_;
       const Real changed = change(part);
       converged_ = changed <= unit * size(plate_force, part) / plain(e.mass);
-      const bool stays = round > 2 && !converged_ && changed > last / 2;  // nor would it converge
-      if (stays && !within_step) return;
+      if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
       last = changed;
+      if (within_step && changed < least) {
+        least = changed;
+        nearest = *this;
+      }
       // The derivatives of a dual number converge one round later.
-      if (!converged && !(within_step && (stays || round + 1 == most_rounds))) continue;
+      const bool ends = within_step && round + 1 == most_rounds;
+      if (!converged && !ends) continue;
+      if (!converged) static_cast<SeriesStep<T>&>(*this) = nearest;
       if (!within_step && !starts_from(e, start)) return;
       this->rescale(part);
       holds_ = within_step || bound(e, plain(e.mass) * change(part));

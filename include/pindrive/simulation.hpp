@@ -194,7 +194,7 @@ class Simulation : private Selection<T> {
     const T coincident = tau + rounding<T> * (time_ + tau);
     const bool row = tau == row_ - time_;
     const T end = row ? row_ : time_ + tau;
-    const T lasts = finger_.rounds_time() ? end - time_ : tau;
+    const T lasts = finger_.rounds_time() && end > time_ ? end - time_ : tau;
     series_.move(state_, drive_, finger_, lasts);
     if (!series_.used()) {
       const bool turns = tau == half_period_ && segment.flow.velocity.value == 0 && linear();

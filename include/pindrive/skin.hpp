@@ -213,14 +213,12 @@ class SlidingSkin : public TouchState<T> {
     const T u = s.v < 0 ? -s.v : s.v, known = first_grip<T> * row;
     if (load.value == 0 && load.rate > 0) {
       const T most = stretching(contact.static_limit);
-      if (!contact.may_lag() || !(most > 0) || u < most) return row;
-      const Slider<T> goes = slider(T(1), u);
-      const Landing<T> there = goes.from_zero();
+      if (!contact.may_lag() || u == 0 || u < most) return row;
+      const Landing<T> there = slider(T(1), u).from_zero();
       if (!there.grips && there.at != Bound::lower) return row;
-      const T slope = contact.branch(goes.faster(0, contact.static_limit).branch).slope;
-      const T slips = slope > 0 ? contact.stiffness / (slope * load.rate) : T(0);
+      const T round = stretching(carries_at_most());  // for each second that it waits
       load.rate = T(0);
-      return std::min(row, time + std::max(u / most, slips) * known);
+      return std::min(row, time + u / round * known);
     }
     if (load.rate > 0) return row;
     const T ends = load.at(row - time);
@@ -242,6 +240,13 @@ class SlidingSkin : public TouchState<T> {
   bool lifted() const { return load.value == 0 && !(load.rate > 0); }
   Slider<T> slider(T sense, T u) const {
     return {contact, sense * u, contact.rigid() ? T(0) : load.rate / contact.stiffness};
+  }
+  /// The friction under a load of 1 at which a slider that gets faster from rest runs away, N.
+  T carries_at_most() const {
+    T most = contact.static_limit;
+    for (int j = 0; j < contact.branches && contact.branch(j).slope >= 0; ++j)
+      if (j + 1 < contact.branches) most = std::max(most, contact.branch(j + 1).force);
+    return most;
   }
   bool off(T distance, T u) const {
     using std::abs;
