@@ -289,6 +289,8 @@ class Certifier {
                   T(0)));
       else if (does == ContactState::stick)
         raise(errors.sticking, u);
+      else if (does == ContactState::absent && law.present())
+        raise(errors.friction, std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
     };
     if (evaluated.oblique())
       raise(errors.friction, evaluated.oblique_error(s));
@@ -303,7 +305,8 @@ class Certifier {
                       .slope)
             : T(0);
     contact(drive_.finger, mode.finger, evaluated.on_finger(s), s.finger_force, pressed,
-            pressed * slope * evaluated.slider_unsure);
+            mode.finger == ContactState::absent ? evaluated.lifted_unsure()
+                                                : pressed * slope * evaluated.slider_unsure);
   }
 
   template <class Trajectory>

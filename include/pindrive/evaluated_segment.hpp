@@ -126,6 +126,12 @@ class EvaluatedSegment {
     const T of_skin = slips(mode().finger) ? skin_unsure(drive, finger_load, time, s) : T(0);
     return of_skin + turning_unsure(s, time);
   }
+  /// What skin carries at most where it is not followed, as its load comes from zero or to it: what this does to the
+  /// momentum is within the rounding of the time, N.
+  T lifted_unsure() const {
+    if (!drive.finger.compliant() || finger_load.rate == 0 || !(span > 0)) return T(0);
+    return 256 * rounding<T> * scales.force * (segment.begin + span) / span;
+  }
   /// What the speed of a slider under a load that changes is unsure by, m/s: by the rounding of the time, in which it
   /// changes, and by that of the force, of whose change it is known.
   const T slider_unsure = unsure_slider();

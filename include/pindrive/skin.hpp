@@ -201,7 +201,7 @@ class SlidingSkin : public TouchState<T> {
     const bool meets = goes.pin(landing_.friction) == landing_.speed;
     if (!breaks_ && !(meets && landing_.branch > 0)) return;
     other_ = goes.slower(landing_.branch, landing_.friction);
-    meets_other_ = breaks_ || !other_.grips;
+    meets_other_ = breaks_ || landing_.drops || !other_.grips;
     if (meets_other_) ++count;
   }
 
