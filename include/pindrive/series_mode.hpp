@@ -160,7 +160,10 @@ class SeriesMode {
     friend class SeriesMode;
     void add(Polynomial<T> path, bool at_zero, detail::Bound bound, bool plate, int side) {
       if (at_zero) leave_zero(path.c);
-      const T zero = first_zero(path);
+      // A step that begins beyond the bound by rounding, and goes on there, ends at once.
+      const bool speed = bound == detail::Bound::lower || bound == detail::Bound::upper;
+      const bool beyond = speed && !at_zero && path.c[0] < 0 && path.c[1] < 0;
+      const T zero = beyond ? T(0) : first_zero(path);
       list_[count_++] = {path, bound, plate, side, zero};
     }
     /// Makes exact what the selection of the mode has judged: coefficients to the other side are rounding, or

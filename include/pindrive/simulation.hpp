@@ -238,7 +238,7 @@ class Simulation : private Selection<T> {
     if (on_finger || on_plate) state_.v = on_finger ? rest : plate_.surface.value;
     if (finger_.sliding() && !drive_.finger.rigid())
       state_.skin = finger_.skin_force(state_, loaded);
-    land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
+    land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_, row_);
     if (stop_.settles(state_) || struck_) begin_at_stop();
   }
 
