@@ -215,6 +215,18 @@ MUTANTS = (
         "{step.velocity.c[0], T(0), T(0), rate}",
         "{step.velocity.c[0], T(0), T(0), 0 * rate}",
     ),
+    Mutant(
+        "skin without static friction carries nothing until the next row",
+        "skin.hpp",
+        "const T round = stretching(carries_at_most());",
+        "const T round = most;",
+    ),
+    Mutant(
+        "the slider of a load that grows from zero begins where it was",
+        "series_equation.hpp",
+        "} else if (skin_factor.rate != 0) {",
+        "} else if (n > 0 && skin_factor.rate != 0) {",
+    ),
     # This one is seen by the mirror alone …
     Mutant(
         "of the limits of skin, the upper one is looked at first",
