@@ -88,12 +88,15 @@ class Breakaways {
   template <class Trajectory>
   static bool is_brief(const EvaluatedSegment<T, Trajectory>& segment, const PinState<T>& s) {
     using std::abs;
+    using std::sqrt;
     const Scales<T>& scales = segment.scales;
+    const Drive<T>& drive = segment.drive;
+    const T rate = sqrt((drive.stiffness + drive.finger.stiffness) / drive.mass);
     // A plate's direction may turn in no more time than that.
     const auto turned = [&] {
       return abs(segment.at(segment.span).plate_force - s.plate_force) > T(1e-10) * scales.force;
     };
-    return segment.segment.end - segment.segment.begin <= T(1e-11) * scales.x / scales.v &&
+    return segment.segment.end - segment.segment.begin <= T(1e-11) / rate &&
            !(within_limit(segment, s) > 8 * rounding<T> * scales.force) &&
            !(segment.oblique() && turned());
   }
