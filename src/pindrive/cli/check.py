@@ -19,7 +19,8 @@ def check(
 ) -> None:
     """Say what is wrong with a device file and the CSVs it names, or what it describes.
 
-    Of a CSV of mouse_velocity or plate_load it says how many rows it has, and from where to where.
+    Of a CSV of an input, such as mouse_velocity or touch, it says how many rows it has, and from
+    where to where.
 
     Of a recording of the hand: its rate and resolution, and its peak speed before and after
     smoothing.

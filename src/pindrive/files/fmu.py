@@ -384,6 +384,7 @@ def _description_3(device: DeviceFile, variables: list[Variable], token: str) ->
             "canSerializeFMUState": "true",
             "providesDirectionalDerivatives": "true",
             "canHandleVariableCommunicationStepSize": "true",
+            "mightReturnEarlyFromDoStep": "true",
             "hasEventMode": "true",
         },
     )
