@@ -34,7 +34,7 @@ class CreepFlow : public SeriesStep<T> {
   /// far, where that is known to be within a step.
   CreepFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit, bool within_step = false) {
     using std::abs;
-    this->creeps = true;
+    this->without = FastPart::of_friction;
     if (e.across.value < 0 || (e.across.value == 0 && e.across.rate < 0))
       e.across = {-e.across.value, -e.across.rate};  // only its size counts: w >= 0
     acceleration_[0] = e.plate_velocity.rate;  // the first guess is that it moves as the plate
@@ -282,7 +282,8 @@ class CreepFlow : public SeriesStep<T> {
 /// pin creeps, or on a slider of stiff skin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
-  if (SlowSliderFlow<T>::stiff(e))
+  const bool stiff = SlowSliderFlow<T>::stiff(e, start);
+  if (stiff)
     if (const SlowSliderFlow<T> slow(e, start, limit); slow.holds()) return slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;

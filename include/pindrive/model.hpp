@@ -283,6 +283,9 @@ inline bool stops(Transition transition) {
   return transition == Transition::stick || transition == Transition::cross;
 }
 
+/// The fast part that a series leaves out (creep.hpp, slow_slider.hpp).
+enum class FastPart : signed char { none, of_friction, of_slider };
+
 /// One mode from begin to end (infinite for one that lasts for ever), with its friction.
 template <class T>
 struct Segment {
@@ -294,7 +297,7 @@ struct Segment {
   Line<T> plate_velocity;             ///< m/s
   Path<T> plate_force, finger_force;  ///< friction on the pin, N; while both are stuck the plate's
                                       ///< is what they carry together
-  bool creeps{false};                 ///< by a series without its fast part (creep.hpp)
+  FastPart without{FastPart::none};   ///< which its series leaves out
 
   /// How its oscillation has moved on after τ.
   Propagator<T> after(T tau) const { return tau == end - begin ? moved : flow.after(tau); }

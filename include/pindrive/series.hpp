@@ -63,6 +63,12 @@ class SeriesFlow : public SeriesStep<T> {
 
   Polynomial<T>& inner(int i) { return this->inner_[i]; }  // d, u
 
+  /// Of p/σ, where p begins at 0.
+  Sums from_rest(std::array<T, N + 2> c) const {
+    if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
+    return sums_of(c);
+  }
+
   /// About the fastest rate of the equation without an across velocity, …
   static Real linear_rate(const SeriesEquation<T>& e) {
     using std::abs;
@@ -73,12 +79,21 @@ class SeriesFlow : public SeriesStep<T> {
            sqrt((plain(e.stiffness) + plain(e.skin_stiffness)) / m);
   }
   /// … the one at which the factor of skin has grown from zero: there every solution but one is singular, so
-  /// that a longer step would make the rounding of its start grow, …
+  /// that a longer step would make the rounding of its start grow.
   static Real rising_rate(const SeriesEquation<T>& e) {
     const Real f = plain(e.skin_factor.value), rate = plain(e.skin_factor.rate);
     return f * rate > 0 ? rate / f : Real(0);
   }
-  /// … and the one at which the direction of sliding turns.
+  /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
+  static bool sets_out(const SeriesEquation<T>& e, const SeriesState<T>& start) {
+    return e.side == 0 && e.across.value == 0 &&
+           plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
+  }
+
+ protected:
+  SeriesFlow() = default;
+
+  /// The rate at which the direction of sliding turns, 1/s.
   static Real turning_rate(const SeriesEquation<T>& e, const SeriesState<T>& s) {
     using detail::hypot;
     using std::abs;
@@ -99,14 +114,34 @@ class SeriesFlow : public SeriesStep<T> {
     return (e.held ? turns : left / m + abs(plain(e.across.rate))) / speed;
   }
 
-  /// Whether the plate begins to slide from here on: u and w are 0 but not their rates.
-  static bool sets_out(const SeriesEquation<T>& e, const SeriesState<T>& start) {
-    return e.side == 0 && e.across.value == 0 &&
-           plain(e.held ? e.surface.value : start.v) == plain(e.plate_velocity.value);
+  /// What the truncated r and d differ from √(u² + w²) and u/√(u² + w²), and what d leaves out of the force, N.
+  struct Turning {
+    bool known{true};
+    Real root{0}, direction{0}, missed{0};
+  };
+  Turning bound_turning(const SeriesEquation<T>& e) const {
+    using std::abs;
+    using std::max;
+    const Real h = span(), F = abs(plain(e.plate_force)), load = abs(plain(e.load.value));
+    const Real load_end = abs(plain(e.load.value) + plain(e.load.rate) * h);
+    const Sums d = sums_of(this->inner_[0].c);
+    Turning found;
+    if (e.side == 0) {
+      const Sums r = from_rest(speed.c), p = from_rest(this->inner_[1].c);
+      const Real w_rate = plain(e.across.rate) * h;
+      const Real w = begins_ > 0 ? w_rate : plain(e.across.value);
+      const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
+      const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
+      const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
+      // The square of r is known to the rounding of its largest.
+      found.known = least > r[0] / 16;
+      found.root = (beyond(r, r) + beyond(p, p)) / least;
+      found.direction = (beyond(r, d) + d[0] * found.root) / least;
+    }
+    found.missed = F * (max(load, load_end) * (d[N] + found.direction) +
+                        abs(plain(e.load.rate)) * h * (d[N - 1] - d[N]));
+    return found;
   }
-
- protected:
-  SeriesFlow() = default;
 
   /// The recurrences, in the time σ = τ/step.
   void expand(const SeriesEquation<T>& e, const SeriesState<T>& start, Real step) {
@@ -229,30 +264,13 @@ class SeriesFlow : public SeriesStep<T> {
     const Real b_change = plain(e.damping_rate) * h, decay = plain(e.skin_decay);
     const Real f = plain(e.skin_factor.value), f_change = plain(e.skin_factor.rate) * h;
     const Real K = plain(e.skin_stiffness), most_f = max(abs(f), abs(f + f_change));
-    const Real F = abs(plain(e.plate_force)), S = plain(e.plate_slope);
+    const Real S = plain(e.plate_slope);
     const Real load = plain(e.load.value), load_change = plain(e.load.rate) * h;
     const Real most_load = max(abs(load), abs(load + load_change));
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
-    const auto from_rest = [&](std::array<T, N + 2> c) {  // of p/σ, where p begins at 0
-      if (begins_ > 0) std::copy(c.begin() + 1, c.end(), c.begin());
-      return sums_of(c);
-    };
-    const Sums r = from_rest(speed.c), d = sums_of(inner(0).c), u = sums_of(inner(1).c);
-    const Sums p = from_rest(inner(1).c);
-
-    Real root{0},
-        direction{0};  // what the truncated r and d differ from √(u² + w²) and u/√(u² + w²)
-    if (e.side == 0) {
-      const Real w_rate = plain(e.across.rate) * h,
-                 w = begins_ > 0 ? w_rate : plain(e.across.value);
-      const Real w_end = begins_ > 0 ? w_rate : w + w_rate;
-      const Real w_least = w * w_end > 0 ? std::min(abs(w), abs(w_end)) : Real(0);
-      const Real least = max({w_least, r[0] - 2 * r[1], p[0] - 2 * p[1]});
-      // The square of r is known to the rounding of its largest.
-      if (!(least > r[0] / 16)) return false;
-      root = (beyond(r, r) + beyond(p, p)) / least;
-      direction = (beyond(r, d) + d[0] * root) / least;
-    }
+    const Sums u = sums_of(inner(1).c);
+    const Turning turning = bound_turning(e);
+    if (!turning.known) return false;
     // What is left of the equation: the terms from the order N on.
     const Real missed =
         e.held ? Real(0)
@@ -260,8 +278,7 @@ class SeriesFlow : public SeriesStep<T> {
                      abs(b_change) * last(velocity, N - 1) +
                      k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
                      abs(f_change) * last(skin, N - 1) + most_load * abs(S) * (u[N]) +
-                     abs(load_change) * (abs(S) * (u[N - 1] - u[N]) + F * (d[N - 1] - d[N])) +
-                     most_load * F * (d[N] + direction);
+                     abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real falls =
@@ -272,15 +289,15 @@ class SeriesFlow : public SeriesStep<T> {
     v_bound = e.held ? Real(0) : error / sqrt(m);
     x_bound = std::min(h * v_bound, error / sqrt(k));
     skin_bound = e.skin_error(h, sqrt(K) * error, v_bound, missed_skin);
-    speed_bound = v_bound + root;
+    speed_bound = v_bound + turning.root;
     const auto rounding_of = [&](const Sums& sums) { return 2 * unit * sums[0]; };
     // Of a slider beside a pin that hardly moves: what the rounding of the forces makes of its velocity.
     const Real forces =
         decay != 0 ? most_f * sums_of(skin.c)[0] + k * sums_of(position.c)[0] : Real(0);
     return v_bound <= rounding_of(sums_of(velocity.c)) + 2 * unit * forces * h / m &&
            (K == 0 || skin_bound <= rounding_of(sums_of(skin.c))) &&
-           speed_bound <= rounding_of(r) + rounding_of(sums_of(velocity.c)) &&
-           !(e.held && direction > 64 * unit);
+           speed_bound <= rounding_of(from_rest(speed.c)) + rounding_of(sums_of(velocity.c)) &&
+           !(e.held && turning.direction > 64 * unit);
   }
 };
 

@@ -38,7 +38,7 @@ class SeriesSegment {
     const SeriesState<T> start{state.x, state.v, lags ? state.slide : state.skin, acceleration,
                                segment.begin};
     const SeriesStep<T>& step = step_.emplace(series_step(equation, start, span));
-    segment.creeps = step.creeps;
+    segment.without = step.without;
     const auto paths = mode.guards(step, {plate.does.at, finger.does.at, at_limit, no_push});
     const bool held = held_by_stop(drive, segment.mode);
     guards.clear();

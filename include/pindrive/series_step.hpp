@@ -24,7 +24,7 @@ class SeriesStep {
   Polynomial<T> speed;        ///< of sliding on the plate, across too: s u or √(u² + w²), m/s
   /// Bounds of what is left out: |position|, |velocity|, |skin| and |speed| differ by no more over the step.
   Real x_bound{0}, v_bound{0}, skin_bound{0}, speed_bound{0};
-  bool creeps{false};  ///< without its fast part: see creep.hpp
+  FastPart without{FastPart::none};  ///< what it leaves out
 
   Real span() const { return velocity.span; }
   SeriesState<T> at(T tau) const { return {position.at(tau), velocity.at(tau), skin.at(tau)}; }

@@ -121,7 +121,7 @@ class Simulation : private Selection<T> {
     segment.event = {};
     segment.moved = {};
     segment.plate_velocity = plate_.surface;
-    segment.creeps = false;
+    segment.without = FastPart::none;
     series_.reset();
     if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
                                     finger_.load)) {

@@ -27,19 +27,19 @@ class SlowSliderFlow : public SeriesFlow<T> {
   using SeriesStep<T>::speed_bound, SeriesStep<T>::span;
 
   /// Whether the fast part of an equation is so much faster than the rest that the rounds converge quickly.
-  static bool stiff(const SeriesEquation<T>& e) {
+  static bool stiff(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     const Real decay = plain(e.skin_decay), f = plain(e.skin_factor.value);
-    return e.side != 0 && f > 0 && decay > 4 * N * std::abs(plain(e.skin_factor.rate)) &&
-           decay > 4 * N * f * slow_rate(e);
+    return f > 0 && decay > 4 * N * std::abs(plain(e.skin_factor.rate)) &&
+           decay > 4 * N * f * slow_rate(e, start);
   }
 
   /// Expands it at a state, no farther than the limit (s; may be infinite); or as far, where that is known to be
   /// within a step.
   SlowSliderFlow(SeriesEquation<T> e, const SeriesState<T>& start, T limit,
                  bool within_step = false) {
-    this->creeps = true;
-    if (!stiff(e)) return;
-    const Real farthest = plain(limit), step = 1 / slow_rate(e);
+    this->without = FastPart::of_slider;
+    if (!stiff(e, start)) return;
+    const Real farthest = plain(limit), step = 1 / slow_rate(e, start);
     e.stretching = stretching_.data();
     Real last{0};
     bool converged = false;
@@ -74,12 +74,13 @@ class SlowSliderFlow : public SeriesFlow<T> {
   static constexpr Real longest = 8;
 
   /// About the fastest rate of the equation without its fast part: there the skin is a damper φ.
-  static Real slow_rate(const SeriesEquation<T>& e) {
+  static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
     using std::abs;
     using std::sqrt;
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope)) + f) / m +
-           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate))) / m);
+           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate))) / m) +
+           SeriesFlow<T>::turning_rate(e, start);
   }
 
   /// Takes (φ y)' from the series; by how much that changes it.
@@ -107,6 +108,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real S = plain(e.plate_slope), load = plain(e.load.value);
     const Real load_change = plain(e.load.rate) * h, K = plain(e.skin_stiffness);
     const auto last = [](const Polynomial<T>& p, int n) { return abs(plain(p.c[n])); };
+    const auto turning = this->bound_turning(e);
+    if (!turning.known || (e.held && turning.direction > 64 * unit)) return false;
     const Real missed =
         e.held
             ? Real(0)
@@ -114,7 +117,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
                       last(velocity, N) +
                   (abs(b_change) + abs(load_change * S)) * last(velocity, N - 1) +
                   k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
-                  abs(f_change) * last(skin, N - 1);
+                  abs(f_change) * last(skin, N - 1) + turning.missed;
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
     const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
@@ -122,8 +125,9 @@ class SlowSliderFlow : public SeriesFlow<T> {
     v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
     x_bound = h * v_bound;
     skin_bound = (K * v_bound + missed_skin) / stays;
-    speed_bound = v_bound;
+    speed_bound = v_bound + turning.root;
     return v_bound <= 4 * unit * sums_of(velocity.c)[0] &&
+           turning.root <= 4 * unit * sums_of(speed.c)[0] &&
            skin_bound <= 8 * unit * sums_of(skin.c)[0];
   }
 

@@ -163,9 +163,9 @@ class BySeries {
     const SeriesState<T> start{segment.flow.position.start, v.start, skin, v.drift};
     const T span = segment.end - segment.begin;
     const SeriesEquation<T> e = mode.equation();
-    if (segment.creeps && SlowSliderFlow<T>::stiff(e))
+    if (segment.without == FastPart::of_slider)
       if (const SlowSliderFlow<T> slow(e, start, span, true); slow.holds()) return slow;
-    if (segment.creeps)
+    if (segment.without == FastPart::of_friction)
       for (const bool within_step : {true, false})
         if (const CreepFlow<T> creep(e, start, span, within_step); creep.holds()) return creep;
     return SeriesFlow<T>(e, start, span, true);

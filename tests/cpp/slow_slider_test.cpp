@@ -75,6 +75,10 @@ void beside_taylor() {
       e.load.rate = i % 3;
       e.plate_slope = 0.05 * (i % 5);
       e.damping_rate = 0.1 * (i % 2);
+      if (i % 4 == 3) {  // the plate slides across, too
+        e.side = 0;
+        e.across = {0.03, 1};
+      }
       return e;
     };
     // From its state after the fast part.
@@ -113,8 +117,8 @@ void up_to_no_load() {
 void refuses() {
   const auto e = held_back(1e6, 5.0);
   expect(!pd::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).holds(), "off", 0);
-  expect(!pd::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0)), "soft", 0);
-  expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5)), "a load that falls quickly", 0);
+  expect(!pd::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0), {1e-3, 0.05, 0.05}), "soft", 0);
+  expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}), "a load that falls quickly", 0);
 }
 
 /// Derivatives beside differences.

@@ -116,7 +116,7 @@ inline bool mirrored(const pd::Segment<double>& one, const pd::Segment<double>& 
          a.finger_branch == b.finger_branch &&
          static_cast<int>(a.stop) == -static_cast<int>(b.stop) &&
          one.event.plate == other.event.plate && one.event.finger == other.event.finger &&
-         one.event.stop == other.event.stop && one.creeps == other.creeps;
+         one.event.stop == other.event.stop && one.without == other.without;
 }
 
 /// How far the motion of the mirror image is from the mirror image of the motion; infinite where an event
