@@ -290,7 +290,8 @@ class Certifier {
       else if (does == ContactState::stick)
         raise(errors.sticking, u);
       else if (does == ContactState::absent && law.present())
-        raise(errors.friction, std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
+        raise(errors.friction,
+              std::max(load * detail::kinetic_friction(law, abs(u)) - unsure, T(0)));
     };
     if (evaluated.oblique())
       raise(errors.friction, evaluated.oblique_error(s));

@@ -46,7 +46,8 @@ class CreepFlow : public SeriesStep<T> {
     if (!(step > 0)) return;
     this->begin(step);
     Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
-    SeriesStep<T> nearest;    // that the rounds have come to, where rounding keeps them from converging
+    SeriesStep<T>
+        nearest;  // that the rounds have come to, where rounding keeps them from converging
     Real least = std::numeric_limits<Real>::infinity();
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
       // What the rounds still change is less than what they changed.

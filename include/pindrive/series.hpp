@@ -272,13 +272,13 @@ class SeriesFlow : public SeriesStep<T> {
     const Turning turning = bound_turning(e);
     if (!turning.known) return false;
     // What is left of the equation: the terms from the order N on.
-    const Real missed =
-        e.held ? Real(0)
-               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
-                     abs(b_change) * last(velocity, N - 1) +
-                     k * (last(position, N) + last(position, N + 1)) + most_f * last(skin, N) +
-                     abs(f_change) * last(skin, N - 1) + most_load * abs(S) * (u[N]) +
-                     abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
+    const Real missed = e.held ? Real(0)
+                               : max(abs(b), abs(b + b_change)) * last(velocity, N) +
+                                     abs(b_change) * last(velocity, N - 1) +
+                                     k * (last(position, N) + last(position, N + 1)) +
+                                     most_f * last(skin, N) + abs(f_change) * last(skin, N - 1) +
+                                     most_load * abs(S) * (u[N]) +
+                                     abs(load_change) * abs(S) * (u[N - 1] - u[N]) + turning.missed;
     const Real missed_skin =
         K * last(velocity, N) + (abs(decay) + (N + 1) * abs(f_change) / h) * last(skin, N);
     const Real falls =

@@ -112,7 +112,8 @@ T set_out_across(T mass, const Side& plate, T pull) {
 /// across there, to the rounding of the velocity, or to what friction does in the rounding of the time. On the finger
 /// it waits for a row that is as near as a velocity across is known: beyond it the plate may not turn.
 template <class T, class Side>
-void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time, T row) {
+void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time,
+                     T row) {
   using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
   if (on_finger && row - time <= 64 * rounding<T> * time) return;

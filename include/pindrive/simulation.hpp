@@ -208,7 +208,8 @@ class Simulation : private Selection<T> {
     struck_ = false;
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
     bool known = on_finger;
-    T rest{0};  // velocity of what is on the finger, or at an end of a branch there, where it is known
+    T rest{
+        0};  // velocity of what is on the finger, or at an end of a branch there, where it is known
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
       if (meets_stop(guard, row)) continue;

@@ -118,7 +118,8 @@ void refuses() {
   const auto e = held_back(1e6, 5.0);
   expect(!pd::SlowSliderFlow<double>(e, {1e-3, 0.05, 0.06}, 0.01).holds(), "off", 0);
   expect(!pd::SlowSliderFlow<double>::stiff(held_back(3e3, 5.0), {1e-3, 0.05, 0.05}), "soft", 0);
-  expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}), "a load that falls quickly", 0);
+  expect(!pd::SlowSliderFlow<double>::stiff(held_back(1e6, -1e5), {1e-3, 0.05, 0.05}),
+         "a load that falls quickly", 0);
 }
 
 /// Derivatives beside differences.

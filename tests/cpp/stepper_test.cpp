@@ -400,7 +400,8 @@ struct Instants {
   int held{0}, by_both{0}, at_stop{0}, oblique{0}, setting_out{0}, lagging{0}, slow{0};
 
   void compare(const pd::Instant<Dual>& now, const pd::Stepper<Dual>& known) {
-    if (known.segment().without != pd::FastPart::none) {  // its derivatives are those of the motion without its fast part
+    if (known.segment().without !=
+        pd::FastPart::none) {  // its derivatives are those of the motion without its fast part
       ++slow;
       return;
     }

@@ -28,8 +28,8 @@ struct Verdict {
     return status == pd::Status::too_many_events && instants == 0 && 16 * changes > segments;
   }
   bool good() const {
-    return (status == pd::Status::ok || beyond_limit()) && certificate.worst() <= largest_residual && mirror == 0 &&
-           cut <= largest_residual;
+    return (status == pd::Status::ok || beyond_limit()) &&
+           certificate.worst() <= largest_residual && mirror == 0 && cut <= largest_residual;
   }
 };
 

@@ -129,8 +129,8 @@ inline bool read(std::istream& in, Range& range, Totals& totals) {
   std::size_t failures = 0;
   in >> word >> range.seed >> word >> range.from >> word >> family >> word >> totals.drives >>
       word >> range.count >> word >> totals.segments >> word >> totals.instants >> word >>
-      totals.inconsistent >> word >> totals.beyond_limit >> word >> totals.most_segments.value >> word >>
-      totals.most_segments.at >> word >> totals.seconds;
+      totals.inconsistent >> word >> totals.beyond_limit >> word >> totals.most_segments.value >>
+      word >> totals.most_segments.at >> word >> totals.seconds;
   for (Largest& largest : totals.worst) in >> word >> largest.value >> word >> largest.at;
   in >> word >> failures;
   for (long long number = 0; failures > 0 && in >> number; --failures)
