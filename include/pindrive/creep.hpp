@@ -46,8 +46,8 @@ class CreepFlow : public SeriesStep<T> {
     if (!(step > 0)) return;
     this->begin(step);
     Real before{0}, last{0};  // of the round before: the velocity of creep at the start, the change
-    SeriesStep<T>
-        nearest;  // that the rounds have come to, where rounding keeps them from converging
+    // What the rounds came nearest to, where rounding keeps those of a known step from converging.
+    SeriesStep<T> nearest;
     Real least = std::numeric_limits<Real>::infinity();
     for (int round = 0; round < most_rounds && balance(e, start); ++round) {
       // What the rounds still change is less than what they changed.
@@ -283,8 +283,7 @@ class CreepFlow : public SeriesStep<T> {
 /// pin creeps, or on a slider of stiff skin.
 template <class T>
 SeriesStep<T> series_step(const SeriesEquation<T>& e, const SeriesState<T>& start, T limit) {
-  const bool stiff = SlowSliderFlow<T>::stiff(e, start);
-  if (stiff)
+  if (SlowSliderFlow<T>::stiff(e, start))
     if (const SlowSliderFlow<T> slow(e, start, limit); slow.holds()) return slow;
   if (e.held || e.side != 0) return SeriesFlow<T>(e, start, limit);
   SeriesStep<T> step;
