@@ -169,8 +169,7 @@ struct Touch : SlidingSkin<T> {
 
   /// Whether its force goes on without a jump after a stick force has come to its limit on a side.
   bool continues(int limit) const {
-    if (drops()) return false;
-    if (before == does.state) return true;
+    if (drops() || before == does.state) return !drops();
     if (contact.kinetic != contact.static_limit && load.value != 0) return false;
     return before == ContactState::stick ? does.sense == -limit
                                          : before == ContactState::elastic_stick;

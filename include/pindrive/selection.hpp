@@ -125,11 +125,15 @@ class Selection {
     return limit_ == 0 && side.stick_limit() - abs(force) > state_.roundoff;
   }
 
-  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps.
+  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps. What is at rest at a rigid
+  /// one carries nothing.
   bool no_push() const {
     if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
-    const bool finger_alike = finger_.before == finger_.does.state || finger_.force(state_) == 0;
-    return plate_.before == plate_.does.state && finger_alike;
+    const auto alike = [&](const Side& side) {
+      const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
+      return side.continues(0) || (rested && side.force(state_) == 0);
+    };
+    return alike(plate_) && alike(finger_);
   }
 
   /// Whether a rigid stop keeps the pin where it is. A finger at rest does nothing there.

@@ -109,14 +109,11 @@ T set_out_across(T mass, const Side& plate, T pull) {
 }
 
 /// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
-/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time. On the finger
-/// it waits for a row that is as near as a velocity across is known: beyond it the plate may not turn.
+/// across there, to the rounding of the velocity, or to what friction does in the rounding of the time.
 template <class T, class Side>
-void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time,
-                     T row) {
+void land_along_axis(State<T>& state, Side& plate, bool on_finger, T across, T mass, T time) {
   using std::abs;
   if (!plate.oblique() || plate.across.value != 0) return;
-  if (on_finger && row - time <= 64 * rounding<T> * time) return;
   const T changes = plate.load.value * plate.friction / mass + abs(plate.surface.rate);
   const T crept = abs(across) + rounding<T> * (abs(state.v) + abs(plate.surface.value)) +
                   4 * rounding<T> * time * changes;

@@ -30,6 +30,7 @@ class SeriesSegment {
   void begin(Segment<T>& segment, Guards<T>& guards, const Drive<T>& drive, const Side& plate,
              const Side& finger, const Line<T>& force, const State<T>& state, T acceleration,
              int at_limit, bool no_push, T span) {
+    using std::abs;
     const SeriesMode<T> mode(
         drive, segment.mode,
         {segment.plate_velocity, plate.load, plate.across, force, finger.load});
@@ -46,6 +47,10 @@ class SeriesSegment {
       guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
     const T row = step.span() < span ? never : span;
+    const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
+    const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
+    stops_ = equation.held && equation.side == 0 &&
+             left <= 4 * rounding<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
     first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
@@ -69,9 +74,11 @@ class SeriesSegment {
   }
 
   /// The time to the earliest event, the end of the step or the row; what happens at the row to the rounding
-  /// of a time happens there.
+  /// of a time happens there. So does what is some roundings before a row at which the plate comes to rest, along
+  /// and across: the direction in which it slides under a pin that is held is not known there.
   T earliest(T since, T row) const {
-    return row < never && row - first_ <= rounding<T> * (since + row) ? row : first_;
+    const T known = (stops_ ? 128 : 1) * rounding<T> * (since + row);
+    return row < never && row - first_ <= known ? row : first_;
   }
 
   /// Brings the state on by τ, unless the mode has a closed form.
@@ -105,6 +112,8 @@ class SeriesSegment {
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   std::optional<SeriesStep<T>> step_;
+  bool stops_{
+      false};   ///< whether the plate comes to rest under a pin that is held, at the next row
   T first_{0};  ///< the time to its first guard's zero, or its end, s
 };
 

@@ -206,10 +206,8 @@ class Simulation : private Selection<T> {
     const T loaded = load_before(finger_.load.at(lasts), finger_.load.rate);
     limit_ = 0;
     struck_ = false;
-    bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds();
-    bool known = on_finger;
-    T rest{
-        0};  // velocity of what is on the finger, or at an end of a branch there, where it is known
+    bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds(), known = on_finger;
+    T rest{0};  // velocity of what is on the finger, or at an end of a branch there, if known
     for (const Guard<T>& guard : guards_) {
       if (!(guard.zero <= coincident)) continue;
       if (meets_stop(guard, row)) continue;
@@ -225,10 +223,8 @@ class Simulation : private Selection<T> {
         state_.v = (guard.plate ? side.surface.value : level) + side.does.sense * speed;
         if (guard.bound == Bound::lower && side.does.branch == 0)
           (guard.plate ? on_plate : on_finger) = true;
-        if (!guard.plate) {
-          known = true;
-          rest = state_.v;
-        }
+        known = known || !guard.plate;
+        if (!guard.plate) rest = state_.v;
       } else if (side.elastic()) {
         state_.skin = guard.side * drive_.finger.static_limit * loaded;
       } else if (!row) {
@@ -239,7 +235,7 @@ class Simulation : private Selection<T> {
     if (on_finger || on_plate) state_.v = on_finger ? rest : plate_.surface.value;
     if (finger_.sliding() && !drive_.finger.rigid())
       state_.skin = finger_.skin_force(state_, loaded);
-    land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_, row_);
+    land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
     if (stop_.settles(state_) || struck_) begin_at_stop();
   }
 
@@ -284,7 +280,7 @@ class Simulation : private Selection<T> {
       plate_.load = inputs_.plate_load.from(time_);
       finger_.load = inputs_.finger_load.from(time_);
       force_ = inputs_.force.from(time_);
-      plate_.across = InputLines<T>::across_from(inputs_.across_velocity, time_, plate_.surface);
+      plate_.across = InputLines<T>::across_from(inputs_, time_, plate_.surface);
       row_ = std::min({inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_),
                        inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
                        inputs_.across_velocity.next_row(time_)});

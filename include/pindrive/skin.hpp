@@ -216,7 +216,7 @@ class SlidingSkin : public TouchState<T> {
       if (!contact.may_lag() || u == 0 || u < most) return row;
       const Landing<T> there = slider(T(1), u).from_zero();
       if (!there.grips && there.at != Bound::lower) return row;
-      const T round = stretching(carries_at_most());  // for each second that it waits
+      const T round = stretching(carries_at_most(2 * u));  // for each second that it waits
       load.rate = T(0);
       return std::min(row, time + u / round * known);
     }
@@ -241,11 +241,15 @@ class SlidingSkin : public TouchState<T> {
   Slider<T> slider(T sense, T u) const {
     return {contact, sense * u, contact.rigid() ? T(0) : load.rate / contact.stiffness};
   }
-  /// The friction under a load of 1 at which a slider that gets faster from rest runs away, N.
-  T carries_at_most() const {
+  /// The friction under a load of 1 that a slider may carry which gets faster from rest, until it runs away or has
+  /// come to a speed, N.
+  T carries_at_most(T speed) const {
     T most = contact.static_limit;
-    for (int j = 0; j < contact.branches && contact.branch(j).slope >= 0; ++j)
-      if (j + 1 < contact.branches) most = std::max(most, contact.branch(j + 1).force);
+    for (int j = 0; j < contact.branches; ++j) {
+      const Branch<T> range = contact.branch(j);
+      if (range.slope < 0 || !(range.from < speed)) break;
+      most = std::max(most, range.at(std::min(speed, range.to)));
+    }
     return most;
   }
   bool off(T distance, T u) const {

@@ -116,11 +116,24 @@ void guards() {
 }
 
 void rounded() {
-  const pd::Profile<double> across(0.0, Line{1e-3, -1e-2});
-  const auto zero = pd::InputLines<double>::across_from(across, 0.1 * (1 + 1e-16), {0.1, 0});
-  const auto not_zero = pd::InputLines<double>::across_from(across, 0.09, {0.1, 0});
+  const pd::Held<double> falls(0.0, Line{1e-3, -1e-2});
+  pd::Inputs<double> inputs{0.1, 0, 0};
+  inputs.across_velocity = falls;
+  const auto lines = [&](double time, const Line& along) {
+    return pd::InputLines<double>::across_from(inputs, time, along);
+  };
+  const auto zero = lines(0.1 * (1 + 1e-16), {0.1, 0}), not_zero = lines(0.09, {0.1, 0});
   expect(zero.value == 0 && zero.rate == -1e-2 && near(not_zero.value, 1e-4, 1e-15),
          "a velocity across that is rounding is zero");
+
+  // It and the velocity along the axis come to zero at 0.1 s, where that has its row.
+  pd::Held<double> stops(0.0, Line{1e-2, -1e-1});
+  stops.ends = 0.1;
+  inputs.mouse_velocity = stops;
+  const double time = 0.1 * (1 - 2e-15);
+  const auto both = lines(time, {stops.line.at(time), -1e-1});
+  expect(both.value == 1e-2 * (0.1 - time) && both.rate == -1e-2,
+         "one that comes to zero with that along the axis keeps its direction until there");
 }
 
 }  // namespace

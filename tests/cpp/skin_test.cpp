@@ -117,6 +117,14 @@ void lifts() {
   const double asked = falls.keeps_off_zero(just, 1, 2);
   expect(asked > 1 && asked < 1 + 1e-9 && falls.load.rate == 0,
          "where it could grip at its limit only, it waits until its rounds have times");
+  // 0 N up to 1 mm/s, from there 1 N for each 10 mm/s.
+  const pd::Branch<double> rising[] = {{0, 1e-3, 0, 0, 0}, {1e-3, never, 0, 100, 0}};
+  Touch rises(pd::Contact<double>{0, 0, 1000, rising, 2});
+  rises.load = {0, 5};
+  State level = at(1e-3, 0);
+  const double rising_from = rises.keeps_off_zero(level, 1, 2);
+  expect(rising_from > 1 && rising_from < 1 + 1e-9 && rises.load.rate == 0,
+         "at the speed at which a curve begins to rise it waits no longer than it carries nothing");
   touch.load = {1, -1};
   expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.value == 1,
          "one far from zero is followed until its row");
