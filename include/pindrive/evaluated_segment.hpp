@@ -69,7 +69,7 @@ class EvaluatedSegment {
         load(inputs.plate_load.from(part.begin)),
         finger_load(inputs.finger_load.from(part.begin)),
         force(inputs.force.from(part.begin)),
-        across(InputLines<T>::across_from(inputs, part.begin, plate_velocity)),
+        across(InputLines<T>::across_from(inputs, part.begin, plate_velocity, held(of, part.mode))),
         span(std::min(part.end, std::max(duration, part.begin)) - part.begin),
         x_rate(along.derivative(along.position())),
         acceleration(along.acceleration()),

@@ -270,6 +270,11 @@ template <class T>
 bool held_by_stop(const Drive<T>& drive, const Mode& mode) {
   return touches(mode.stop) && drive.stops.rigid();
 }
+/// Whether what holds the pin gives its velocity.
+template <class T>
+bool held(const Drive<T>& drive, const Mode& mode) {
+  return mode.stuck() || held_by_stop(drive, mode);
+}
 
 inline Transition change(ContactState before, ContactState after) {
   if (before == after) return Transition::none;

@@ -118,7 +118,7 @@ class Motion {
                           (drive_.finger.branches > 0 && !inputs_.finger_load.constant());
     if (!bilinear && !drive_.finger.may_lag() && segment.mode.plate != ContactState::slip_oblique)
       return visit(ClosedForm<T>(segment));
-    return visit_trajectory(drive_, segment, InputLines<T>::of(inputs_, segment), visit);
+    return visit_trajectory(drive_, segment, InputLines<T>::of(drive_, inputs_, segment), visit);
   }
 
   /// Position, velocity or acceleration, after τ in a segment.
@@ -142,7 +142,7 @@ class Motion {
   }
   template <class Trajectory>
   Friction<T> friction_of(const Trajectory& t, const Segment<T>& segment, T tau) const {
-    const auto lines = [&] { return InputLines<T>::of(inputs_, segment); };
+    const auto lines = [&] { return InputLines<T>::of(drive_, inputs_, segment); };
     return friction_along(t, drive_, segment, lines, tau);
   }
   template <class Trajectory>

@@ -63,6 +63,8 @@ class Selection {
             stop_.does};
   }
 
+  bool held() const { return pindrive::held(drive_, mode()); }
+
   /// Whether a stick force that has come to its limit stays exactly there: no force jumps.
   bool continues() const {
     return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) && !stop_.jumped();

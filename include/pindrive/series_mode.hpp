@@ -29,22 +29,23 @@ struct InputLines {
             later(finger_load)};
   }
   /// Those of a segment, whose plate velocity is known to be exactly the pin's where it is.
-  static InputLines of(const Inputs<T>& inputs, const Segment<T>& segment) {
+  static InputLines of(const Drive<T>& drive, const Inputs<T>& inputs, const Segment<T>& segment) {
     return {segment.plate_velocity, inputs.plate_load.from(segment.begin),
-            across_from(inputs, segment.begin, segment.plate_velocity),
+            across_from(inputs, segment.begin, segment.plate_velocity, held(drive, segment.mode)),
             inputs.force.from(segment.begin), inputs.finger_load.from(segment.begin)};
   }
   /// A velocity across from a time on, of a plate that moves like this along the axis. Where it is within some
   /// roundings of both, it is zero: the nearer to it, the shorter are the steps of a pin that comes to rest on
-  /// the plate at once. Where both come to zero at the next row, it is known better by the time until there.
-  static Line<T> across_from(const Inputs<T>& inputs, T time, const Line<T>& along) {
+  /// the plate at once. Where both come to zero at the next row, under a pin that is held, it is known better by the
+  /// time until there.
+  static Line<T> across_from(const Inputs<T>& inputs, T time, const Line<T>& along, bool held) {
     using std::abs;
     Line<T> line = inputs.across_velocity.from(time);
     const T rest =
         std::min(inputs.across_velocity.next_row(time), inputs.mouse_velocity.next_row(time)) -
         time;
     const T known = detail::rounding<T> * time * (abs(line.rate) + abs(along.rate));
-    if (along.rate != 0 && abs(line.at(rest)) + abs(along.at(rest)) <= 4 * known)
+    if (held && along.rate != 0 && abs(line.at(rest)) + abs(along.at(rest)) <= 4 * known)
       return {-line.rate * rest, line.rate};
     if (abs(line.value) <= 64 * (known + detail::rounding<T> * abs(along.value))) line.value = T(0);
     return line;
@@ -112,7 +113,7 @@ class SeriesMode {
       e.damping += finger().slope * load.value;
       e.damping_rate = finger().slope * load.rate;
     }
-    e.held = mode_.stuck() || held_by_stop(drive_, mode_);
+    e.held = held(drive_, mode_);
     if (touches(mode_.stop) && !drive_.stops.rigid()) {
       e.damping += drive_.stops.damping;
       e.stiffness += drive_.stops.stiffness;

@@ -83,10 +83,10 @@ class Simulation : private Selection<T> {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Selected = Selection<T>;
   using Selected::drive_, Selected::state_, Selected::plate_, Selected::finger_, Selected::limit_;
+  using Selected::held, Selected::time_, Selected::force_, Selected::inertia_,
+      Selected::acceleration_, Selected::tangential_;
   using Selected::stop_, Selected::stick_force_, Selected::guards_, Selected::mode,
       Selected::continues;
-  using Selected::time_, Selected::force_, Selected::inertia_, Selected::acceleration_,
-      Selected::tangential_;
   using typename Selected::Side;
 
   /// A release at a time, of which the first mode is still to be selected.
@@ -114,6 +114,8 @@ class Simulation : private Selection<T> {
 
   /// The segment of the mode that was selected, and its guards.
   void begin(Segment<T>& segment) {
+    if (plate_.oblique())
+      plate_.across = InputLines<T>::across_from(inputs_, time_, plate_.surface, held());
     const Force<T> plate = plate_.law(state_), finger = finger_.law(state_);
     segment.begin = time_;
     segment.end = never;
@@ -209,8 +211,7 @@ class Simulation : private Selection<T> {
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds(), known = on_finger;
     T rest{0};  // velocity of what is on the finger, or at an end of a branch there, if known
     for (const Guard<T>& guard : guards_) {
-      if (!(guard.zero <= coincident)) continue;
-      if (meets_stop(guard, row)) continue;
+      if (!(guard.zero <= coincident) || meets_stop(guard, row)) continue;
       Side& side = guard.plate ? plate_ : finger_;
       if (guard.bound != Bound::none) {
         side.reached = guard.bound;
@@ -280,7 +281,7 @@ class Simulation : private Selection<T> {
       plate_.load = inputs_.plate_load.from(time_);
       finger_.load = inputs_.finger_load.from(time_);
       force_ = inputs_.force.from(time_);
-      plate_.across = InputLines<T>::across_from(inputs_, time_, plate_.surface);
+      plate_.across = InputLines<T>::across_from(inputs_, time_, plate_.surface, held());
       row_ = std::min({inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_),
                        inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
                        inputs_.across_velocity.next_row(time_)});

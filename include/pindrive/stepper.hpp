@@ -232,7 +232,7 @@ class Stepper {
   void take_inputs(const T& time) {
     simulation_.plate_.load = inputs_.plate_load.from(time);
     simulation_.plate_.across =
-        InputLines<T>::across_from(inputs_, time, simulation_.plate_.surface);
+        InputLines<T>::across_from(inputs_, time, simulation_.plate_.surface, simulation_.held());
     simulation_.force_ = inputs_.force.from(time);
     simulation_.finger_.load = inputs_.finger_load.from(time);
   }

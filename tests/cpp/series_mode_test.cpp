@@ -120,7 +120,7 @@ void rounded() {
   pd::Inputs<double> inputs{0.1, 0, 0};
   inputs.across_velocity = falls;
   const auto lines = [&](double time, const Line& along) {
-    return pd::InputLines<double>::across_from(inputs, time, along);
+    return pd::InputLines<double>::across_from(inputs, time, along, true);
   };
   const auto zero = lines(0.1 * (1 + 1e-16), {0.1, 0}), not_zero = lines(0.09, {0.1, 0});
   expect(zero.value == 0 && zero.rate == -1e-2 && near(not_zero.value, 1e-4, 1e-15),

@@ -218,7 +218,7 @@ MUTANTS = (
     Mutant(
         "skin without static friction carries nothing until the next row",
         "skin.hpp",
-        "const T round = stretching(carries_at_most());",
+        "const T round = stretching(carries_at_most(2 * u));",
         "const T round = most;",
     ),
     Mutant(
