@@ -70,6 +70,17 @@ class Selection {
     return limit_ != 0 && plate_.continues(limit_) && finger_.continues(limit_) && !stop_.jumped();
   }
 
+  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps. What is at rest at a rigid
+  /// one carries nothing.
+  bool no_push() const {
+    if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
+    const auto alike = [&](const Side& side) {
+      const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
+      return side.continues(0) || (rested && side.force(state_) == 0);
+    };
+    return alike(plate_) && alike(finger_);
+  }
+
   const Drive<T>& drive_;
   T time_;  ///< now, s
   State<T> state_;
@@ -127,39 +138,27 @@ class Selection {
     return limit_ == 0 && side.stick_limit() - abs(force) > state_.roundoff;
   }
 
-  /// Whether the push of a stop is exactly zero: it came to that, and no force jumps. What is at rest at a rigid
-  /// one carries nothing.
-  bool no_push() const {
-    if (!stop_.no_push() || !stop_.rigid()) return stop_.no_push();
-    const auto alike = [&](const Side& side) {
-      const bool rested = side.before == ContactState::stick || side.before == ContactState::absent;
-      return side.continues(0) || (rested && side.force(state_) == 0);
-    };
-    return alike(plate_) && alike(finger_);
-  }
-
-  /// Whether a rigid stop keeps the pin where it is. A finger at rest does nothing there.
+  /// Whether a rigid stop keeps the pin where it is. What its contacts do then follows from that it is at rest;
+  /// a rigid finger does nothing.
   bool stays_at_stop() {
+    using std::abs;
     tangential_ = false;
     acceleration_ = T(0);
     const T end = side(stop_.does);
-    const bool soft = !finger_.contact.rigid();  // a rigid finger at rest does nothing there
-    for (int k = 0; k < plate_.count * (soft ? finger_.count : 1); ++k) {
-      plate_.does = plate_.option(k % plate_.count);
-      finger_.does = finger_.option(k / plate_.count);
-      const T apart = -plate_.surface.rate;
-      if (plate_.stuck() ? apart != 0 : !plate_.goes_inside(state_, apart)) continue;
-      if (soft && !finger_.goes_inside(state_, T(0))) continue;
-      const T force = inertia_ - pull_ + plate_.force(state_) + finger_.force(state_);
-      const auto rate = plate_.force_rate(T(0), T(0)), skin = finger_.force_rate(T(0), T(0));
-      const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value + skin.value),
-                         end * (rate.bend + skin.bend)};
-      using std::abs;
-      if (stop_.holds_under(push, abs(force_.rate) + rate.size + skin.size, no_push(),
-                            state_.roundoff, guards_))
-        return true;
-    }
-    return false;
+    const auto goes = [&](Side& side, T apart) {
+      for (int k = 0; k < side.count; ++k) {
+        side.does = side.option(k);
+        if (side.stuck() ? apart == 0 : side.goes_inside(state_, apart)) return true;
+      }
+      return false;
+    };
+    if (!goes(plate_, -plate_.surface.rate) || !goes(finger_, T(0))) return false;
+    const T force = inertia_ - pull_ + plate_.force(state_) + finger_.force(state_);
+    const auto rate = plate_.force_rate(T(0), T(0)), skin = finger_.force_rate(T(0), T(0));
+    const Path<T> push{end * force, T(0), T(0), end * (force_.rate + rate.value + skin.value),
+                       end * (rate.bend + skin.bend)};
+    return stop_.holds_under(push, abs(force_.rate) + rate.size + skin.size, no_push(),
+                             state_.roundoff, guards_);
   }
 
   /// Whether a contact sticks while the other one does one of its options.

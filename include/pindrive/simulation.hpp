@@ -83,7 +83,7 @@ class Simulation : private Selection<T> {
   static constexpr T never = std::numeric_limits<T>::infinity();
   using Selected = Selection<T>;
   using Selected::drive_, Selected::state_, Selected::plate_, Selected::finger_, Selected::limit_;
-  using Selected::held, Selected::time_, Selected::force_, Selected::inertia_,
+  using Selected::held, Selected::no_push, Selected::time_, Selected::force_, Selected::inertia_,
       Selected::acceleration_, Selected::tangential_;
   using Selected::stop_, Selected::stick_force_, Selected::guards_, Selected::mode,
       Selected::continues;
@@ -128,8 +128,7 @@ class Simulation : private Selection<T> {
     if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
                                     finger_.load)) {
       series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
-                    continues() ? limit_ : 0, stop_.no_push(),
-                    std::min(row_, inputs_.duration) - time_);
+                    continues() ? limit_ : 0, no_push(), std::min(row_, inputs_.duration) - time_);
       return;
     }
     segment.flow = flow(plate, finger);

@@ -188,7 +188,7 @@ class SlidingSkin : public TouchState<T> {
   /// a pin at rest sets out, and where it meets the speed of the pin at the begin of a branch, only the pin's
   /// acceleration tells which way it goes.
   void comes_to_rest(const Slider<T>& goes, T sense, T u) {
-    if (landing_.grips && landing_.drops && contact.static_limit == 0) {
+    if (landing_.grips && contact.static_limit == 0) {
       either_way_ = u == 0;
       if (either_way_) {
         count += 2;
@@ -267,7 +267,7 @@ class SlidingSkin : public TouchState<T> {
     if (!lifted()) {
       sense_ = u < 0 ? T(-1) : T(1);
       landing_ = slider(sense_, u).from_zero();
-      breaks_ = !landing_.grips || s.skin != 0 || sense_ * u != stretching(contact.static_limit);
+      breaks_ = !landing_.grips || s.skin != 0 || slider(sense_, u).pin(contact.static_limit) != 0;
     }
     landing_.drops = s.skin != 0;
     if (landing_.at == Bound::lower) comes_to_rest(slider(sense_, u), sense_, u);

@@ -35,8 +35,12 @@ class Slider {
   Slider(const Contact<T>& contact, T speed, T follows)
       : contact_(contact), speed_(speed), follows_(follows) {}
 
-  /// The speed that it has where its friction stays this, m/s.
-  T pin(T friction) const { return follows_ == 0 ? speed_ : speed_ - follows_ * friction; }
+  /// The speed that it has where its friction stays this, m/s; none to rounding is none.
+  T pin(T friction) const {
+    using std::abs;
+    const T pin = follows_ == 0 ? speed_ : speed_ - follows_ * friction;
+    return abs(pin) < rounding<T> * abs(speed_) ? T(0) : pin;
+  }
 
   /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
   /// none does, it is infinitely fast until the skin asks no more than the last.

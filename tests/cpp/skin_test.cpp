@@ -100,6 +100,16 @@ void runs_away_at_rest() {
   touch.does = touch.option(2);
   touch.land(state);
   expect(state.skin == 0 && state.slide == 0, "without force");
+
+  Touch turned(pd::Contact<double>{0, 0, 1000, peak, 3});
+  turned.load = {1, 0};
+  turned.does = Touch::slip(1, Bound::none);
+  State back = at(-0.01, 0);
+  back.slide = 0.005;
+  turned.ask(back);
+  expect(
+      turned.option(0).state == ContactState::slip_backward,
+      "where a load jumps from none under a slider ahead of a pin that turned, it follows the pin");
 }
 
 void lifts() {
@@ -125,6 +135,13 @@ void lifts() {
   const double rising_from = rises.keeps_off_zero(level, 1, 2);
   expect(rising_from > 1 && rising_from < 1 + 1e-9 && rises.load.rate == 0,
          "at the speed at which a curve begins to rise it waits no longer than it carries nothing");
+  const pd::Branch<double> flat[] = {{0, never, 1.4e-6, 0, 0}};
+  Touch even(pd::Contact<double>{1.4e-6, 1.4e-6, 11.200000000000001, flat, 1});
+  even.load = {0, 800};  // its limit grows as fast as a pin of 0.1 mm/s stretches it, to rounding
+  State as_fast = at(-1e-4, 0);
+  even.ask(as_fast);
+  expect(even.option(0).state == ContactState::elastic_stick,
+         "where it can just grip at its limit, to rounding, it may");
   touch.load = {1, -1};
   expect(touch.keeps_off_zero(state, 1, 2) == 2 && touch.load.value == 1,
          "one far from zero is followed until its row");

@@ -46,6 +46,10 @@ void faster_and_slower() {
   found = landings(level_speeds, level_forces, level, 0.01).faster(1, 3.0);
   expect(found.drops && found.branch == 2 && found.at == Bound::upper,
          "and beside a slow pin it goes on down from there");
+  expect(
+      pd::detail::Slider<double>(pd::Contact<double>{}, 1e-4, 1e-4 / 0.7).pin(0.7 * (1 + 3e-16)) ==
+          0,
+      "a pin as fast as the stretch to rounding leaves it without a speed");
 }
 
 }  // namespace
