@@ -222,6 +222,12 @@ MUTANTS = (
         "const T round = most;",
     ),
     Mutant(
+        "a plate that comes to rest along and across turns before it does",
+        "series_mode.hpp",
+        "if (held && along.rate != 0 &&",
+        "if (held && along.rate != 0 && time < 0 &&",
+    ),
+    Mutant(
         "the slider of a load that grows from zero begins where it was",
         "series_equation.hpp",
         "} else if (skin_factor.rate != 0) {",
