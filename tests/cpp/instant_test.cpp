@@ -67,7 +67,7 @@ double apart(const Case& c, int& count) {
     pd::detail::State<double> state{motion.value(segment, tau, pd::Quantity::position),
                                     motion.value(segment, tau, pd::Quantity::velocity)};
     const auto friction = motion.friction(segment, tau);
-    const auto inputs = pd::InputLines<double>::of(c.inputs, segment).from(tau);
+    const auto inputs = pd::InputLines<double>::of(c.drive, c.inputs, segment).from(tau);
     state.skin = -friction.finger;
     const pd::Branch<double> branch = c.drive.finger.branch(segment.mode.finger_branch);
     if (pd::SeriesMode<double>(c.drive, segment.mode, inputs).lags())  // where its friction is this

@@ -163,8 +163,8 @@ void compare(const Case& c, Random& random, Worst& worst) {
       }
       const auto [segment, tau] = motion.locate(stepper->now(), pd::Side::left);
       const Values found = values_of(*stepper);
-      const Values expected =
-          values_in(c.drive, *segment, pd::InputLines<double>::of(whole.inputs, *segment), tau);
+      const Values expected = values_in(
+          c.drive, *segment, pd::InputLines<double>::of(c.drive, whole.inputs, *segment), tau);
       worst.position = std::max(worst.position, std::abs(found.x - expected.x) / size);
       ++worst.checked;
       worst.at_stop += segment->mode.stop != pd::StopState::apart;

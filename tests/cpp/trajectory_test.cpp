@@ -40,7 +40,8 @@ void compare(const pd::Drive<double>& drive, const pd::Inputs<double>& inputs,
   const pd::ClosedForm<double> closed(segment);
   pd::Segment<double> step = segment;  // of which a series has the begin alone
   step.flow.velocity.drift = segment.flow.acceleration().start;
-  const pd::BySeries<double> series(drive, step, pd::InputLines<double>::of(inputs, segment));
+  const pd::BySeries<double> series(drive, step,
+                                    pd::InputLines<double>::of(drive, inputs, segment));
   ++agree.count;
   for (const double part : {0.0, 0.3, 0.7, 1.0}) {
     const double tau = part * span;
