@@ -89,7 +89,7 @@ def test_whole_cycles_against_sundials(
 
 
 def test_a_drive_at_an_angle_to_the_hand() -> None:
-    """The plate slides across while the hand moves: it sticks where that stops, and carries less."""
+    """The plate slides across while the hand moves, sticks where it stops, and carries less."""
     scene = grating(0.004)
     carried = []
     for axis in (0.0, 0.2):
