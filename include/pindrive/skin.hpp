@@ -270,7 +270,8 @@ class SlidingSkin : public TouchState<T> {
       breaks_ = !landing_.grips || s.skin != 0 || slider(sense_, u).pin(contact.static_limit) != 0;
     }
     landing_.drops = s.skin != 0;
-    if (landing_.at == Bound::lower) comes_to_rest(slider(sense_, u), sense_, u);
+    if (landing_.at == Bound::lower || (landing_.grips && u == 0))
+      comes_to_rest(slider(sense_, u), sense_, u);
     return !breaks_;
   }
 

@@ -52,10 +52,10 @@ class SlowSliderFlow : public SeriesFlow<T> {
       if (round == most_rounds || (round > 2 && !converged && changed > last / 2)) return;
       last = changed;
     }
-    if (!within_step && !starts_from(start)) return;
     Real part = farthest / step;
     if (!within_step) part = std::min({part, this->suggested_part(), Real(longest)});
     this->rescale(part);
+    if (!within_step && !starts_from(start)) return;
     holds_ = within_step || bound(e, last);
     for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
       this->rescale(Real(0.75));
@@ -79,7 +79,9 @@ class SlowSliderFlow : public SeriesFlow<T> {
     using std::sqrt;
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope)) + f) / m +
-           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate))) / m) +
+           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate)) +
+                 abs(plain(e.damping_rate)) + abs(plain(e.load.rate) * plain(e.plate_slope))) /
+                m) +
            SeriesFlow<T>::turning_rate(e, start);
   }
 

@@ -101,6 +101,18 @@ void runs_away_at_rest() {
   touch.land(state);
   expect(state.skin == 0 && state.slide == 0, "without force");
 
+  Touch lifted = gripping({0, 0, 1000, peak, 3});
+  lifted.load = {0, 5};
+  State pressed = at(0, -0.1);
+  lifted.ask(pressed);
+  expect(lifted.count == 3 && lifted.option(0).state == ContactState::elastic_stick &&
+             lifted.option(1).state == ContactState::slip_forward &&
+             lifted.option(2).state == ContactState::slip_backward,
+         "as it may where its load has jumped to none and grows");
+  lifted.does = lifted.option(2);
+  lifted.land(pressed);
+  expect(pressed.skin == 0 && pressed.slide == 0, "from where it has no force either");
+
   Touch turned(pd::Contact<double>{0, 0, 1000, peak, 3});
   turned.load = {1, 0};
   turned.does = Touch::slip(1, Bound::none);

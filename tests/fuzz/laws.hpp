@@ -237,6 +237,22 @@ struct Cut {
   Case rest;
 };
 
+/// Whether a motion from a segment on, and another, part where the pin slips by no more than a speed, and comes
+/// to rest in one of them.
+inline bool part_at_rest(const pd::Motion<double>& one, const pd::Segment<double>* a,
+                         const pd::Motion<double>& other, double still) {
+  for (const auto& b : other) {
+    if (a == one.end() || a->mode.plate != b.mode.plate || a->mode.finger != b.mode.finger ||
+        a->mode.stop != b.mode.stop)
+      return false;
+    if (a->event.finger != b.event.finger)
+      return std::abs(place(one, *a, a->end - a->begin)[1]) <= still &&
+             std::abs(place(other, b, b.end - b.begin)[1]) <= still;
+    ++a;
+  }
+  return false;
+}
+
 /// How far what goes on from a state within a motion is from that motion, as a part of its largest position
 /// and velocity, at times ever closer to the cut. Where a start that is moved by a part of 1e-12, either
 /// way, comes elsewhere, the rounding of the state may do so too: of the difference, four times the
@@ -269,6 +285,7 @@ inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
     }
   }
   if (worst <= largest_residual) return worst;
+  if (part_at_rest(motion, cut.segment, rest.motion(), still)) return 0;
   const Followed up = cut.follow(most, 1e-12), down = cut.follow(most, -1e-12);
   if (!up.ok() || !down.ok()) return never;
   const Place sums = terms(motion, c.duration);

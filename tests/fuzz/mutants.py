@@ -233,6 +233,18 @@ MUTANTS = (
         "} else if (skin_factor.rate != 0) {",
         "} else if (n > 0 && skin_factor.rate != 0) {",
     ),
+    Mutant(
+        "skin without static friction grips a pin at rest as its load grows from none",
+        "skin.hpp",
+        "if (landing_.at == Bound::lower || (landing_.grips && u == 0))",
+        "if (landing_.at == Bound::lower)",
+    ),
+    Mutant(
+        "a slider of stiff skin is slow whatever speed it begins at",
+        "slow_slider.hpp",
+        "    if (!within_step && !starts_from(start)) return;\n    holds_",
+        "    holds_",
+    ),
     # This one is seen by the mirror alone …
     Mutant(
         "of the limits of skin, the upper one is looked at first",
