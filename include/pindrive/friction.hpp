@@ -33,7 +33,7 @@ struct Touch : SlidingSkin<T> {
   /// Whether nothing but its relative acceleration tells where it goes.
   bool rests(T v) const {
     if (does.at == Bound::none || oblique()) return false;
-    return elastic() ? v == this->level() : !lags() || gap(v) == 0;
+    return elastic() ? this->off_level(v) == 0 : !lags() || gap(v) == 0;
   }
   /// What it does at the start: it slips unless its surface has the velocity of the pin.
   void begin(State<T>& s, bool stretched) {
@@ -197,7 +197,7 @@ struct Touch : SlidingSkin<T> {
       return inwards > 0 || (inwards == 0 && (does.at == Bound::upper || does.branch > 0));
     }
     if (this->either_way()) return s.v == 0 && decides == 0;
-    const T stretches = contact.stiffness * sense_, faster = s.v - this->level();
+    const T stretches = contact.stiffness * sense_, faster = this->off_level(s.v);
     if (faster == 0) return sense_ * decides >= 0;
     return sense_ * faster > 0 || touches(stretches * faster, stretches * decides, s.roundoff);
   }

@@ -66,7 +66,7 @@ class Guards {
         Path<T> left = most + T(to) * segment.finger_force;
         if (most.drift != 0 && side.does.at == Bound::upper && to == near) {
           left.start = T(0);
-          if (segment.flow.velocity.start == side.level()) left.drift = -left.slope;
+          if (side.off_level(segment.flow.velocity.start) == 0) left.drift = -left.slope;
         }
         add(left, Bound::none, plate, to);
       }

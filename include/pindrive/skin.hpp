@@ -25,10 +25,13 @@ class SlidingSkin : public TouchState<T> {
   bool lags() const { return contact.may_lag() && sliding() && branch().slope != 0; }
   /// The speed of its slider, which lags; along its slip.
   T slide() const { return landed() ? T(landing_.speed) : slid_; }
-  /// By how much the pin is faster than that, beside what the skin stretches as its load grows.
+  /// By how much the pin is faster than that, beside what the skin stretches as its load grows; none to rounding
+  /// is none.
   T gap(T v) const {
+    using std::abs;
     if (meets_ && slide() == slid_) return T(0);
-    return does.sense * v - stretching(carried()) - slide();
+    const T gap = does.sense * v - stretching(carried()) - slide();
+    return abs(gap) < rounding<T> * abs(v) ? T(0) : gap;
   }
   /// The rate at which the stretch of a friction follows the load, m/s.
   T stretching(T of) const {
@@ -39,6 +42,12 @@ class SlidingSkin : public TouchState<T> {
     if (contact.rigid()) return surface.value;
     return elastic() ? -sense_ * stretching(contact.static_limit)
                      : does.sense * stretching(branch().force);
+  }
+  /// By how much the pin is faster than that, m/s; none to rounding is none.
+  T off_level(T v) const {
+    using std::abs;
+    const T off = v - level();
+    return abs(off) < rounding<T> * abs(v) ? T(0) : off;
   }
   /// Whether its skin has become shorter at once.
   bool drops() const { return landed() && landing_.drops; }

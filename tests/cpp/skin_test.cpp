@@ -1,6 +1,7 @@
 // Skin with its slider: what stretches it, when it grips and slips, and what becomes of it as its load changes.
 #include "pindrive/skin.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "check.hpp"
@@ -47,6 +48,12 @@ void grips() {
   touch.ask(at(-0.1, -0.3));
   expect(touch.count == 2 && touch.option(1).state == ContactState::slip_backward,
          "at its limit, stretched further, it may slip");
+  Touch falling_load = gripping(skin);
+  falling_load.load.rate = -7;
+  falling_load.ask(at(0, -0.3));
+  const double level = 7 * 0.3 / 1000, rounded = std::nextafter(level, 1);
+  expect(falling_load.off_level(rounded) == 0 && falling_load.off_level(1.001 * level) > 0,
+         "released just as fast as its limit falls, to rounding, it stays there");
   Touch light = gripping(skin, 0.5);
   light.ask(at(-0.1, -0.25));
   expect(light.count == 1 && light.option(0).state == ContactState::slip_backward,
