@@ -274,7 +274,7 @@ def install(extras: set[str], *, project: bool = True) -> None:
         stamp = {}
     if stamp.get("python") != sys.version or stamp.get("place") != str(VENV):
         stamp = {}
-    extras = {"build", *extras, *stamp.get("extras", [])}
+    extras = {"build", "complete", *extras, *stamp.get("extras", [])}
 
     if not stamp:
         STAMP.unlink(missing_ok=True)

@@ -79,8 +79,8 @@ class SlowSliderFlow : public SeriesFlow<T> {
     using std::sqrt;
     const Real m = plain(e.mass), f = plain(e.skin_factor.value);
     return (abs(plain(e.damping)) + abs(plain(e.load.value) * plain(e.plate_slope)) + f) / m +
-           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate)) +
-                 abs(plain(e.damping_rate)) + abs(plain(e.load.rate) * plain(e.plate_slope))) /
+           sqrt((plain(e.stiffness) + abs(plain(e.skin_factor.rate)) + abs(plain(e.damping_rate)) +
+                 abs(plain(e.load.rate) * plain(e.plate_slope))) /
                 m) +
            SeriesFlow<T>::turning_rate(e, start);
   }

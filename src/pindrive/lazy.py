@@ -4,14 +4,17 @@ Libraries that take long to load are names of this module, and are loaded when o
 names is first used. A package exports its public names by `attach`; a result reaches what is
 built on it, such as its figure, by `call`, whose target is text: the graph of the import statements
 then has no circle. The package lazy_loader does the first two, but its modules have no types.
+
+The libraries of the extra "complete" need not be installed: what needs none of them works without.
 """
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 __all__ = [
+    "COMPLETE",
     "Image",
     "ImageDraw",
     "ImageFont",
@@ -25,9 +28,11 @@ __all__ = [
     "h5py",
     "linalg",
     "matplotlib",
+    "missing",
     "optimize",
     "pint",
     "qmc",
+    "require",
     "rich_console",
     "rich_progress",
     "signal",
@@ -82,10 +87,47 @@ else:
     stats = _Module("scipy.stats")
     qmc = _Module("scipy.stats.qmc")
 
+COMPLETE: Final = {
+    "PIL": "pillow",
+    "h5netcdf": "h5netcdf",
+    "h5py": "h5py",
+    "latex2mathml": "latex2mathml",
+    "markdown_it": "markdown-it-py",
+    "matplotlib": "matplotlib",
+    "scipy": "scipy",
+    "xarray": "xarray",
+}
+"""What the extra "complete" installs: the name of each distribution by that of its package."""
+
+
+def missing(error: ModuleNotFoundError) -> str:
+    """How what an import lacks is installed; empty if it is not of the extra "complete"."""
+    library = COMPLETE.get((error.name or "").partition(".")[0])
+    if library is None:
+        return ""
+    return f'{library} is not installed; python -m pip install "pindrive[complete]" installs it'
+
+
+def require(name: str) -> None:
+    """Refuse where a package of the extra "complete" is not installed; nothing is loaded.
+
+    Raises:
+        ModuleNotFoundError: it is not; says how it is installed.
+    """
+    from importlib.util import find_spec
+
+    if find_spec(name) is None:
+        raise ModuleNotFoundError(missing(ModuleNotFoundError(name=name)), name=name)
+
 
 def _loaded(name: str) -> ModuleType:
     """A module by its full name, without importlib: that is not loaded yet when Python starts."""
-    __import__(name)
+    try:
+        __import__(name)
+    except ModuleNotFoundError as error:
+        if reason := missing(error):
+            raise ModuleNotFoundError(reason, name=error.name) from None
+        raise
     return sys.modules[name]
 
 

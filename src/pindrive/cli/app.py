@@ -13,6 +13,7 @@ import typer
 
 from pindrive.cli.help import Program, register
 from pindrive.cli.interrupts import INTERRUPTED, STOPPED, ignore_more
+from pindrive.lazy import missing
 
 app = typer.Typer(
     name="pindrive",
@@ -39,6 +40,12 @@ def main() -> None:
         status = INTERRUPTED
     except SystemExit as end:
         status = end.code
+    except ModuleNotFoundError as error:
+        reason = missing(error)
+        if not reason:
+            raise
+        print(reason, file=sys.stderr)
+        status = 2
     except OSError as error:  # other files have been named already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
         print(f"standard output: cannot be written: {error.strerror}", file=sys.stderr)

@@ -16,7 +16,7 @@ from secrets import token_hex
 from typing import Any, Final
 
 from pindrive.files.keys import STUDY_KEYS, TABLES
-from pindrive.lazy import h5py
+from pindrive.lazy import h5py, require
 from pindrive.quantities.results import MOTION
 
 _HEAD = 4096
@@ -39,6 +39,8 @@ class Kind:
     holds: Callable[[Path], bool]
     consent: str = ""
     """The option with which one is replaced, as it took long to make; none where it did not."""
+    library: str = ""
+    """That of the extra "complete" which writes one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +68,16 @@ def check_outputs(
         consent: whether files may be replaced that took long to make.
 
     Raises:
-        OutputError: two outputs are one file, an output is an input, or a file is there that is of
-            another kind, or takes consent.
+        OutputError: two outputs are one file, an output is an input, a file is there that is of
+            another kind, or takes consent, or the library that writes it is not installed.
     """
     read = [*inputs]
     for i, output in enumerate(outputs):
+        if output.kind.library:
+            try:
+                require(output.kind.library)
+            except ModuleNotFoundError as error:
+                raise OutputError(f"{output}: {error}") from None
         if any(_are_one(output.path, other.path) for other in outputs[:i]):
             raise OutputError(f"{output}: is named twice; give each file a name of its own")
         check_unread(output.path, read, str(output))
@@ -214,9 +221,9 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> N
         raise
 
 
-def _beginning(name: str, *beginnings: bytes) -> Kind:
+def _beginning(name: str, *beginnings: bytes, library: str = "") -> Kind:
     """A kind whose files begin so."""
-    return Kind(name, lambda path: _head(path).startswith(beginnings))
+    return Kind(name, lambda path: _head(path).startswith(beginnings), library=library)
 
 
 def _headed(name: str, headings: Sequence[str]) -> Kind:
@@ -231,7 +238,9 @@ def _head(path: Path) -> bytes:
 
 def _titled(name: str, beginning: str) -> Kind:
     """A NetCDF file of pindrive by the beginning of its title."""
-    return Kind(name, lambda path: _attribute(path, "title").startswith(beginning))
+    return Kind(
+        name, lambda path: _attribute(path, "title").startswith(beginning), library="h5netcdf"
+    )
 
 
 def _attribute(path: Path, name: str) -> str:
@@ -266,14 +275,14 @@ def _is_study_file(path: Path) -> bool:
 
 
 PICTURES: Final = {
-    ".png": _beginning("PNG picture", b"\x89PNG\r\n\x1a\n"),
-    ".svg": Kind("SVG picture", lambda path: b"<svg" in _head(path)),
-    ".pdf": _beginning("PDF file", b"%PDF-"),
+    ".png": _beginning("PNG picture", b"\x89PNG\r\n\x1a\n", library="matplotlib"),
+    ".svg": Kind("SVG picture", lambda path: b"<svg" in _head(path), library="matplotlib"),
+    ".pdf": _beginning("PDF file", b"%PDF-", library="matplotlib"),
 }
 """By the ending of a name."""
 FILMS: Final = {
-    ".gif": _beginning("GIF film", b"GIF87a", b"GIF89a"),
-    ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp"),
+    ".gif": _beginning("GIF film", b"GIF87a", b"GIF89a", library="matplotlib"),
+    ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp", library="matplotlib"),
 }
 MOTION_CSV: Final = _headed("CSV file of a motion", _ALWAYS)
 EVENTS_CSV: Final = _headed("CSV file of the events of a motion", EVENT_HEADINGS)
@@ -285,7 +294,10 @@ LINES_CSV: Final = _headed("CSV file of lines", ("pin", "fate", "cue_on"))
 SCAN_NETCDF: Final = _titled("NetCDF file of a scan", "Scan of ")
 FMU: Final = Kind("FMU", lambda path: b"modelDescription.xml" in _head(path))
 STUDY_NETCDF: Final = Kind(
-    "NetCDF file of a study", lambda path: _attribute(path, "identity") != "", "--restart"
+    "NetCDF file of a study",
+    lambda path: _attribute(path, "identity") != "",
+    "--restart",
+    library="h5netcdf",
 )
 DEVICE_FILE: Final = Kind("device file", _is_device_file, "--force")
 STUDY_FILE: Final = Kind("study file", _is_study_file, "--force")
