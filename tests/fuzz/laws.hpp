@@ -256,7 +256,8 @@ inline bool part_at_rest(const pd::Motion<double>& one, const pd::Segment<double
 /// How far what goes on from a state within a motion is from that motion, as a part of its largest position
 /// and velocity, at times ever closer to the cut. Where a start that is moved by a part of 1e-12, either
 /// way, comes elsewhere, the rounding of the state may do so too: of the difference, four times the
-/// distance between those is taken, and the rounding of what they are sums of.
+/// distance between those is taken, once more for each stop that it meets, and the rounding of what they
+/// are sums of.
 inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   const Cut cut(motion, c);
   if (!cut.possible || !(cut.rest.duration > 0)) return 0;
@@ -289,13 +290,18 @@ inline double cut_residual(const pd::Motion<double>& motion, const Case& c) {
   const Followed up = cut.follow(most, 1e-12), down = cut.follow(most, -1e-12);
   if (!up.ok() || !down.ok()) return never;
   const Place sums = terms(motion, c.duration);
+  // One that grazes its stops is off anew at each.
+  const auto met = [](const pd::Segment<double>& one) {
+    return one.event.stop != pd::Transition::none;
+  };
+  const double times_off = 4.0 + static_cast<double>(std::count_if(cut.segment, motion.end(), met));
   worst = 0;
   for (std::size_t k = 0; k < times; ++k) {
     const Place a = place(up.motion(), at[k]), b = place(down.motion(), at[k]);
     for (std::size_t i = 0; i < 2; ++i) {
       const double rounded = 64 * std::numeric_limits<double>::epsilon() * sums[i];
-      worst = std::max(worst,
-                       apart[k][i] - 4 * beside(a[i] - b[i], most[i]) - beside(rounded, most[i]));
+      worst = std::max(
+          worst, apart[k][i] - times_off * beside(a[i] - b[i], most[i]) - beside(rounded, most[i]));
     }
   }
   return worst;
