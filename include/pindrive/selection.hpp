@@ -192,7 +192,7 @@ class Selection {
     using std::abs;
     const T apart = on.surface.rate - other.surface.rate;
     if (other.stuck() ? apart != 0 : !other.goes_inside(state_, apart)) return false;
-    if (!stop_.allows(state_.v, on.surface.rate, T(0))) return false;
+    if (!stop_.allows(state_.v, on.surface.rate, {})) return false;
     const T of_on = on.contact.static_limit;
     const T of_other = other.stuck() ? other.contact.static_limit : T(0);
     const Line<T> most{of_on * on.load.value + of_other * other.load.value,
@@ -244,9 +244,8 @@ class Selection {
     if (stop_.ask_further() && !leaves_stop()) return false;
     const auto leaves = [&](const Side& side, const Side& other, T force) {
       if (side.oblique()) {
-        const auto [rate, size, bend] = force_rate();
-        const T jerk = abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass;
-        return side.goes_inside(state_, acceleration_ - side.surface.rate, jerk, bend);
+        const Line<T> jerk = this->jerk();
+        return side.goes_inside(state_, acceleration_ - side.surface.rate, jerk.value, jerk.rate);
       }
       if (!tangential_) return side.goes_inside(state_, force);
       const T apart = acceleration_ - side.surface.rate;
@@ -278,9 +277,15 @@ class Selection {
       tangential_ = true;
       acceleration_ = T(0);
     }
-    return stop_.allows(state_.v, acceleration_, force_rate().value / drive_.mass);
+    return stop_.allows(state_.v, acceleration_, jerk());
   }
 
+  /// The jerk of a pin that sets out, none to rounding, and how fast it changes.
+  Line<T> jerk() const {
+    using std::abs;
+    const auto [rate, size, bend] = force_rate();
+    return {abs(rate) <= rounding<T> * size ? T(0) : rate / drive_.mass, bend / drive_.mass};
+  }
   /// How the force on a pin that sets out changes: mass times its jerk.
   typename Side::Rate force_rate() const {
     using std::abs;

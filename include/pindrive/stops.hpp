@@ -79,14 +79,15 @@ class EndStops {
   bool ask_further() const { return at_ != Bound::none; }
   bool at_edge() const { return at_ == Bound::edge; }
   /// … and whether the one that was taken agrees with that.
-  bool allows(T v, T acceleration, T jerk) const {
+  bool allows(T v, T acceleration, const Line<T>& jerk) const {
     if (at_ == Bound::none) return true;
-    T first = acceleration, second = jerk;
+    T first = acceleration, second = jerk.value, third = jerk.rate;
     if (at_ == Bound::push) {
       first = stops_.stiffness * v + stops_.damping * acceleration;
-      second = stops_.stiffness * acceleration + stops_.damping * jerk;
+      second = stops_.stiffness * acceleration + stops_.damping * jerk.value;
+      third = stops_.stiffness * jerk.value + stops_.damping * jerk.rate;
     }
-    const T outwards = T(side(options_[0])) * (first != 0 ? first : second);
+    const T outwards = T(side(options_[0])) * (first != 0 ? first : second != 0 ? second : third);
     return touches(does) ? outwards >= 0 : outwards <= 0;
   }
 

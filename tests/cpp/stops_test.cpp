@@ -34,8 +34,9 @@ int main() {
   rigid.take(0);
   expect(rigid.holds() && rigid.does == StopState::lower && rigid.force(s) == 0, "it holds it");
   rigid.take(1);
-  expect(rigid.allows(0, 1, 0) && !rigid.allows(0, -1, 0) && rigid.allows(0, 0, 1),
-         "it lets go what moves inwards");
+  expect(rigid.allows(0, 1, {}) && !rigid.allows(0, -1, {}) && rigid.allows(0, 0, {1, -1}) &&
+             rigid.allows(0, 0, {0, 1}) && !rigid.allows(0, 0, {0, -1}),
+         "it lets go what moves inwards, by the first derivative that is not zero");
 
   Stops elastic(pd::Stops<double>{1e-3, 1e4, 2});
   s = at(1.1e-3, -0.1);
@@ -50,8 +51,8 @@ int main() {
   s = at(1.1e-3, -0.5);
   elastic.ask(s);
   elastic.take(1);
-  expect(elastic.does == StopState::beyond_upper && elastic.allows(-0.5, -1, 0) &&
-             !elastic.allows(-0.5, 3000, 0),
+  expect(elastic.does == StopState::beyond_upper && elastic.allows(-0.5, -1, {}) &&
+             !elastic.allows(-0.5, 3000, {}),
          "a push that has come to zero ends unless the pin is slowed down enough");
   State met = at(-1.0000001e-3, -0.1);
   Stops below(pd::Stops<double>{1e-3, 1e4, 2});
