@@ -148,5 +148,6 @@ def test_a_command_ends_in_a_line_while_it_is_imported(module: str, tmp_path: Pa
     """
     ended = run(program, tmp_path)
     assert (ended.returncode, ended.stdout) == (130, ""), ended.stderr
-    assert ended.stderr.startswith("stopped; n") and ended.stderr.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
+    assert ended.stderr.startswith("stopped; ") and ended.stderr.count("\n") == 1
+    # Raised a moment after the import, when a sweep may have finished a chunk: it says which.
+    assert any(tmp_path.iterdir()) == ("chunks are kept" in ended.stderr)
