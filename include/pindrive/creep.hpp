@@ -63,7 +63,7 @@ class CreepFlow : public SeriesStep<T> {
       Real part = within_step ? left : std::min(this->suggested_part(), left);
       const bool converged = converged_;
       const Real changed = change(part);
-      converged_ = changed <= unit * size(plate_force, part) / plain(e.mass);
+      converged_ = changed <= unit * this->size_of(plate_force, part) / plain(e.mass);
       if (!within_step && round > 2 && !converged_ && changed > last / 2) return;  // nor would it
       last = changed;
       if (within_step && changed < least) {
@@ -202,11 +202,6 @@ class CreepFlow : public SeriesStep<T> {
   Real change(Real part) const {
     Real sum{0}, power{1};
     for (int n = 0; n < N; ++n, power *= part) sum += changes_[n] * power;
-    return sum;
-  }
-  static Real size(const Polynomial<T>& p, Real part) {
-    Real sum{0}, power{1};
-    for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
     return sum;
   }
 

@@ -76,6 +76,12 @@ class SeriesStep {
     for (int n = N; n >= 0; --n) sums[n] = sums[n + 1] + std::abs(plain(c[n]));
     return sums;
   }
+  /// The sum of the sizes of all over a part of the step.
+  static Real size_of(const Polynomial<T>& p, Real part) {
+    Real sum{0}, power{1};
+    for (int n = 0; n <= N; ++n, power *= part) sum += std::abs(plain(p.c[n])) * power;
+    return sum;
+  }
   /// The most that a product of two series comes to beyond its order N.
   static Real beyond(const Sums& p, const Sums& q) {
     Real sum{0};

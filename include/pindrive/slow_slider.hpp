@@ -39,27 +39,28 @@ class SlowSliderFlow : public SeriesFlow<T> {
                  bool within_step = false) {
     this->without = FastPart::of_slider;
     if (!stiff(e, start)) return;
-    const Real farthest = plain(limit), step = 1 / slow_rate(e, start);
+    const Real step = 1 / slow_rate(e, start), left = plain(limit) / step;
     e.stretching = stretching_.data();
-    Real last{0};
+    Real part{1}, last{0};
     bool converged = false;
     for (int round = 0;; ++round) {
       this->expand(e, start, step);
-      const Real changed = follow(e, step), known = unit * plain(e.skin_decay) * sums_of(skin.c)[0];
+      follow(e, step);
+      part = within_step ? left : std::min({this->suggested_part(), left, Real(longest)});
       // The derivatives of a dual number converge one round later.
       if (converged) break;
-      converged = changed <= known;
+      const Real changed = change(part);
+      converged = changed <= unit * plain(e.skin_decay) * this->size_of(skin, part);
       if (round == most_rounds || (round > 2 && !converged && changed > last / 2)) return;
       last = changed;
     }
-    Real part = farthest / step;
-    if (!within_step) part = std::min({part, this->suggested_part(), Real(longest)});
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
-    holds_ = within_step || bound(e, last);
+    holds_ = within_step || bound(e, change(part));
     for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
-      this->rescale(Real(0.75));
-      holds_ = bound(e, last);
+      part *= shorter;
+      this->rescale(shorter);
+      holds_ = bound(e, change(part));
     }
     if (holds_) this->trim();
   }
@@ -71,7 +72,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   using SeriesStep<T>::N, SeriesStep<T>::unit, SeriesStep<T>::sums_of;
   using typename SeriesStep<T>::Sums;
   static constexpr int most_rounds = 16, most_tries = 40;
-  static constexpr Real longest = 8;
+  static constexpr Real longest = 8, shorter = 0.75;
 
   /// About the fastest rate of the equation without its fast part: there the skin is a damper φ.
   static Real slow_rate(const SeriesEquation<T>& e, const SeriesState<T>& start) {
@@ -85,16 +86,20 @@ class SlowSliderFlow : public SeriesFlow<T> {
            SeriesFlow<T>::turning_rate(e, start);
   }
 
-  /// Takes (φ y)' from the series; by how much that changes it.
-  Real follow(const SeriesEquation<T>& e, Real step) {
-    Real changed{0};
+  /// Takes (φ y)' from the series.
+  void follow(const SeriesEquation<T>& e, Real step) {
     for (int n = 0; n <= N; ++n) {
       const T grows = n < N ? e.skin_factor.value * skin.c[n + 1] / T(step) : T(0);
       const T now = T(n + 1) * (grows + e.skin_factor.rate * skin.c[n]);
-      changed += std::abs(plain(now - stretching_[n]));
+      changes_[n] = std::abs(plain(now - stretching_[n]));
       stretching_[n] = now;
     }
-    return changed;
+  }
+  /// How much the last round has changed that over a part of the step: what the series of y misses.
+  Real change(Real part) const {
+    Real sum{0}, power{1};
+    for (int n = 0; n <= N; ++n, power *= part) sum += changes_[n] * power;
+    return sum;
   }
 
   /// Bounds what the series leave out, from what they miss of the equation: the error of y is at most what pulls it
@@ -142,6 +147,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   }
 
   std::array<T, N + 1> stretching_{};  // (φ y)', in the time σ
+  std::array<Real, N + 1> changes_{};  // of it in the last round
   bool holds_{false};
 };
 

@@ -113,6 +113,17 @@ void up_to_no_load() {
   expect(std::abs(end.state.skin - tends) < 1e-14 * 0.05, "at no load", end.state.skin - tends);
 }
 
+/// It holds also up to a row that comes much sooner than anything changes.
+void shortly_before_a_row() {
+  auto e = held_back(4e8, -1e5);
+  const double row = 1e-10;
+  auto begins = follow(e, {1e-3, 1e-3, 1e-3}, 1e-6, false).state;
+  e = e.from(1e-6);
+  expect(pd::SlowSliderFlow<double>(e, begins, row).holds(), "up to a row", 0);
+  begins.skin *= 1 + 1e-13;
+  expect(!pd::SlowSliderFlow<double>(e, begins, row).holds(), "off by more than rounding", 0);
+}
+
 /// A slider that is off that velocity is followed through its fast part, and soft skin all the way.
 void refuses() {
   const auto e = held_back(1e6, 5.0);
@@ -148,6 +159,7 @@ void derivatives() {
 int main() {
   beside_taylor();
   up_to_no_load();
+  shortly_before_a_row();
   refuses();
   derivatives();
   return failures == 0 ? 0 : 1;
