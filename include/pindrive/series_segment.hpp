@@ -20,6 +20,9 @@ class SeriesSegment {
  public:
   bool used() const { return step_.has_value(); }
 
+  /// Whether a slider has the velocity at which its skin stretches as it has to: its force follows the load.
+  bool follows() const { return step_ && step_->without == FastPart::of_slider; }
+
   void reset() { step_.reset(); }
 
   /// Begins a segment of a mode without a closed form (that, its begin and its plate velocity are set). Its

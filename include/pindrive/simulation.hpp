@@ -269,7 +269,7 @@ class Simulation : private Selection<T> {
       look_ahead();
     const T now = finger_.load.value, known = rounding<T> * (abs(value) + 2 * abs(rate) * time_);
     if (abs(value - now) > known + rounding<T> * abs(now)) return abs(value) > known ? value : T(0);
-    finger_.keeps_force(state_, value);
+    if (!series_.follows()) finger_.keeps_force(state_, value);
     return now;
   }
   /// Takes the inputs from here on, from their rows: carried on from event to event they would gather rounding.

@@ -56,11 +56,11 @@ class SlowSliderFlow : public SeriesFlow<T> {
     }
     this->rescale(part);
     if (!within_step && !starts_from(start)) return;
-    holds_ = within_step || bound(e, change(part));
+    holds_ = within_step || bound(e, start.time, change(part));
     for (int tries = 0; !holds_ && tries < most_tries; ++tries) {
       part *= shorter;
       this->rescale(shorter);
-      holds_ = bound(e, change(part));
+      holds_ = bound(e, start.time, change(part));
     }
     if (holds_) this->trim();
   }
@@ -105,7 +105,7 @@ class SlowSliderFlow : public SeriesFlow<T> {
   /// Bounds what the series leave out, from what they miss of the equation: the error of y is at most what pulls it
   /// back after those of the velocity and of its own equation, and that of the velocity what they pull.
   /// Whether it is rounding.
-  bool bound(const SeriesEquation<T>& e, Real missed_skin) {
+  bool bound(const SeriesEquation<T>& e, T time, Real missed_skin) {
     using std::abs;
     using std::max;
     using std::min;
@@ -128,7 +128,9 @@ class SlowSliderFlow : public SeriesFlow<T> {
     const Real stays = plain(e.skin_decay) + plain(e.skin_factor.rate);
     const Real falls = min(b, b + b_change) + min({Real(0), S * load, S * (load + load_change)});
     const Real grown = h / m * (k * h + most_f * K / stays + max(Real(0), -falls));
-    if (!(f + f_change >= 0) || (!e.held && grown > Real(0.5))) return false;
+    // It may end where its load does, to the rounding of the time.
+    const Real ends = f + f_change + 4 * unit * (plain(time) + h) * abs(plain(e.skin_factor.rate));
+    if (!(ends >= 0) || (!e.held && grown > Real(0.5))) return false;
     v_bound = e.held ? Real(0) : 2 * h / m * (missed + most_f * missed_skin / stays);
     x_bound = h * v_bound;
     skin_bound = (K * v_bound + missed_skin) / stays;
