@@ -111,8 +111,13 @@ void up_to_no_load() {
   const double tends = (1e6 * end.state.v + 0.2 * 50) / (1e6 - 0.5 * 50);
   expect(end.steps < 30, "steps", end.steps);
   expect(std::abs(end.state.skin - tends) < 1e-14 * 0.05, "at no load", end.state.skin - tends);
-  const auto beyond = follow(e.from(1e-4), begins, (0.02 - 1e-4) * (1 + 3e-16), true);
-  expect(beyond.steps < 30, "steps to where rounding has it below zero", beyond.steps);
+  // To the rounding of the time, as at 0.1 s.
+  auto last = e.from(0.0199);
+  last.skin_factor.value -= 25 * 5e-17;
+  auto before = follow(e.from(1e-4), begins, 0.0199 - 1e-4, true).state;
+  before.time = 0.1;
+  const pd::SlowSliderFlow<double> step(last, before, 1e-4);
+  expect(step.holds() && step.span() == 1e-4, "to where rounding has it below zero", step.span());
 }
 
 /// It holds also up to a row that comes much sooner than anything changes.
