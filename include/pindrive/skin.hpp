@@ -207,7 +207,7 @@ class SlidingSkin : public TouchState<T> {
       landing_.drops = landing_.turns = true;
     }
     if (landing_.at != Bound::lower || landing_.turns) return;
-    const bool meets = goes.pin(landing_.friction) == landing_.speed;
+    const bool meets = goes.misses(landing_.speed, landing_.friction) == 0;
     if (!breaks_ && !(meets && landing_.branch > 0)) return;
     other_ = goes.slower(landing_.branch, landing_.friction);
     meets_other_ = breaks_ || landing_.drops || !other_.grips;

@@ -42,6 +42,13 @@ class Slider {
     return abs(pin) < rounding<T> * abs(speed_) ? T(0) : pin;
   }
 
+  /// By how much that is faster than a speed at this friction; none to rounding is none.
+  T misses(T speed, T friction) const {
+    using std::abs;
+    const T left = pin(friction) - speed;
+    return abs(left) < rounding<T> * abs(speed_) ? T(0) : left;
+  }
+
   /// The first speed from the begin of a branch on at which its curve carries the friction asked of it. If
   /// none does, it is infinitely fast until the skin asks no more than the last.
   [[gnu::noinline]] Landing<T> faster(int branch, T asked) const {
@@ -103,7 +110,6 @@ class Slider {
   /// The largest speed that lasts as a load grows from zero, at which friction grows as the skin stretches; it
   /// grips if none does.
   [[gnu::noinline]] Landing<T> from_zero() const {
-    const auto misses = [&](T speed, T friction) { return pin(friction) - speed; };
     for (int j = speed_ > 0 ? contact_.branch_of(speed_) : -1; j >= 0; --j) {
       const Branch<T> range = contact_.branch(j);
       const T left = misses(range.from, range.force);

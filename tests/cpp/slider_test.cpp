@@ -18,11 +18,11 @@ constexpr std::array<double, 5> level_speeds{0, 0.1, 0.2, 0.3, 0.4}, level_force
 
 template <std::size_t N>
 auto landings(const std::array<double, N>& u, const std::array<double, N>& f,
-              std::array<pd::Branch<double>, N + 1>& branches, double pin) {
+              std::array<pd::Branch<double>, N + 1>& branches, double pin, double follows = 0) {
   const int count = pd::branches_of(u.data(), f.data(), static_cast<int>(N), branches.data());
   static pd::Contact<double> contact;
   contact = {f[0], 1.5, 1000.0, branches.data(), count};
-  return pd::detail::Slider<double>(contact, pin, 0.0);
+  return pd::detail::Slider<double>(contact, pin, follows);
 }
 
 void faster_and_slower() {
@@ -52,9 +52,19 @@ void faster_and_slower() {
       "a pin as fast as the stretch to rounding leaves it without a speed");
 }
 
+/// As a load grows from zero the slider has the speed that is left of the pin's: at a row of its curve, to rounding.
+void from_no_load() {
+  std::array<pd::Branch<double>, 5> rising{};
+  for (const double pin : {0.3, 0.3 * (1 + 3e-16)}) {
+    const auto found = landings(speeds, forces, rising, pin, 0.1).from_zero();
+    expect(found.branch == 2 && found.speed == 0.2 && found.at == Bound::lower, "at the row");
+  }
+}
+
 }  // namespace
 
 int main() {
   faster_and_slower();
+  from_no_load();
   return check::status();
 }
