@@ -27,7 +27,7 @@ struct Guard {
 /// approaches is looked at first: a mirrored motion then has the same zeros, to the bit.
 template <class T>
 int sense(const Path<T>& path) {
-  for (const T part : {path.start, path.value, path.slope, path.drift, path.curvature})
+  for (const T part : {path.start, path.slope + path.drift, path.value, path.curvature})
     if (part != 0) return part < 0 ? -1 : 1;
   return 1;
 }

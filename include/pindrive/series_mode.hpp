@@ -206,7 +206,7 @@ class SeriesMode {
       between(found, speed, finger(), at.finger, false, false);
     }
     if (mode_.finger == ContactState::elastic_stick) {
-      const int limit = at.finger == detail::Bound::none ? 0 : plain(step.skin.c[0]) > 0 ? 1 : -1;
+      const int limit = at.finger == detail::Bound::none ? 0 : begins_with(step.skin);
       within(found, step.skin,
              {drive_.finger.static_limit * inputs_.finger_load.value,
               drive_.finger.static_limit * inputs_.finger_load.rate},
@@ -230,6 +230,13 @@ class SeriesMode {
     return inputs_.finger_load.rate * friction / drive_.finger.stiffness;
   }
   static T at_rest(const Branch<T>& branch) { return branch.force - branch.slope * branch.from; }
+
+  /// The sign of what a series begins with.
+  static int begins_with(const Polynomial<T>& series) {
+    for (const T& c : series.c)
+      if (c != 0) return c < 0 ? -1 : 1;
+    return 1;
+  }
 
   void between(Guards& found, const Polynomial<T>& speed, const Branch<T>& range, detail::Bound at,
                bool is_plate, bool oblique) const {

@@ -49,12 +49,13 @@ class SeriesSegment {
     for (const auto& guard : paths)
       guards.add_known(guard.zero, guard.bound, guard.plate, guard.side,
                        segment.mode.stuck() && !held && &guard - paths.begin() < 2);
-    const T row = step.span() < span ? never : span;
     const T turns = abs(equation.across.rate) + abs(equation.plate_velocity.rate);
     const T left = abs(equation.across.at(span)) + abs(equation.plate_velocity.at(span));
     stops_ = equation.held && equation.side == 0 &&
              left <= 4 * rounding<T> * (segment.begin + span) * turns;
     first_ = guards.earliest_known(step.span());
+    // What ends it at once may do so as late as where its step ends, as at a row.
+    const T row = step.span() < span && first_ > 0 ? never : step.span();
     first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push

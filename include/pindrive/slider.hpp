@@ -116,7 +116,7 @@ class Slider {
       const bool last = !(range.to < never);
       if (range.slope < 0 || left < 0 || (left == 0 && j == 0)) continue;
       if (left == 0) return {j, range.from, range.force, Bound::lower};
-      if (!last && misses(range.to, contact_.branch(j + 1).force) > 0) continue;
+      if (!last && misses(range.to, contact_.branch(j + 1).force) >= 0) continue;
       const T speed = std::min(range.from + left / (1 + follows_ * range.slope), range.to);
       return {j, speed, range.at(speed)};
     }

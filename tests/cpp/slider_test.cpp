@@ -59,6 +59,10 @@ void from_no_load() {
     const auto found = landings(speeds, forces, rising, pin, 0.1).from_zero();
     expect(found.branch == 2 && found.speed == 0.2 && found.at == Bound::lower, "at the row");
   }
+  // At a peak it would run away as the pin gets faster: it grips.
+  std::array<pd::Branch<double>, 4> peaked{};
+  constexpr std::array<double, 3> to_peak{0, 0.1, 0.5}, up_and_down{1, 3, 1};
+  expect(landings(to_peak, up_and_down, peaked, 0.4, 0.1).from_zero().grips, "at a peak");
 }
 
 }  // namespace
