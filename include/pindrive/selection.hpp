@@ -225,15 +225,20 @@ class Selection {
     tangential_ = false;
     guards_.clear();
     const T finger = finger_.force(state_);
-    if (plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value)
-      plate_.direction = set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger);
+    // Beside a plate that begins to slide across all forces may balance but for rounding.
+    const bool across =
+        plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value;
+    const T apart = across ? set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger) : T(0);
     const T plate = plate_.force(state_);
-    acceleration_ = (inertia_ - pull_ + plate + finger) / drive_.mass;
+    acceleration_ =
+        across ? plate_.surface.rate + apart : (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
-      const T force = own - stick_force(side, of_other);
+      const T force = across ? drive_.mass * (acceleration_ - side.surface.rate)
+                             : own - stick_force(side, of_other);
       const bool releases = side.before == ContactState::stick && continues();
-      const bool none = abs(force) <= state_.roundoff + plate_.unsure(state_.v);
+      const T known = across ? T(0) : state_.roundoff + plate_.unsure(state_.v);
+      const bool none = abs(force) <= known;
       if (!tangential_ && (none || releases || turns_at_once(side, force))) {
         tangential_ = true;
         acceleration_ = side.surface.rate;

@@ -99,13 +99,15 @@ bool asks_across(Side& side, T u, Bound& at) {
   return true;
 }
 
-/// The direction in which a pin leaves a plate that begins to slide across, while all else pulls it, N.
+/// The relative acceleration with which a pin leaves a plate that begins to slide across, while all else pulls
+/// it, N; the plate's direction follows.
 template <class T, class Side>
-T set_out_across(T mass, const Side& plate, T pull) {
+T set_out_across(T mass, Side& plate, T pull) {
   using detail::hypot;
   const T rest = pull - mass * plate.surface.rate;
   const T p = setting_out(mass, plate.load.value * plate.friction, plate.across.rate, rest);
-  return p / hypot(p, plate.across.rate);
+  plate.direction = p / hypot(p, plate.across.rate);
+  return p;
 }
 
 /// Where a plate stops to slide across, a pin that has come to its velocity has it exactly: to what it was
