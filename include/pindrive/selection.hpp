@@ -228,10 +228,11 @@ class Selection {
     // Beside a plate that begins to slide across all forces may balance but for rounding.
     const bool across =
         plate_.oblique() && plate_.across.value == 0 && state_.v == plate_.surface.value;
-    const T apart = across ? set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger) : T(0);
+    const T parting =
+        across ? set_out_across(drive_.mass, plate_, inertia_ - pull_ + finger) : T(0);
     const T plate = plate_.force(state_);
     acceleration_ =
-        across ? plate_.surface.rate + apart : (inertia_ - pull_ + plate + finger) / drive_.mass;
+        across ? plate_.surface.rate + parting : (inertia_ - pull_ + plate + finger) / drive_.mass;
     const auto parts = [&](const Side& side, T own, T of_other) {  // times the mass
       if (!side.rests(state_.v)) return acceleration_;
       const T force = across ? drive_.mass * (acceleration_ - side.surface.rate)

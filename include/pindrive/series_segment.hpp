@@ -56,11 +56,14 @@ class SeriesSegment {
     first_ = guards.earliest_known(step.span());
     // What ends it at once may do so as late as where its step ends, as at a row.
     const T row = step.span() < span && first_ > 0 ? never : step.span();
+    const auto speed_of = [&](bool on_plate) {
+      return abs((on_plate ? step.speed : lags ? step.skin : step.velocity).c[0]);
+    };
     first_ = guards.put_off(first_, row, [&](const Guard<T>& guard, T tau) {
       const Polynomial<T>& path = paths.begin()[&guard - guards.begin()].path;
       const T roundoff = guard.bound == Bound::none || guard.bound == Bound::push
                              ? state.roundoff
-                             : rounding<T> * path.size();
+                             : rounding<T> * (path.size() + speed_of(guard.plate));
       const T fall = path.derivative().at(guard.zero) * (tau - guard.zero);
       return stays_at_bound(fall, path.at(tau), roundoff);
     });

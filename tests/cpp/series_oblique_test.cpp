@@ -98,9 +98,9 @@ void sets_out_and_lands() {
   Touch touch = plate({0, 0.2});
   touch.friction = 0.03;
   const double mass = 0.01, pull = 0.02;
-  const double direction = pd::detail::set_out_across(mass, touch, pull);
-  const double p = 0.2 * direction / std::sqrt(1 - direction * direction);
-  expect(near((mass * p + 0.03 * direction) / (pull - mass * 0.5), 1, 1e-12),
+  const double p = pd::detail::set_out_across(mass, touch, pull), direction = touch.direction;
+  expect(near(p, 0.2 * direction / std::sqrt(1 - direction * direction), 1e-12) &&
+             near((mass * p + 0.03 * direction) / (pull - mass * 0.5), 1, 1e-12),
          "a pin sets out in the direction in which the forces along the axis balance");
   touch.does = {ContactState::slip_oblique, Bound::none, 0, 0.0};
   touch.across = {0, 0};
