@@ -58,7 +58,8 @@ void exchange(Bytes& bytes, Numbers& at, State& s) {
     number(h.since, h.ends);
     line(h.line);
   };
-  number(s.now, s.since, s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff, s.pin.slide);
+  number(s.now, s.since, s.since_error);
+  number(s.pin.x, s.pin.v, s.pin.skin, s.pin.x_size, s.pin.roundoff, s.pin.slide);
   option(s.plate);
   option(s.finger);
   number(s.at_plate, s.at_finger, s.limit, s.stop, s.stop_released, s.stop_met, s.struck);

@@ -28,6 +28,7 @@ StateOfDual lifted(const State& s) {
                                     s.pin.x_size, s.pin.roundoff, s.pin.slide};
   return {s.now,
           s.since,
+          s.since_error,
           pin,
           option(s.plate),
           option(s.finger),

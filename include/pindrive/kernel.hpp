@@ -41,6 +41,7 @@ class Round {
     x_ = progress_.standing.position;
     v_ = progress_.standing.velocity;
     t_ = progress_.standing.time;
+    t_error_ = progress_.standing.time_error;
     start();
     if constexpr (Later) {
       if (any(rising_)) meet_plate();
@@ -56,6 +57,7 @@ class Round {
     progress_.standing.position = x_;
     progress_.standing.velocity = v_;
     progress_.standing.time = t_;
+    progress_.standing.time_error = t_error_;
   }
 
   Progress<V, Measured>& progress() { return progress_; }
@@ -171,7 +173,7 @@ class Round {
     give_up(on & (released == V(1.0)));
     released = select(on, V(1.0), released);
     x_ = select(on, to, x_);
-    t_ = select(on, t_ + time, t_);
+    pass_time(on, time);
     falls(on & !given_up_, (r_.fp - r_.sp) * r_.per_mass);
   }
 
@@ -257,7 +259,7 @@ class Round {
       last_ = {from, t_, select(on & !left, n, zero), w};
     }
     x_ = select(on, position, x_);
-    t_ = select(on, t_ + time, t_);
+    pass_time(on, time);
     resting_ = on & !left;
     const Mask moves_on = on & left;
     v_ = select(moves_on, zero, v_);  // which may have been −0
@@ -333,7 +335,13 @@ class Round {
   void slide_to(const Mask& which, const V& position, const V& time) {
     if constexpr (Measured) progress_.numbers.slides(which, position - x_, time, r_);
     x_ = select(which, position, x_);
-    t_ = select(which, t_ + time, t_);
+    pass_time(which, time);
+  }
+  /// Adds to the time and keeps what its rounding leaves out (Kahan 1965).
+  void pass_time(const Mask& which, const V& time) {
+    const V passed = time + t_error_, sum = t_ + passed;
+    t_error_ = select(which, passed - (sum - t_), t_error_);
+    t_ = select(which, sum, t_);
   }
   /// The velocities of a slide that lasts for a time from now on: where it starts, and its extreme.
   void watch(const Mask& which, const V& time) {
@@ -348,7 +356,7 @@ class Round {
   const Oscillation<V>& w_;
   Progress<V, Measured> progress_;
 
-  V x_, v_, t_, centre_{0.0}, acceleration_{0.0};
+  V x_, v_, t_, t_error_, centre_{0.0}, acceleration_{0.0};
   Extreme rise_{V(1.0), V(1.0)};  ///< of a velocity that comes up to the plate's
   Mask still_{false}, rising_{false}, above_{false}, carried_{false}, falling_{false};
   Mask resting_{false}, late_{false}, carried_late_{false}, goes_on_{false};

@@ -15,7 +15,7 @@ struct KernelBlock {
   /// From a column to the next: not a power of two, which would put all columns in the same few sets
   /// of the processor's cache.
   static constexpr int stride = capacity + widest;
-  static constexpr int inputs = 14, most_progress = 25;
+  static constexpr int inputs = 14, most_progress = 26;
   /// Of the output: a PlainNumber, or of the state.
   enum State : signed char {
     rest_position = PlainNumber::count,

@@ -11,15 +11,16 @@ inline namespace PINDRIVE_TARGET {
 template <class V>
 struct Standing {
   V position, velocity, time;  ///< m, m/s, s
+  V time_error;                ///< what the rounding of the time leaves out of it, s
   V released;                  ///< 1 where the plate carried it and let it go, else 0
 
   explicit Standing(const ForwardRelease<V>& r)
-      : position(r.start), velocity(r.start_velocity), time(0.0), released(0.0) {}
+      : position(r.start), velocity(r.start_velocity), time(0.0), time_error(0.0), released(0.0) {}
   template <class F>
   void columns(const F& f) {
-    f(position), f(velocity), f(time), f(released);
+    f(position), f(velocity), f(time), f(time_error), f(released);
   }
-  static constexpr int column_count = 4;
+  static constexpr int column_count = 5;
 };
 
 /// All of it at the start of a round. `Measured`: with its numbers.

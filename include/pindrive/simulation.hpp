@@ -46,7 +46,7 @@ class Simulation : private Selection<T> {
     for (long long events = 1;; ++events) {
       begin(segment);
       const T tau = earliest(segment.flow);
-      const bool finished = !(time_ + tau < inputs_.duration);
+      const bool finished = !(time_after(tau) < inputs_.duration);
       if (!finished) {
         jump(segment, tau);
         select();
@@ -128,7 +128,7 @@ class Simulation : private Selection<T> {
     if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
                                     finger_.load)) {
       series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
-                    continues() ? limit_ : 0, no_push(), std::min(row_, inputs_.duration) - time_);
+                    continues() ? limit_ : 0, no_push(), std::min(until_row(), inputs_.duration - time_));
       return;
     }
     segment.flow = flow(plate, finger);
@@ -179,9 +179,14 @@ class Simulation : private Selection<T> {
            drive_.finger.branches == 0;
   }
 
+  /// Time after τ, s: the rounding of earlier sums is taken into account.
+  T time_after(T tau) const { return time_ + (tau + time_error_); }
+  /// The time to the next row of an input, s.
+  T until_row() const { return row_ - time_ - time_error_; }
+
   /// The time to the earliest event. What happens at the row of an input to rounding happens there.
   T earliest(const Flow<T>& flow) {
-    const T row = row_ - time_;
+    const T row = until_row();
     if (series_.used()) return series_.earliest(time_, row);
     const T serves = flow.oscillator.serves_for();
     const T limit = serves < row && flow.velocity.oscillates() ? serves : row;
@@ -193,8 +198,9 @@ class Simulation : private Selection<T> {
   void jump(Segment<T>& segment, T tau) {
     using std::abs;
     const T coincident = tau + rounding<T> * (time_ + tau);
-    const bool row = tau == row_ - time_;
-    const T end = row ? row_ : time_ + tau;
+    const bool row = tau == until_row();
+    const T end = row ? row_ : time_after(tau);
+    time_error_ = row ? T(0) : tau + time_error_ - (end - time_);
     const T lasts = finger_.rounds_time() && end > time_ ? end - time_ : tau;
     series_.move(state_, drive_, finger_, lasts);
     if (!series_.used()) {
@@ -293,6 +299,7 @@ class Simulation : private Selection<T> {
   T half_period_;            ///< from one zero of its velocity to the next,
   Propagator<T> half_turn_;  ///< and how it has moved on there
 
+  T time_error_{0};     ///< what the rounding of time_ leaves out of it (Kahan 1965), s
   T row_{never};        ///< time of the next row of an input, s
   bool struck_{false};  ///< a rigid stop, just now
   SeriesSegment<T> series_;

@@ -26,7 +26,8 @@ class Stepper {
   /// All that it goes on with: a stepper made of it gives the same bits.
   struct State {
     T now;                              ///< s
-    T since;                            ///< time of the last event, s; there …
+    T since;                            ///< time of the last event, s, …
+    T since_error;                      ///< … what its rounding leaves out, s; there …
     detail::State<T> pin;               ///< … was the pin, …
     Option plate, finger;               ///< … this each contact had done, …
     detail::Bound at_plate, at_finger;  ///< … these bounds their speeds had come to, …
@@ -134,7 +135,7 @@ class Stepper {
   Status status() const { return standstill_ ? Status::standstill : simulation_.outcome_.status; }
   T now() const { return now_; }  ///< s
   /// The time until which no contact changes if the inputs go on as they do, s; infinite if none ever does.
-  T next() const { return simulation_.time_ + tau_; }
+  T next() const { return simulation_.time_after(tau_); }
   const Event& event() const { return event_; }  ///< what happens to the contacts now
   Mode mode() const { return segment_.mode; }    ///< of the contacts from now on
   const Drive<T>& drive() const { return drive_; }
@@ -214,6 +215,7 @@ class Stepper {
 
   void restore(const State& state) {
     simulation_.time_ = state.since;
+    simulation_.time_error_ = state.since_error;
     simulation_.state_ = state.pin;
     simulation_.plate_.does = state.plate;
     simulation_.finger_.does = state.finger;
@@ -243,6 +245,7 @@ class Stepper {
     if (abs(now_ - simulation_.time_) <= detail::rounding<T> * abs(now_)) {
       restore(last_);
       simulation_.time_ = now_;
+      simulation_.time_error_ = T(0);
       simulation_.plate_.surface.rate = inputs_.mouse_velocity.held().line.rate;
       take_inputs(now_);
       simulation_.limit_ = 0;
@@ -250,7 +253,7 @@ class Stepper {
     } else {
       simulation_.row_ = now_;
       before_ = segment_.mode;
-      simulation_.jump(segment_, now_ - simulation_.time_);
+      simulation_.jump(segment_, simulation_.until_row());
     }
   }
 
@@ -297,6 +300,7 @@ class Stepper {
     const auto &plate = simulation_.plate_, &finger = simulation_.finger_;
     last_ = {now_,
              simulation_.time_,
+             simulation_.time_error_,
              simulation_.state_,
              plate.does,
              finger.does,

@@ -556,9 +556,33 @@ void at_an_instant() {
          "in every kind of mode");
 }
 
+/// As event_times_do_not_drift in simulation_test.cpp, by steps, from states that are kept on the way.
+void event_times_do_not_drift() {
+  const pd::Drive<double> undamped{0.01, 100, 0, {}, {1e-9, 1e-9}};
+  const auto begin = std::make_unique<pd::Stepper<double>>(
+      undamped, pd::Inputs<double>{pd::Held<double>(0.1), 1.5e-3, 0.1});
+  const long double omega = sqrtl(100.0L / undamped.mass), pi = 3.14159265358979323846264L;
+  const long double first = atan2l(0.1L, omega * (undamped.finger.kinetic / 100.0L + 1.5e-3)) / omega;
+  double worst = 0;
+  auto state = begin->state();
+  for (int kept = 0; kept < 10; ++kept) {
+    pd::Stepper<double> stepper(undamped, state);
+    for (int i = 0; i < 1000; ++i) {
+      const long double exact = first + (1000 * kept + i) * pi / omega;
+      stepper.step(1e3, true);
+      const auto apart = static_cast<double>(std::abs(stepper.now() - exact));
+      worst = std::max(worst, apart / (std::nextafter(stepper.now(), 1e9) - stepper.now()));
+    }
+    state = stepper.state();
+  }
+  std::printf("# times within %.2f ulp after 10 000 reversals\n", worst);
+  expect(worst <= 4, "10 000 reversals later an event is within 4 ulp");
+}
+
 }  // namespace
 
 int main() {
+  event_times_do_not_drift();
   the_same_as_in_one_run();
   events();
   at_the_stops();
