@@ -21,10 +21,21 @@ inline constexpr T first_grip = 64 * rounding<T>;
 /// away, another follows, a breakpoint is passed); more would never end.
 inline constexpr int standstill_limit = 100;
 
-/// How closely a state returns in a cycle, as a part of its size: a hundred roundings, which is what
-/// the events of one round leave; and by how much more for each round before, since without damping the
-/// rounding of the rounds adds up.
-inline constexpr double return_tolerance = 1e-14, return_tolerance_per_round = 1e-15;
+/// Distance within which a state is the same as one before, as a part of the natural scales of the motion: well
+/// above the rounding of the events of one period.
+inline constexpr double return_tolerance = 1e-12;
+
+/// Bound of the distance between a cycle that is approached geometrically and the simulated period that stands
+/// for it, and largest difference between begin and end of that period, as parts of the natural scales.
+inline constexpr double approach_tolerance = 1e-9, approach_step = 1e-10;
+
+/// Difference between a motion and its periodic continuation from its steady begin on, as a part of the
+/// amplitude. It is larger than `approach_tolerance`, so that the simulated period itself is steady.
+inline constexpr double repeat_tolerance = 1e-8;
+
+/// Speed below which a pin is at rest, as a part of |x| ω0: below what a decay leaves of the digits of the
+/// position (MODEL, section 10).
+inline constexpr double rest_tolerance = 3e-11;
 
 /// So much of a radian before the end of a segment, what is there to rounding is at the end: the velocity
 /// at an event is set exactly, and its closed form comes to zero a little sooner or later.

@@ -196,6 +196,11 @@ struct Inputs {
   Profile<T> across_velocity{T(0)};  ///< of the plate across the axis of the pin, m/s; continuous
   Profile<T> finger_load{T(1)};      ///< factor on the finger's friction; >= 0
 
+  /// The first row of any input after time t, s; infinite without one.
+  T next_row(T t) const {
+    return std::min({mouse_velocity.next_row(t), plate_load.next_row(t), finger_load.next_row(t),
+                     force.next_row(t), across_velocity.next_row(t)});
+  }
   bool constant() const {
     return mouse_velocity.constant() && plate_load.constant() && force.constant() &&
            across_velocity.constant() && finger_load.constant();
@@ -325,11 +330,11 @@ template <class T>
 struct Outcome {
   Status status{Status::ok};
   End end{End::moving};
-  T steady_since{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
-  T period{std::numeric_limits<T>::quiet_NaN()};        ///< of a steady oscillation, s
+  T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
   T until{0};        ///< end of the last segment, s; then a cycle begins again …
   T cycle_begin{0};  ///< … from here, s
 
+  bool steady() const { return cycles() || end == End::free || end == End::grazing; }
   bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
 };
 

@@ -24,19 +24,14 @@ class Settling {
   Settling(const Motion<T>& motion, T duration, GoOn go_on = {})
       : motion_(motion), duration_(duration), go_on_(go_on) {}
 
-  /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|; of a steady
-  /// oscillation, when that begins. NaN if that is later than the duration, or never.
+  /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|, of a motion that
+  /// rests or decays. NaN if that is later than the duration, or never.
   T within(T x_end, T band) const {
     using std::abs;
-    const Outcome<T>& outcome = motion_.outcome();
-    if (outcome.end == End::moving) return none;
-    T since = outcome.steady_since;
-    if (outcome.end == End::resting || outcome.end == End::decaying) {
-      const T x = motion_.begin()->flow.position.start, way = x - x_end;
-      constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
-      const T width = abs(way) <= rounding * (abs(x) + abs(x_end)) ? T(0) : band * abs(way);
-      since = last_outside(x_end, width);
-    }
+    const T x = motion_.begin()->flow.position.start, way = x - x_end;
+    constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
+    const T width = abs(way) <= rounding * (abs(x) + abs(x_end)) ? T(0) : band * abs(way);
+    const T since = last_outside(x_end, width);
     return since <= duration_ && since < never ? since : none;
   }
 

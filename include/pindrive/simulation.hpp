@@ -10,7 +10,7 @@
 #include "pindrive/guards.hpp"
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
-#include "pindrive/return.hpp"
+#include "pindrive/recurrence.hpp"
 #include "pindrive/selection.hpp"
 #include "pindrive/series_oblique.hpp"
 #include "pindrive/series_segment.hpp"
@@ -55,8 +55,8 @@ class Simulation : private Selection<T> {
                          change(segment.mode.finger, after.finger)};
         segment.event.stop = change(segment.mode.stop, after.stop, struck_);
         if (finger_.drops()) segment.event.finger = Transition::slip;
-        if (Return<T>::watches(segment.mode, after) && !(row_ < never))
-          returns_.meet(drive_, segment, after, state_, outcome_);
+        if (!(row_ < never) && (struck_ || !same_mode(segment.mode, after)))
+          cycles_.visit(segment, after, time_, state_, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
@@ -128,7 +128,8 @@ class Simulation : private Selection<T> {
     if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
                                     finger_.load)) {
       series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
-                    continues() ? limit_ : 0, no_push(), std::min(until_row(), inputs_.duration - time_));
+                    continues() ? limit_ : 0, no_push(),
+                    std::min(until_row(), inputs_.duration - time_));
       return;
     }
     segment.flow = flow(plate, finger);
@@ -287,9 +288,7 @@ class Simulation : private Selection<T> {
       finger_.load = inputs_.finger_load.from(time_);
       force_ = inputs_.force.from(time_);
       plate_.across = InputLines<T>::across_from(inputs_, time_, plate_.surface, held());
-      row_ = std::min({inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_),
-                       inputs_.finger_load.next_row(time_), inputs_.force.next_row(time_),
-                       inputs_.across_velocity.next_row(time_)});
+      row_ = inputs_.next_row(time_);
       if (row_ - time_ > rounding<T> * time_) return;
     }
   }
@@ -304,7 +303,7 @@ class Simulation : private Selection<T> {
   bool struck_{false};  ///< a rigid stop, just now
   SeriesSegment<T> series_;
 
-  Return<T> returns_;
+  CycleDetector<T> cycles_{drive_};
   Outcome<T> outcome_{};
 };
 

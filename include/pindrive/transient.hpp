@@ -10,6 +10,7 @@
 #include "pindrive/extrema.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/named_number.hpp"
+#include "pindrive/recurrence.hpp"
 #include "pindrive/roots.hpp"
 #include "pindrive/settling.hpp"
 
@@ -84,7 +85,7 @@ class Measurement {
     swing(result);
     first_reversal(result);
     ending(result);
-    result.settling_time = settling().within(result.end_position, band);
+    settle(result, band);
     rest_and_events(result);
     const ContactsUse<T> used = ContactMeasurement<T, GoOn>(motion_, duration_, go_on_).measure();
     result.plate = used.plate;
@@ -99,7 +100,8 @@ class Measurement {
   T settling_time(T band) const {
     Transient<T> result;
     ending(result);
-    return settling().within(result.end_position, band);
+    settle(result, band);
+    return result.settling_time;
   }
 
   /// Until a motion that decays stays within a thousandth of the size of the oscillation that it
@@ -120,6 +122,14 @@ class Measurement {
 
  private:
   static constexpr T never = std::numeric_limits<T>::infinity();
+
+  void settle(Transient<T>& result, T band) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    if (outcome.steady())
+      result.settling_time = result.steady_since <= duration_ ? result.steady_since : result.none;
+    else if (outcome.end != End::moving)
+      result.settling_time = settling().within(result.end_position, band);
+  }
 
   Settling<T, GoOn> settling() const { return {motion_, duration_, go_on_}; }
 
@@ -228,6 +238,8 @@ class Measurement {
   void ending(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
     const Flow<T>& last = std::prev(motion_.end())->flow;
+    result.steady_since = steady_since(motion_);
+    result.period = outcome.period;
     switch (outcome.end) {
       case End::moving:
         return;
@@ -246,28 +258,15 @@ class Measurement {
       case End::limit_cycle:
         break;
     }
-    T low = never, high = -never;
-    for (const Segment<T>& segment : motion_) {
-      if (!go_on_()) return;
-      if (segment.begin < outcome.cycle_begin) continue;
-      motion_.along(segment, [&](const auto& along) {
-        highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin, [&](T, T x) {
-          const T position = motion_.drive().stops.within(x);
-          low = std::min(low, position);
-          high = std::max(high, position);
-        });
-      });
-    }
-    result.end_position = (low + high) / 2;
-    result.amplitude = (high - low) / 2;
+    const detail::Range<T> range = detail::cycle_range(motion_, go_on_);
+    result.end_position = (range.low + range.high) / 2;
+    result.amplitude = (range.high - range.low) / 2;
   }
 
   /// The three ends of a motion that are no settling: at rest, steady, without further events.
   void rest_and_events(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.end == End::moving) return;
-    result.steady_since = outcome.steady_since;
-    result.period = outcome.period;
     result.rest_time = outcome.end == End::resting ? rest_begin() : never;
     result.last_event_time = T(0);
     const Segment<T>* segment = motion_.end();
@@ -321,7 +320,7 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
     }
     case End::free:
     case End::grazing:
-      return outcome.steady_since + 3 * outcome.period;
+      return last_begin + 3 * outcome.period;
     case End::stick_slip:
     case End::limit_cycle:
       return outcome.until + 3 * outcome.period;

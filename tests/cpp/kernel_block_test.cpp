@@ -85,8 +85,10 @@ void times_do_not_drift() {
     passed += segment.event.plate != pindrive::Transition::none;
   });
   const double apart = std::abs(rest - expected) / (std::nextafter(rest, inf) - rest);
-  std::printf("# at rest after %d passages of the plate's velocity, %.0f ulp apart\n", passed, apart);
-  expect(passed > 10'000 && apart <= 8, "thousands of rounds later times are those of the general core");
+  std::printf("# at rest after %d passages of the plate's velocity, %.0f ulp apart\n", passed,
+              apart);
+  expect(passed > 10'000 && apart <= 8,
+         "thousands of rounds later times are those of the general core");
 }
 
 }  // namespace

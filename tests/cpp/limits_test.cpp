@@ -12,8 +12,9 @@ int main() {
   expect(limits::rounding<double> >= 8 * 0.5 * std::numeric_limits<double>::epsilon(),
          "eight terms are rounded by half an epsilon each");
   expect(limits::return_tolerance >= 20 * limits::rounding<double> / 2 &&
-             limits::return_tolerance < 1e-12,
-         "states that return differ by some roundings and no more");
+             limits::return_tolerance < limits::approach_tolerance &&
+             limits::approach_tolerance < limits::repeat_tolerance,
+         "a cycle is closed more closely than it has to repeat, and less than rounding allows");
   expect(limits::standstill_limit > 3, "physics has up to three events at an instant");
 
   // Without damping and with next to no friction it would swing more than 10^7 times.

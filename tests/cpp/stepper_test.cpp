@@ -562,7 +562,8 @@ void event_times_do_not_drift() {
   const auto begin = std::make_unique<pd::Stepper<double>>(
       undamped, pd::Inputs<double>{pd::Held<double>(0.1), 1.5e-3, 0.1});
   const long double omega = sqrtl(100.0L / undamped.mass), pi = 3.14159265358979323846264L;
-  const long double first = atan2l(0.1L, omega * (undamped.finger.kinetic / 100.0L + 1.5e-3)) / omega;
+  const long double first =
+      atan2l(0.1L, omega * (undamped.finger.kinetic / 100.0L + 1.5e-3)) / omega;
   double worst = 0;
   auto state = begin->state();
   for (int kept = 0; kept < 10; ++kept) {

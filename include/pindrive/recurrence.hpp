@@ -1,0 +1,283 @@
+/// Detection of steady motions by recurrence (docs/theory.md, section 5).
+///
+/// A cycle is found in two phases (Brent 1980). `CycleDetector` finds its period during the simulation, by
+/// comparing the state after each event with one kept state. `steady_since` finds its beginning afterwards,
+/// from the stored segments.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "pindrive/extrema.hpp"
+#include "pindrive/limits.hpp"
+#include "pindrive/model.hpp"
+#include "pindrive/motion.hpp"
+#include "pindrive/state.hpp"
+
+namespace pindrive {
+namespace detail {
+
+/// Sets the ending of a motion whose last mode lasts for ever.
+template <class T>
+void end_with(const Segment<T>& last, Outcome<T>& outcome) {
+  const Flow<T>& flow = last.flow;
+  const T alpha = flow.oscillator.alpha();
+  if (!flow.position.oscillates()) {
+    if (flow.velocity.start == 0 && flow.velocity.straight()) outcome.end = End::resting;
+  } else if (alpha < 0) {
+    outcome.end = End::decaying;
+  } else if (alpha == 0) {
+    // Released without a relative acceleration it touches the plate's velocity once a period.
+    const bool grazes = slips(last.mode.plate) && flow.velocity.slope == 0 &&
+                        flow.velocity.start == last.plate_velocity.value;
+    outcome.end = grazes ? End::grazing : End::free;
+    outcome.period = flow.oscillator.period();
+  }
+}
+
+inline bool same_mode(const Mode& one, const Mode& other) {
+  return one.plate == other.plate && one.finger == other.finger &&
+         one.plate_branch == other.plate_branch && one.finger_branch == other.finger_branch &&
+         one.stop == other.stop;
+}
+
+/// Natural scales of a motion, measured along its events: range of the position and largest speed.
+template <class T>
+class Extent {
+ public:
+  /// Includes an event, between a segment and the state after the event.
+  void add(const Flow<T>& ended, T x, T v) {
+    using std::abs;
+    lowest_ = std::min(lowest_, x);
+    highest_ = std::max(highest_, x);
+    amplitude_ = std::max(amplitude_, abs(ended.position.value));
+    speed_ = std::max({speed_, abs(v), abs(ended.velocity.value)});
+  }
+  T length() const { return std::max(highest_ - lowest_, amplitude_); }  ///< m
+  T speed() const { return speed_; }                                     ///< m/s
+
+ private:
+  T lowest_{std::numeric_limits<T>::infinity()}, highest_{-std::numeric_limits<T>::infinity()};
+  T amplitude_{0}, speed_{0};
+};
+
+/// Detects that a motion between constant inputs has returned to an earlier state. Events of every kind are
+/// compared.
+///
+/// Each state is compared with two kept states. One is renewed after ever more events, so that a period of any
+/// length is found, and the other after few events, so that a short period is found soon. A return within
+/// `return_tolerance` closes a cycle. A cycle that is approached geometrically is followed from return to
+/// return, and closed when the contraction bounds its remaining distance by `approach_tolerance`.
+template <class T>
+class CycleDetector {
+ public:
+  explicit CycleDetector(const Drive<T>& drive) : drive_(drive) {}
+
+  /// Compares an event, between a segment and the mode and state after the event. Sets the ending in the
+  /// outcome if the event closes a cycle.
+  void visit(const Segment<T>& ended, const Mode& mode, T time, const State<T>& state,
+             Outcome<T>& outcome) {
+    for (Visit* visit : {&kept_, &recent_, &followed_}) {
+      visit->extent.add(ended.flow, state.x, state.v);
+      visit->driven = visit->driven || mode.plate == ContactState::stick;
+    }
+    const Visit now{count_, time, mode, state, {}, mode.plate == ContactState::stick};
+    if (count_ > 0) {
+      for (const Visit* visit : {&recent_, &kept_}) {
+        const Visit& earlier = *visit;
+        const T distance = separation(earlier, now);
+        if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
+        if (!(distance < near_return) || (period_ > 0 && !(distance < distance_))) continue;
+        period_ = count_ - earlier.index;
+        distance_ = distance;
+        ratio_ = T(1);
+        followed_ = now;
+      }
+      if (period_ > 0 && count_ == followed_.index + period_) {
+        if (approaches(separation(followed_, now))) return close(followed_, now, outcome);
+        followed_ = now;
+      }
+    }
+    if (count_ % short_memory == 0) recent_ = now;
+    if (count_ == next_) {
+      kept_ = now;
+      next_ += std::max(next_ / 4, std::min(next_, short_memory)) + 1;
+    }
+    ++count_;
+  }
+
+ private:
+  /// State and mode after an event, and the scales of the motion since then.
+  struct Visit {
+    long long index{0};
+    T time{0};
+    Mode mode{};
+    State<T> state{};
+    Extent<T> extent{};
+    bool driven{false};  ///< stuck to the plate at any time since then
+  };
+
+  /// Events after which the recent state is renewed.
+  static constexpr long long short_memory = 32;
+  /// Distance below which a return is followed, as a part of the natural scales.
+  static constexpr double near_return = 1e-3;
+  static constexpr T never = std::numeric_limits<T>::infinity();
+
+  /// Distance between the states after two events as a part of the natural scales; infinite if they have
+  /// different modes, or if the motion between them is not larger than the rounding of its position.
+  T separation(const Visit& earlier, const Visit& now) const {
+    using std::abs;
+    using std::sqrt;
+    if (!(now.time > earlier.time) || !same_mode(earlier.mode, now.mode)) return never;
+    const T length = earlier.extent.length();
+    if (!(length > T(rest_tolerance) * abs(now.state.x))) return never;
+    const T rounded = rounding<T> * std::max(abs(now.state.x), length);
+    const auto apart = [](T one, T other, T known, T scale) {
+      const T beyond = abs(one - other) - known;
+      return beyond > 0 ? beyond / scale : T(0);
+    };
+    const State<T>&one = earlier.state, other = now.state;
+    const T omega0 = sqrt(drive_.stiffness / drive_.mass);
+    const T speed = earlier.extent.speed();
+    T most = std::max(apart(one.x, other.x, rounded, length),
+                      apart(one.v, other.v, rounded * omega0, speed));
+    const Contact<T>& finger = drive_.finger;
+    if (finger.may_lag())
+      most = std::max(most, apart(one.slide, other.slide, rounded * omega0, speed));
+    if (finger.may_lag() || now.mode.finger == ContactState::elastic_stick)
+      most = std::max(most, apart(one.skin, other.skin, finger.stiffness * rounded,
+                                  std::min(finger.stiffness * length, finger.static_limit)));
+    return most;
+  }
+
+  /// Updates the contraction with the distance of the next return of the followed period. True if the
+  /// remaining returns together, a geometric series, stay within the tolerance.
+  bool approaches(T distance) {
+    const T ratio = distance / distance_;
+    const T slower = std::max(ratio, ratio_);
+    ratio_ = ratio;
+    distance_ = distance;
+    if (!(ratio < 1)) period_ = 0;
+    if (distance <= T(return_tolerance)) return true;
+    return slower < 1 && distance <= T(approach_step) &&
+           distance / (1 - slower) <= T(approach_tolerance);
+  }
+
+  void close(const Visit& begin, const Visit& now, Outcome<T>& outcome) const {
+    outcome.end = begin.driven ? End::stick_slip : End::limit_cycle;
+    outcome.period = now.time - begin.time;
+    outcome.cycle_begin = begin.time;
+  }
+
+  const Drive<T>& drive_;
+  Visit kept_, recent_, followed_;
+  long long count_{0}, next_{0};  ///< events so far; count at which the kept visit is renewed
+  long long period_{0};           ///< of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};      ///< of its last return, and to the distance before
+};
+
+template <class T>
+struct Range {
+  T low{std::numeric_limits<T>::infinity()}, high{-std::numeric_limits<T>::infinity()};
+};
+
+/// Lowest and highest position of the cycle in which a motion ends, m.
+template <class T, class GoOn = Unattended>
+Range<T> cycle_range(const Motion<T>& motion, GoOn go_on = {}) {
+  Range<T> range;
+  for (const Segment<T>& segment : motion) {
+    if (!go_on()) break;
+    if (segment.begin < motion.outcome().cycle_begin) continue;
+    motion.along(segment, [&](const auto& along) {
+      highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin, [&](T, T x) {
+        const T position = motion.drive().stops.within(x);
+        range.low = std::min(range.low, position);
+        range.high = std::max(range.high, position);
+      });
+    });
+  }
+  return range;
+}
+
+/// Beginning of a steady motion: the first event from which the motion agrees with its own periodic
+/// continuation into the past.
+///
+/// Both are compared backwards from event to event, those of the motion and those of the continuation. The
+/// comparison at equal times, not at equal events, also serves phases that vanish as a cycle is approached,
+/// and motions that join within a phase.
+template <class T>
+class FirstRepeat {
+ public:
+  explicit FirstRepeat(const Motion<T>& motion)
+      : motion_(motion),
+        known_(motion.outcome().cycles() ? motion.outcome().cycle_begin
+                                         : std::prev(motion.end())->begin),
+        period_(motion.outcome().period),
+        last_row_(last_row(motion.inputs())) {}
+
+  T find() const {
+    const T tolerance = T(repeat_tolerance) * amplitude();
+    const Segment<T>* own = motion_.locate(known_, Side::right).segment;
+    const Segment<T>*const first = own, *const last = std::prev(motion_.end());
+    const Segment<T>* continued = last;
+    T periods{1};
+    for (T since = known_; since > last_row_;) {
+      const T before = own == motion_.begin() ? T(0) : std::prev(own)->begin;
+      const T before_too =
+          motion_.outcome().cycles() ? continued->begin - periods * period_ : last_row_;
+      const T next = std::max({before, before_too, last_row_});
+      for (const T part : {T(0), T(0.25), T(0.5), T(0.75)})
+        if (next < since && !agrees(next + part * (since - next), tolerance)) return since;
+      since = std::min(since, next);
+      if (before >= next && own != motion_.begin()) --own;
+      if (!(before_too >= next)) continue;
+      if (continued == first) periods += T(1);
+      continued = continued == first ? last : std::prev(continued);
+    }
+    return last_row_;
+  }
+
+ private:
+  /// True if the motion is, at a time, where its continuation is.
+  bool agrees(T time, T tolerance) const {
+    using std::abs;
+    using std::floor;
+    const T one = position(time);
+    const T other = position(time - floor((time - known_) / period_) * period_);
+    return abs(one - other) <= tolerance + rounding<T> * std::max(abs(one), abs(other));
+  }
+  T position(T time) const {
+    const auto place = motion_.locate(time, Side::right);
+    return motion_.value(*place.segment, place.tau, Quantity::position);
+  }
+  /// Of the steady motion, m.
+  T amplitude() const {
+    if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
+    const Range<T> range = cycle_range(motion_);
+    return (range.high - range.low) / 2;
+  }
+  /// Time of the last row of the inputs, s; 0 without rows.
+  static T last_row(const Inputs<T>& inputs) {
+    T last{0};
+    for (T row; (row = inputs.next_row(last)) < std::numeric_limits<T>::infinity();) last = row;
+    return last;
+  }
+
+  const Motion<T>& motion_;
+  T known_;              ///< time from which the motion is steady in any case, s
+  T period_, last_row_;  ///< s
+};
+
+}  // namespace detail
+
+/// Time from which a motion that ends in a steady one is periodic, to `repeat_tolerance` of its amplitude, s;
+/// NaN of any other motion.
+template <class T>
+T steady_since(const Motion<T>& motion) {
+  return motion.outcome().steady() ? detail::FirstRepeat<T>(motion).find()
+                                   : std::numeric_limits<T>::quiet_NaN();
+}
+
+}  // namespace pindrive
