@@ -172,7 +172,7 @@ pindrive_error pindrive_outcome_of(const pindrive_motion* motion, pindrive_outco
     const auto& found = of.outcome();
     return pindrive_outcome{static_cast<pindrive_status>(found.status),
                             static_cast<pindrive_end>(found.end),
-                            pd::result(found.steady_since),
+                            pd::result(pd::steady_since(of.view())),
                             pd::result(found.period),
                             pd::result(of.view().known_until()),
                             pd::result(found.until),

@@ -130,10 +130,7 @@ template <class T, class Visitor>
 void events(const Motion<T>& motion, T from, T to, Visitor&& visit) {
   motion.expanded(from, to, [&](const Segment<T>& segment, T begin, T) {
     const T time = segment.end + (begin - segment.begin);
-    const Event& event = segment.event;
-    const bool none = event.plate == Transition::none && event.finger == Transition::none &&
-                      event.stop == Transition::none;
-    return none || !(time >= from && time <= to) || goes_on(visit, time, segment);
+    return !segment.event.any() || !(time >= from && time <= to) || goes_on(visit, time, segment);
   });
 }
 

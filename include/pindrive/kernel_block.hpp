@@ -61,7 +61,10 @@ inline constexpr int transient_columns[] = {
     PlainNumber::finger_dissipated,
     PlainNumber::finger_peak_force,
     KernelBlock::rest_position,
-    no_column,  // a steady oscillation: its begin, amplitude and period
+    no_column,  // numbers of a steady oscillation
+    no_column,
+    no_column,
+    no_column,
     no_column,
     no_column,
 };

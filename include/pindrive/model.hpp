@@ -268,6 +268,10 @@ enum class Transition : signed char { none, stick, slip, cross };
 struct Event {
   Transition plate{Transition::none}, finger{Transition::none};
   Transition stop{Transition::none};  ///< stick: it is met, cross: for an instant; slip: it is left
+
+  bool any() const {
+    return plate != Transition::none || finger != Transition::none || stop != Transition::none;
+  }
 };
 
 /// Whether a rigid stop holds the pin.
@@ -315,13 +319,14 @@ struct Segment {
 
 /// How a motion ends.
 enum class End : signed char {
-  moving,      ///< not known within the duration
-  resting,     ///< at rest for ever
-  decaying,    ///< free decay, no further event
-  free,        ///< undamped oscillation, no further event
-  grazing,     ///< the same, touching the plate's velocity once a period
-  stick_slip,  ///< a cycle of carried and sliding phases, repeated
-  limit_cycle  ///< a cycle that is sustained by falling friction, without a carried phase
+  moving,       ///< not known within the duration
+  resting,      ///< at rest for ever
+  decaying,     ///< free decay, no further event
+  free,         ///< undamped oscillation, no further event
+  grazing,      ///< the same, touching the plate's velocity once a period
+  stick_slip,   ///< a cycle of carried and sliding phases, repeated
+  limit_cycle,  ///< a cycle that is sustained by falling friction, without a carried phase
+  irregular     ///< chaotic or quasi-periodic: no return within `irregular_windows` (limits.hpp)
 };
 
 enum class Status : signed char { ok, too_many_events, standstill, stopped, inconsistent };
@@ -331,8 +336,9 @@ struct Outcome {
   Status status{Status::ok};
   End end{End::moving};
   T period{std::numeric_limits<T>::quiet_NaN()};  ///< of a steady oscillation, s
-  T until{0};        ///< end of the last segment, s; then a cycle begins again …
-  T cycle_begin{0};  ///< … from here, s
+  T until{0};  ///< end of the last segment, s; then a cycle begins again …
+  T cycle_begin{
+      0};  ///< … from here, s; of an irregular motion, begin of the stretch that is measured
 
   bool steady() const { return cycles() || end == End::free || end == End::grazing; }
   bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }

@@ -10,11 +10,11 @@
 #include <iterator>
 #include <limits>
 
-#include "pindrive/extrema.hpp"
 #include "pindrive/limits.hpp"
 #include "pindrive/model.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/state.hpp"
+#include "pindrive/steady_numbers.hpp"
 
 namespace pindrive {
 namespace detail {
@@ -70,6 +70,9 @@ class Extent {
 /// length is found, and the other after few events, so that a short period is found soon. A return within
 /// `return_tolerance` closes a cycle. A cycle that is approached geometrically is followed from return to
 /// return, and closed when the contraction bounds its remaining distance by `approach_tolerance`.
+///
+/// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
+/// or decays: then the times that windows of equally many events take increase or decrease without exception.
 template <class T>
 class CycleDetector {
  public:
@@ -100,6 +103,7 @@ class CycleDetector {
         followed_ = now;
       }
     }
+    if (++in_window_ == irregular_window) end_window(time, outcome);
     if (count_ % short_memory == 0) recent_ = now;
     if (count_ == next_) {
       kept_ = now;
@@ -165,6 +169,26 @@ class CycleDetector {
            distance / (1 - slower) <= T(approach_tolerance);
   }
 
+  /// Compares the duration of a window of events with that of the window before.
+  void end_window(T time, Outcome<T>& outcome) {
+    using std::abs;
+    const T lasts = time - window_begin_, longer = lasts - lasted_;
+    if (abs(longer) > T(repeat_tolerance) * lasts) {
+      if (windows_ > 1 && (longer > 0) != grew_) ++turns_;
+      grew_ = longer > 0;
+    }
+    lasted_ = lasts;
+    window_begin_ = time;
+    in_window_ = 0;
+    if (++windows_ == irregular_windows / 2) half_time_ = time;
+    if (windows_ < irregular_windows) return;
+    if (4 * turns_ >= irregular_windows) {
+      outcome.end = End::irregular;
+      outcome.cycle_begin = half_time_;
+    }
+    windows_ = turns_ = 0;
+  }
+
   void close(const Visit& begin, const Visit& now, Outcome<T>& outcome) const {
     outcome.end = begin.driven ? End::stick_slip : End::limit_cycle;
     outcome.period = now.time - begin.time;
@@ -176,30 +200,13 @@ class CycleDetector {
   long long count_{0}, next_{0};  ///< events so far; count at which the kept visit is renewed
   long long period_{0};           ///< of the followed approach, in events; 0 without one
   T distance_{0}, ratio_{1};      ///< of its last return, and to the distance before
-};
 
-template <class T>
-struct Range {
-  T low{std::numeric_limits<T>::infinity()}, high{-std::numeric_limits<T>::infinity()};
+  int in_window_{0}, windows_{0};  ///< events in the window, windows so far
+  int turns_{0};                   ///< changes between longer and shorter windows
+  bool grew_{false};
+  T window_begin_{0}, lasted_{0};  ///< of the window, and duration of the window before, s
+  T half_time_{0};                 ///< after half of the windows, s
 };
-
-/// Lowest and highest position of the cycle in which a motion ends, m.
-template <class T, class GoOn = Unattended>
-Range<T> cycle_range(const Motion<T>& motion, GoOn go_on = {}) {
-  Range<T> range;
-  for (const Segment<T>& segment : motion) {
-    if (!go_on()) break;
-    if (segment.begin < motion.outcome().cycle_begin) continue;
-    motion.along(segment, [&](const auto& along) {
-      highest_and_lowest(along, along.position(), T(0), segment.end - segment.begin, [&](T, T x) {
-        const T position = motion.drive().stops.within(x);
-        range.low = std::min(range.low, position);
-        range.high = std::max(range.high, position);
-      });
-    });
-  }
-  return range;
-}
 
 /// Beginning of a steady motion: the first event from which the motion agrees with its own periodic
 /// continuation into the past.
@@ -240,10 +247,14 @@ class FirstRepeat {
   }
 
  private:
-  /// True if the motion is, at a time, where its continuation is.
+  /// True if the motion is, at a time, where its continuation is; of an oscillation without events, which begins
+  /// in finite time, also in the same mode.
   bool agrees(T time, T tolerance) const {
     using std::abs;
     using std::floor;
+    const Mode mode = motion_.locate(time, Side::right).segment->mode;
+    if (!motion_.outcome().cycles() && !same_mode(mode, std::prev(motion_.end())->mode))
+      return false;
     const T one = position(time);
     const T other = position(time - floor((time - known_) / period_) * period_);
     return abs(one - other) <= tolerance + rounding<T> * std::max(abs(one), abs(other));
@@ -255,8 +266,7 @@ class FirstRepeat {
   /// Of the steady motion, m.
   T amplitude() const {
     if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
-    const Range<T> range = cycle_range(motion_);
-    return (range.high - range.low) / 2;
+    return SteadyMeasurement<T>(motion_).range().half();
   }
   /// Time of the last row of the inputs, s; 0 without rows.
   static T last_row(const Inputs<T>& inputs) {

@@ -55,12 +55,12 @@ class Simulation : private Selection<T> {
                          change(segment.mode.finger, after.finger)};
         segment.event.stop = change(segment.mode.stop, after.stop, struck_);
         if (finger_.drops()) segment.event.finger = Transition::slip;
-        if (!(row_ < never) && (struck_ || !same_mode(segment.mode, after)))
+        if (!(row_ < never) && (segment.event.any() || !same_mode(segment.mode, after)))
           cycles_.visit(segment, after, time_, state_, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
-      if (finished && outcome_.end == End::moving && inputs_.duration < never) {
+      if (finished && tau < never && inputs_.duration < never) {
         segment.end = inputs_.duration;
         segment.moved = segment.flow.after(segment.end - segment.begin);
       }
@@ -68,7 +68,8 @@ class Simulation : private Selection<T> {
       standing = segment.end > segment.begin ? 0 : standing + 1;
       if (!goes_on(sink, segment))
         outcome_.status = Status::stopped;
-      else if (finished || outcome_.cycles())
+      else if (finished || outcome_.cycles() ||
+               (outcome_.end == End::irregular && !(inputs_.duration < never)))
         return outcome_;
       else if (events == event_limit)
         outcome_.status = Status::too_many_events;

@@ -200,11 +200,7 @@ class Stepper {
   static T moved(const T& from, const T& change, const T& given) {
     return plain(change) == 0 ? from + change : given;
   }
-  bool happens_after(const T& time) const {
-    const bool any = event_.plate != Transition::none || event_.finger != Transition::none ||
-                     event_.stop != Transition::none;
-    return any && simulation_.time_ > time;
-  }
+  bool happens_after(const T& time) const { return event_.any() && simulation_.time_ > time; }
 
   /// What happens where the segment that goes on begins.
   Event event_now() const {

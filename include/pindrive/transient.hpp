@@ -13,6 +13,7 @@
 #include "pindrive/recurrence.hpp"
 #include "pindrive/roots.hpp"
 #include "pindrive/settling.hpp"
+#include "pindrive/steady_numbers.hpp"
 
 namespace pindrive {
 
@@ -33,9 +34,8 @@ struct Transient {
                          ///< infinite where they go on for ever
   T steady_since{none};  ///< when a steady oscillation began, s
   T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
-  T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
-  T amplitude{none};     ///< of the final oscillation, m
-  T period{none};        ///< of the final oscillation, s
+  T end_position{none};     ///< x_end: where it rests, or the middle of the final oscillation, m
+  SteadyNumbers<T> steady;  ///< of the final oscillation
   ContactUse<T> plate, finger;
 };
 
@@ -69,8 +69,11 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"transient.finger.peak_force", [](const Transient<T>& t) { return t.finger.peak_force; }},
     {"ending.position", [](const Transient<T>& t) { return t.end_position; }},
     {"ending.steady_since", [](const Transient<T>& t) { return t.steady_since; }},
-    {"ending.amplitude", [](const Transient<T>& t) { return t.amplitude; }},
-    {"ending.period", [](const Transient<T>& t) { return t.period; }},
+    {"ending.amplitude", [](const Transient<T>& t) { return t.steady.amplitude; }},
+    {"ending.period", [](const Transient<T>& t) { return t.steady.period; }},
+    {"ending.least_amplitude", [](const Transient<T>& t) { return t.steady.least_amplitude; }},
+    {"ending.peak_velocity", [](const Transient<T>& t) { return t.steady.peak_velocity; }},
+    {"ending.rounds", [](const Transient<T>& t) { return t.steady.rounds; }},
 };
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
@@ -127,7 +130,7 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     if (outcome.steady())
       result.settling_time = result.steady_since <= duration_ ? result.steady_since : result.none;
-    else if (outcome.end != End::moving)
+    else if (outcome.end == End::resting || outcome.end == End::decaying)
       result.settling_time = settling().within(result.end_position, band);
   }
 
@@ -237,30 +240,12 @@ class Measurement {
 
   void ending(Transient<T>& result) const {
     const Outcome<T>& outcome = motion_.outcome();
-    const Flow<T>& last = std::prev(motion_.end())->flow;
+    const Path<T>& last = std::prev(motion_.end())->flow.position;
     result.steady_since = steady_since(motion_);
-    result.period = outcome.period;
-    switch (outcome.end) {
-      case End::moving:
-        return;
-      case End::resting:
-        result.end_position = last.position.start;
-        return;
-      case End::decaying:
-        result.end_position = last.position.centre();
-        return;
-      case End::free:
-      case End::grazing:
-        result.end_position = last.position.centre();
-        result.amplitude = last.amplitude();
-        return;
-      case End::stick_slip:
-      case End::limit_cycle:
-        break;
-    }
-    const detail::Range<T> range = detail::cycle_range(motion_, go_on_);
-    result.end_position = (range.low + range.high) / 2;
-    result.amplitude = (range.high - range.low) / 2;
+    result.steady = steady_numbers(motion_, go_on_);
+    result.end_position = outcome.end == End::resting    ? last.start
+                          : outcome.end == End::decaying ? last.centre()
+                                                         : result.steady.centre;
   }
 
   /// The three ends of a motion that are no settling: at rest, steady, without further events.
@@ -272,11 +257,9 @@ class Measurement {
     const Segment<T>* segment = motion_.end();
     while (segment != motion_.begin() && go_on_()) {
       --segment;
-      const Event& event = segment->event;
-      if (event.plate == Transition::none && event.finger == Transition::none &&
-          event.stop == Transition::none)
-        continue;
-      const bool repeats = outcome.cycles() && !(segment->begin < outcome.cycle_begin);
+      if (!segment->event.any()) continue;
+      const bool repeats = (outcome.cycles() || outcome.end == End::irregular) &&
+                           !(segment->begin < outcome.cycle_begin);
       result.last_event_time = repeats ? never : segment->end;
       return;
     }
@@ -324,6 +307,7 @@ T duration_of(const Motion<T>& motion, T band, GoOn go_on = {}) {
     case End::stick_slip:
     case End::limit_cycle:
       return outcome.until + 3 * outcome.period;
+    case End::irregular:
     case End::moving:
       break;
   }

@@ -24,7 +24,16 @@ export const QUANTITIES = [
 export type QuantityName = (typeof QUANTITIES)[number];
 export type Side = "left" | "right";
 
-const ENDS = ["moving", "resting", "decaying", "free", "grazing", "stick_slip", "limit_cycle"] as const;
+const ENDS = [
+  "moving",
+  "resting",
+  "decaying",
+  "free",
+  "grazing",
+  "stick_slip",
+  "limit_cycle",
+  "irregular",
+] as const;
 export type End = (typeof ENDS)[number];
 const TRANSITIONS = ["none", "stick", "slip", "cross"] as const;
 export type Transition = (typeof TRANSITIONS)[number];

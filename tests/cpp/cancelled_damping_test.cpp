@@ -113,8 +113,9 @@ int cancelled() {
             const auto expected = finger > 0 ? pd::End::resting : pd::End::grazing;
             const double omega = std::sqrt(stiffness / mass);
             const bool swings =
-                finger > 0 || (std::abs(transient.amplitude * omega / mouse_velocity - 1) < 1e-12 &&
-                               transient.settling_time < 1e3 / omega);
+                finger > 0 ||
+                (std::abs(transient.steady.amplitude * omega / mouse_velocity - 1) < 1e-12 &&
+                 transient.settling_time < 1e3 / omega);
             ++drives;
             if (outcome.end == expected && swings && run.residual < 1e-12) continue;
             ++failures;

@@ -102,7 +102,7 @@ Difference compare(const Case& c, const Summary& below, const Summary& above) {
   same("end", static_cast<int>(below.outcome.end), static_cast<int>(above.outcome.end), 1);
   same("period", below.outcome.period, above.outcome.period, time);
   same("end_position", p.end_position, q.end_position, c.length);
-  same("amplitude", p.amplitude, q.amplitude, c.length);
+  same("amplitude", p.steady.amplitude, q.steady.amplitude, c.length);
   same("peak", p.peak_displacement, q.peak_displacement, c.length);
   same("peak_time", p.peak_time, q.peak_time, time);
   same("trough", p.trough_displacement, q.trough_displacement, c.length);

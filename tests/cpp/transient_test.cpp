@@ -41,7 +41,7 @@ int main() {
   expect(near(std::abs(x(t.settling_time)), 0.05e-3, 1e-15), "it settles where the band begins");
   expect(t.settling_time == pd::Measurement<double>(motion, never).settling_time(0.05),
          "... which can be asked for alone");
-  expect(std::isnan(t.first_reversal_time) && std::isnan(t.amplitude),
+  expect(std::isnan(t.first_reversal_time) && std::isnan(t.steady.amplitude),
          "what does not happen is not a number");
 
   const double duration = pd::duration_of(motion, 0.05);

@@ -40,10 +40,7 @@ inline Verdict seen(const pd::Outcome<double>& outcome,
     return static_cast<std::size_t>(std::count_if(segments.begin(), segments.end(), is));
   };
   const auto instants = count([](const auto& s) { return !(s.end > s.begin); });
-  const auto changes = count([](const auto& s) {
-    const auto none = pd::Transition::none;
-    return s.event.plate != none || s.event.finger != none || s.event.stop != none;
-  });
+  const auto changes = count([](const auto& s) { return s.event.any(); });
   return {{}, 0, 0, outcome.status, segments.size(), instants, changes};
 }
 

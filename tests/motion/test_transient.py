@@ -152,6 +152,70 @@ def test_steady_motion_against_samples(cycle: str, plate: Contact) -> None:
         assert off.max() > ending.amplitude / 10
 
 
+def drive_of(mass: float, stiffness: float, damping: float, *contacts: Contact) -> Drive:
+    plate, finger = contacts
+    return Drive(mass=mass, stiffness=stiffness, damping=damping, plate=plate, finger=finger)
+
+
+SELF_EXCITED = {
+    "points of 10 N, 7 N, 8 N": (
+        drive_of(1.0, 1000.0, 0.0, Contact(curve=[(0, 10), (0.1, 7), (1, 8)]), Contact(0.0)),
+        Release(0.1, 0.0, velocity=0.0),
+    ),
+    "points of 5 N, 3 N, 2 N": (
+        drive_of(1.0, 100.0, 0.0, Contact(curve=[(0, 5), (0.1, 3), (1, 2)]), Contact(0.0)),
+        Release(0.1, 0.0, velocity=0.0),
+    ),
+    "on skin": (
+        drive_of(
+            0.02,
+            250.0,
+            0.02,
+            Contact(static=0.024, curve=[(0, 0.020), (0.05, 0.014), (0.1, 0.012)]),
+            Contact(0.005, stiffness=300.0),
+        ),
+        Release(0.1, 1e-3),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SELF_EXCITED)
+def test_steady_since_is_the_first_time_from_which_samples_repeat(name: str) -> None:
+    motion = simulate(*SELF_EXCITED[name])
+    since, period = motion.ending.steady_since, motion.ending.period
+    assert motion.ending.kind == "steady"
+    assert len(motion.segments) < 1000
+    t = since + np.linspace(0.0, 3.0 * period, SAMPLES)
+    size = motion.ending.amplitude
+    assert motion.position(t + period) == pytest.approx(motion.position(t), abs=3e-8 * size)
+    before = np.linspace(max(since - 0.3 * period, 0.0), since, 101)
+    whole = np.ceil((t[-1] - since) / period) * period
+    off = np.abs(motion.position(before + whole) - motion.position(before))
+    assert off.max() > 1e-9 * size
+    assert motion.transient.settling_time == since
+
+
+def test_chaotic_motion_is_irregular_and_ends() -> None:
+    drive = drive_of(
+        0.5,
+        50.0,
+        0.01,
+        Contact(curve=[(0, 0.02), (0.05, 0.01)]),
+        Contact(static=0.05, stiffness=100.0, curve=[(0, 0.02), (0.02, 0.01)]),
+    )
+    release = Release(0.01, 5e-4, velocity=0.0)
+    motion = simulate(drive, release)
+    assert motion.ending.kind == "irregular"
+    assert motion.ending.cycle is None
+    assert len(motion.events) <= 3 * 16384
+    assert 0.0 < motion.ending.least_amplitude < motion.ending.amplitude
+    assert isnan(motion.ending.steady_since)
+    assert not motion.transient.settled
+    longer = simulate(drive, release, duration=1.5 * motion.duration)
+    assert longer.ending.kind == "irregular"
+    assert longer.segments[-1].end == longer.duration
+
+
 def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
     drive = Drive.with_damping_ratio(
         mass=0.01, stiffness=100.0, damping_ratio=2.0, plate=Contact(0.02), finger=Contact(0.0)

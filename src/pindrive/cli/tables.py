@@ -202,11 +202,18 @@ def ending(motion: Motion) -> str:
         events = f"last event at {duration(last)}" if last > 0.0 else "no event"
         return f"Decays towards x = {place} and never comes to rest; {events}."
     if end.kind == "steady":
-        size, period = _POSITION.text(end.amplitude), duration(end.period)
-        since = duration(end.steady_since)
+        rounds = f" ({end.rounds:.0f} rounds)" if end.rounds > 1.0 else ""
         return (
-            f"Steady {end.cycle} oscillation about x = {place} since {since}: "
-            f"amplitude {size}, period {period}."
+            f"Steady {end.cycle} oscillation about x = {place} from {duration(end.steady_since)} on: "
+            f"amplitude {_POSITION.text(end.amplitude)}, period {duration(end.period)}{rounds}, "
+            f"peak velocity {_VELOCITY.text(end.peak_velocity)}."
+        )
+    if end.kind == "irregular":
+        return (
+            f"Irregular oscillation about x = {place}: it has not repeated when it was followed to "
+            f"{duration(motion.segments[-1].end)}; amplitude {_POSITION.text(end.least_amplitude)} "
+            f"to {_POSITION.text(end.amplitude)}, mean period {duration(end.period)}, "
+            f"peak velocity {_VELOCITY.text(end.peak_velocity)}."
         )
     return f"Still moving after {duration(motion.duration)}."
 

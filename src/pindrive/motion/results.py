@@ -161,13 +161,14 @@ def _mode(plate: int, finger: int, stop: int, still: bool) -> ModeName:
     return "resting" if still or finger == 0 else "carried"
 
 
-EndKind = Literal["moving", "resting", "decaying", "steady"]
+EndKind = Literal["moving", "resting", "decaying", "steady", "irregular"]
 Cycle = Literal["free", "grazing", "stick-slip", "limit cycle"]
 
 _KIND: dict[End, EndKind] = {
     End.moving: "moving",
     End.resting: "resting",
     End.decaying: "decaying",
+    End.irregular: "irregular",
 }
 _CYCLE: dict[End, Cycle] = {
     End.free: "free",
@@ -229,20 +230,27 @@ class Ending:
     end: End
     """Which of all endings it is; `kind` and `cycle` follow from it."""
     position: float
-    """Resting place, or middle of the final oscillation, m."""
+    """Resting place, or centre of the final oscillation, m."""
     steady_since: float
-    """When a steady oscillation began, s."""
+    """Time from which the motion is steady, s."""
     amplitude: float
-    """Of a steady oscillation, m."""
+    """Half of the range of a steady or irregular motion, m."""
     period: float
-    """Of a steady oscillation, s."""
+    """Period of a steady motion, mean time of a round of an irregular motion, s."""
+    least_amplitude: float
+    """Half of the range of the smallest round, m."""
+    peak_velocity: float
+    """Largest speed of a steady or irregular motion, m/s."""
+    rounds: float
+    """Rounds about the centre in one period of a steady motion."""
 
     @property
     def kind(self) -> EndKind:
         """In which way it ends.
 
         `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
-        oscillation or creep towards `position` without another event; `moving`: not known yet.
+        oscillation or creep towards `position` without another event; `irregular`: chaotic or
+        quasi-periodic, without a return within 16 384 events; `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")
 

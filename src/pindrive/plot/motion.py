@@ -207,7 +207,7 @@ def _draw_key(motion: Motion, trace: Trace, axes: Axes) -> None:
         part = f"{100 * motion.settling_band:g} %"
         label = rf"$x_\mathrm{{end}}$ ± {part} of $|x_0 - x_\mathrm{{end}}|$"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
-    elif motion.ending.kind == "steady" and isfinite(motion.ending.position):
+    elif motion.ending.kind in ("steady", "irregular"):
         label = r"$x_\mathrm{end}$, about which it oscillates"
         handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label=label))
     handles += [Line2D([], [], ls="none", label=note) for note in notes]
@@ -283,7 +283,7 @@ def _note_level(axes: Axes, level: float, text: str) -> None:
 def _mark_ends(motion: Motion, trace: Trace, axes: Axes) -> None:
     """Start and end of the portrait; a steady oscillation has no end."""
     ends = {0: "start"}
-    if motion.ending.kind == "moving" or trace.end < motion.duration:
+    if motion.ending.kind in ("moving", "irregular") or trace.end < motion.duration:
         ends[-1] = duration(trace.end)
     elif motion.ending.kind in ("resting", "decaying"):
         ends[-1] = "end"
@@ -317,7 +317,7 @@ def _mark_settling(motion: Motion, trace: Trace, axes: Axes) -> None:
     middle, time = motion.ending.position * MM, motion.transient.settling_time
     if isnan(middle):
         return
-    if motion.ending.kind == "steady":
+    if motion.ending.kind in ("steady", "irregular"):
         axes.axhline(middle, color=GREY, lw=0.7, ls=":", zorder=1, gid="middle")
     for level in {middle - _band(motion), middle + _band(motion)} - {middle}:
         axes.axhline(level, color=GREY, lw=0.7, ls=":", zorder=1, gid="band")
@@ -416,11 +416,15 @@ def outcome(motion: Motion) -> str:
         "resting": f"At rest at {place} since {duration(numbers.rest_time)}",
         "decaying": f"Decays towards {place}",
         "steady": f"Steady {end.cycle} oscillation of ±{short('displacement', end.amplitude)}",
+        "irregular": f"Irregular oscillation of up to ±{short('displacement', end.amplitude)}",
         "moving": f"Still moving after {duration(motion.duration)}",
     }[end.kind]
-    if end.kind == "steady" and isfinite(end.period):
-        words += f", period {duration(end.period)}"
-    if numbers.settled:
+    if isfinite(end.period):
+        mean = "mean " if end.kind == "irregular" else ""
+        words += f", {mean}period {duration(end.period)}"
+    if end.kind == "steady":
+        words += f"; steady from {duration(end.steady_since)}"
+    elif numbers.settled:
         words += f"; settling time {duration(numbers.settling_time)}"
     if not isnan(numbers.swing):
         words += f"; swing {short('displacement', numbers.swing)}"

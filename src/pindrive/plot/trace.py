@@ -159,7 +159,7 @@ def _until(phases: tuple[tuple[Segment, float], ...], end: float, room: float) -
 def _rounds(motion: Motion) -> tuple[float, float]:
     """Begin and period of what repeats forever; infinite if nothing with events does."""
     last = motion.segments[-1].end
-    if motion.ending.cycle == "stick-slip" and isfinite(last):
+    if motion.ending.kind == "steady" and isfinite(last):
         return last - motion.ending.period, motion.ending.period
     return inf, inf
 

@@ -84,9 +84,14 @@ TRANSIENT: Final[tuple[Quantity, ...]] = (
 
 ENDING: Final[tuple[Quantity, ...]] = (
     Quantity("ending.position", "x_end", "m", "resting place, or middle of the final oscillation"),
-    Quantity("ending.steady_since", "t_end", "s", "when the final oscillation began"),
-    Quantity("ending.amplitude", "X_end", "m", "amplitude of the final oscillation"),
-    Quantity("ending.period", "T_end", "s", "period of the final oscillation"),
+    Quantity("ending.steady_since", "t_end", "s", "time from which the motion is steady"),
+    Quantity("ending.amplitude", "X_end", "m", "half of the range of the final oscillation"),
+    Quantity(
+        "ending.period", "T_end", "s", "period of the final oscillation; mean round if irregular"
+    ),
+    Quantity("ending.least_amplitude", "X_min", "m", "half of the range of its smallest round"),
+    Quantity("ending.peak_velocity", "v_end", "m/s", "largest speed in the final oscillation"),
+    Quantity("ending.rounds", "n_end", "", "rounds about its centre in one period"),
 )
 """How a motion ends, in numbers."""
 

@@ -112,6 +112,7 @@ class End(IntEnum):
     grazing = 4
     stick_slip = 5
     limit_cycle = 6
+    irregular = 7
 
 
 OUTCOMES: dict[str, type[Status | End] | None] = {"status": Status, "ending": End, "events": None}
