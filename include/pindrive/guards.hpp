@@ -91,7 +91,7 @@ class Guards {
 
   /// The earliest zero, or the limit if none comes before it. Times are `since` the start of the mode, and
   /// those that differ by less than the rounding of a time are one.
-  T earliest(const Oscillator<T>& oscillator, T since, T limit) {
+  T earliest(const Oscillator<T>& oscillator, T since, T limit, T force_error) {
     const Path<T>* falls = nullptr;     // to the middle of its oscillation
     for (int n = 0; n < count_; ++n) {  // speeds, then stick forces
       Guard<T>& guard = list_[n + forces_ < count_ ? n + forces_ : n + forces_ - count_];
@@ -109,8 +109,8 @@ class Guards {
           continue;
       }
       const bool ends = limit < std::numeric_limits<T>::infinity();
-      guard.zero =
-          first_root(oscillator, path, 1, ends ? limit + rounding<T> * (since + limit) : limit);
+      guard.zero = first_crossing(guard, oscillator, force_error,
+                                  ends ? limit + rounding<T> * (since + limit) : limit);
       limit = std::min(limit, guard.zero);
     }
     return limit;
@@ -143,14 +143,14 @@ class Guards {
   /// that are known to their roundoff.
   T first_event(const Oscillator<T>& oscillator, T since, T limit, bool is_row, T roundoff) {
     const T row = is_row ? limit : std::numeric_limits<T>::infinity();
-    const T first = earliest(oscillator, since, limit);
+    const T first = earliest(oscillator, since, limit, roundoff);
     T counts = put_off(first, row, [&](const Guard<T>& guard, T tau) {
       return stays(guard, oscillator, tau, roundoff);
     });
     if (counts > first)  // until then the others have not been looked at
       for (int i = 0; i < count_; ++i)
         if (list_[i].zero > counts) {
-          list_[i].zero = first_root(oscillator, list_[i].path, 1, counts);
+          list_[i].zero = first_crossing(list_[i], oscillator, roundoff, counts);
           counts = std::min(counts, list_[i].zero);
         }
     return counts;
@@ -169,6 +169,20 @@ class Guards {
   }
 
  private:
+  /// The first zero of a guard until a limit; infinite if the stick force of skin only grazes its limit. A force
+  /// that does not grow and exceeds its limit by no more than its error never exceeds the limit: the same
+  /// drive in other units has another error, and does not slip.
+  static T first_crossing(const Guard<T>& guard, const Oscillator<T>& oscillator, T force_error,
+                          T limit) {
+    const Path<T>& path = guard.path;
+    const T zero = first_root(oscillator, path, 1, limit);
+    const bool skin = guard.bound == Bound::none && !guard.plate;
+    if (!skin || !(zero < std::numeric_limits<T>::infinity())) return zero;
+    if (oscillator.alpha() > 0 || !path.oscillates() || !path.straight()) return zero;
+    const auto rates = path.rates(oscillator, oscillator.after(zero));
+    return touches(rates.first, rates.second, 2 * force_error) ? std::numeric_limits<T>::infinity()
+                                                               : zero;
+  }
   /// Adds the distance of a speed from a bound: one that falls as the velocity v does (or rises). Of two that
   /// run at a constant distance beyond the rounding of v only the one below: it comes to zero first.
   void add_nearer(const Path<T>& path, Bound bound, bool plate, bool falls, T v) {

@@ -34,8 +34,9 @@ inline constexpr double approach_tolerance = 1e-9, approach_step = 1e-10;
 inline constexpr double repeat_tolerance = 1e-8;
 
 /// Events in a window whose duration is compared, and windows after which a motion that neither
-/// returns, nor grows, nor decays is irregular: 16 384 events, some ten milliseconds.
-inline constexpr int irregular_window = 256, irregular_windows = 64;
+/// returns, nor grows, nor decays is irregular: 15 360 events, some ten milliseconds. Many numbers of events in a
+/// round divide the window, so that the windows of a motion that decays are alike.
+inline constexpr int irregular_window = 240, irregular_windows = 64;
 
 /// Speed below which a pin is at rest, as a part of |x| ω0: below what a decay leaves of the digits of the
 /// position (MODEL, section 10).

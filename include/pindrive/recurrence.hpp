@@ -72,7 +72,8 @@ class Extent {
 /// return, and closed when the contraction bounds its remaining distance by `approach_tolerance`.
 ///
 /// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
-/// or decays: then the times that windows of equally many events take increase or decrease without exception.
+/// or decays: then the durations of windows of equally many events increase or decrease without exception, or
+/// the ranges of the position in blocks of windows do.
 template <class T>
 class CycleDetector {
  public:
@@ -82,11 +83,12 @@ class CycleDetector {
   /// outcome if the event closes a cycle.
   void visit(const Segment<T>& ended, const Mode& mode, T time, const State<T>& state,
              Outcome<T>& outcome) {
+    block_.add(ended.flow, state.x, state.v);
     for (Visit* visit : {&kept_, &recent_, &followed_}) {
       visit->extent.add(ended.flow, state.x, state.v);
-      visit->driven = visit->driven || mode.plate == ContactState::stick;
+      if (ended.mode.plate == ContactState::stick) visit->stuck += ended.end - ended.begin;
     }
-    const Visit now{count_, time, mode, state, {}, mode.plate == ContactState::stick};
+    const Visit now{count_, time, mode, state, {}, T(0)};
     if (count_ > 0) {
       for (const Visit* visit : {&recent_, &kept_}) {
         const Visit& earlier = *visit;
@@ -120,11 +122,12 @@ class CycleDetector {
     Mode mode{};
     State<T> state{};
     Extent<T> extent{};
-    bool driven{false};  ///< stuck to the plate at any time since then
+    T stuck{0};  ///< for how long the plate has stuck to the pin since then, s
   };
 
   /// Events after which the recent state is renewed.
   static constexpr long long short_memory = 32;
+  static constexpr int windows_in_block = irregular_windows / 8;
   /// Distance below which a return is followed, as a part of the natural scales.
   static constexpr double near_return = 1e-3;
   static constexpr T never = std::numeric_limits<T>::infinity();
@@ -181,17 +184,30 @@ class CycleDetector {
     window_begin_ = time;
     in_window_ = 0;
     if (++windows_ == irregular_windows / 2) half_time_ = time;
+    if (windows_ % windows_in_block == 0) end_block();
     if (windows_ < irregular_windows) return;
-    if (4 * turns_ >= irregular_windows) {
+    if (4 * turns_ >= irregular_windows && !grows_ && !decays_) {
       outcome.end = End::irregular;
       outcome.cycle_begin = half_time_;
     }
     windows_ = turns_ = 0;
+    grows_ = decays_ = true;
+  }
+  /// Compares the range of the position in a block of windows with that in the block before.
+  void end_block() {
+    const T length = block_.length();
+    if (windows_ > windows_in_block) {
+      grows_ = grows_ && length > length_;
+      decays_ = decays_ && length < length_;
+    }
+    length_ = length;
+    block_ = {};
   }
 
   void close(const Visit& begin, const Visit& now, Outcome<T>& outcome) const {
-    outcome.end = begin.driven ? End::stick_slip : End::limit_cycle;
     outcome.period = now.time - begin.time;
+    const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // it does not graze
+    outcome.end = sticks ? End::stick_slip : End::limit_cycle;
     outcome.cycle_begin = begin.time;
   }
 
@@ -204,6 +220,9 @@ class CycleDetector {
   int in_window_{0}, windows_{0};  ///< events in the window, windows so far
   int turns_{0};                   ///< changes between longer and shorter windows
   bool grew_{false};
+  bool grows_{true}, decays_{true};  ///< in each block of windows
+  Extent<T> block_;
+  T length_{0};                    ///< range in the block before, m
   T window_begin_{0}, lasted_{0};  ///< of the window, and duration of the window before, s
   T half_time_{0};                 ///< after half of the windows, s
 };

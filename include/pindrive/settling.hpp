@@ -25,13 +25,20 @@ class Settling {
       : motion_(motion), duration_(duration), go_on_(go_on) {}
 
   /// Earliest time after which |x − x_end| stays within the band, a part of |x(0) − x_end|, of a motion that
-  /// rests or decays. NaN if that is later than the duration, or never.
+  /// rests or decays; without a distance |x(0) − x_end|, the time of its rest. NaN if that is later than the
+  /// duration, or never.
   T within(T x_end, T band) const {
     using std::abs;
-    const T x = motion_.begin()->flow.position.start, way = x - x_end;
-    constexpr T rounding = 4 * std::numeric_limits<T>::epsilon();
-    const T width = abs(way) <= rounding * (abs(x) + abs(x_end)) ? T(0) : band * abs(way);
-    const T since = last_outside(x_end, width);
+    const T way = motion_.begin()->flow.position.start - x_end;
+    T size = abs(x_end);
+    for (const Segment<T>& segment : motion_)
+      size = std::max(size, abs(segment.flow.position.start));
+    // What turns at the edge of the band to rounding stays within.
+    const T error = 16 * detail::rounding<T> * size;
+    const bool returns = !(abs(way) > error);  // to where it began: the band has no width
+    const bool rests = motion_.outcome().end == End::resting;
+    const T since =
+        returns && !rests ? never : last_outside(x_end, returns ? error : band * abs(way) + error);
     return since <= duration_ && since < never ? since : none;
   }
 

@@ -167,8 +167,9 @@ class Simulation : private Selection<T> {
       if (abs(damping) <= known) damping -= plain(damping);
       oscillator = Oscillator<T>(drive_.mass, damping, stiffness);
     }
-    // A pin without speed on which forces act that cancel to rounding is at rest.
-    if (abs(pull) <= s.roundoff && s.v == 0 && rate == 0)
+    // A pin without speed on which forces act that cancel, to rounding or to the rest criterion, is at rest.
+    const T balanced = std::max(s.roundoff, T(rest_tolerance) * drive_.stiffness * abs(s.x));
+    if (abs(pull) <= balanced && s.v == 0 && rate == 0)
       return Flow<T>::free(oscillator, s.x, s.v, T(0), T(0), T(0));
     const T drift = rate / stiffness;
     const T from_rest = tangential_ ? drive_.mass * acceleration_ + damping * (s.v - drift)
@@ -215,6 +216,7 @@ class Simulation : private Selection<T> {
     const T loaded = load_before(finger_.load.at(lasts), finger_.load.rate);
     limit_ = 0;
     struck_ = false;
+    if (row) come_to_rest();
     bool on_plate = plate_.stuck(), on_finger = finger_.stuck() || stop_.holds(), known = on_finger;
     T rest{0};  // velocity of what is on the finger, or at an end of a branch there, if known
     for (const Guard<T>& guard : guards_) {
@@ -245,6 +247,21 @@ class Simulation : private Selection<T> {
       state_.skin = finger_.skin_force(state_, loaded);
     land_along_axis(state_, plate_, on_finger, across, drive_.mass, time_);
     if (stop_.settles(state_) || struck_) begin_at_stop();
+  }
+
+  /// Applies the rest criterion (MODEL, section 10) where an input changes: a pin that slides so slowly on a
+  /// rigid surface at rest is at rest, and its friction may hold it.
+  void come_to_rest() {
+    using std::abs;
+    using std::sqrt;
+    const T still = T(rest_tolerance) * state_.x_size * sqrt(drive_.stiffness / drive_.mass);
+    if (state_.v == 0 || !(abs(state_.v) <= still)) return;
+    for (Side* side : {&plate_, &finger_}) {
+      if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
+      if (side->surface.value != 0 || side->surface.rate != 0) continue;
+      state_.v = T(0);
+      side->reached = Bound::lower;
+    }
   }
 
   /// Whether a guard was one of the stops, which is then exactly where it has come to.

@@ -107,7 +107,7 @@ class EndStops {
 
   /// Adds what ends their part in a mode, of a pin that none of them holds.
   void add_guards(Guards<T>& guards, const State<T>& s, const Flow<T>& flow) const {
-    if (!stops_.present()) return;
+    if (!stops_.present() || decays_at_edge(s, flow)) return;
     const auto beyond = [&](int end, int sense) {
       Path<T> path = T(sense * end) * flow.position;
       path.start = sense * (end * s.x - stops_.travel);
@@ -161,6 +161,18 @@ class EndStops {
   bool no_push() const { return exactly_; }  ///< its force is exactly zero
 
  private:
+  /// True if the pin decays about the edge of an elastic stop, so little beside its position that it is at rest
+  /// (MODEL, section 10): what it still does with the stop is no event.
+  bool decays_at_edge(const State<T>& s, const Flow<T>& flow) const {
+    using std::abs;
+    using std::sqrt;
+    const Path<T>& x = flow.position;
+    if (stops_.rigid() || !x.straight() || !(flow.oscillator.alpha() < 0)) return false;
+    const T still = T(rest_tolerance) * stops_.travel;
+    const T swing = abs(x.value) + abs(flow.velocity.start) / sqrt(flow.oscillator.hurry_squared());
+    return swing <= still && abs(abs(s.x) - stops_.travel) <= still;
+  }
+
   static StopState at_end(int end, bool touching) {
     return static_cast<StopState>(touching ? end : 2 * end);
   }

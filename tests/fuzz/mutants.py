@@ -139,9 +139,9 @@ MUTANTS = (
     ),
     Mutant(
         "the rows of the load are overlooked",
-        "simulation.hpp",
-        "std::min({inputs_.mouse_velocity.next_row(time_), inputs_.plate_load.next_row(time_),",
-        "std::min({inputs_.mouse_velocity.next_row(time_),",
+        "model.hpp",
+        "std::min({mouse_velocity.next_row(t), plate_load.next_row(t), finger_load.next_row(t),",
+        "std::min({mouse_velocity.next_row(t), finger_load.next_row(t),",
     ),
     Mutant(
         "of two bounds the farther one is watched",
@@ -152,8 +152,8 @@ MUTANTS = (
     Mutant(
         "a cycle is closed a thousandth too soon",
         "limits.hpp",
-        "return_tolerance = 1e-14,",
-        "return_tolerance = 1e-3,",
+        "return_tolerance = 1e-12;",
+        "return_tolerance = 1e-3;",
     ),
     Mutant(
         "every second zero of an oscillation is missed",

@@ -207,7 +207,7 @@ def test_chaotic_motion_is_irregular_and_ends() -> None:
     motion = simulate(drive, release)
     assert motion.ending.kind == "irregular"
     assert motion.ending.cycle is None
-    assert len(motion.events) <= 3 * 16384
+    assert len(motion.events) <= 3 * 15360
     assert 0.0 < motion.ending.least_amplitude < motion.ending.amplitude
     assert isnan(motion.ending.steady_since)
     assert not motion.transient.settled

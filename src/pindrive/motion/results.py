@@ -250,7 +250,7 @@ class Ending:
 
         `resting`: at rest forever; `steady`: an oscillation that lasts; `decaying`: a free damped
         oscillation or creep towards `position` without another event; `irregular`: chaotic or
-        quasi-periodic, without a return within 16 384 events; `moving`: not known yet.
+        quasi-periodic, without a return within 15 360 events; `moving`: not known yet.
         """
         return _KIND.get(self.end, "steady")
 
