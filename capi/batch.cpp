@@ -172,7 +172,7 @@ class Batch {
     if (all) say(point, summary.outcome.status, summary.outcome.end);
     if (all && filled_.events) filled_.events[point] = static_cast<int>(summary.events);
     if (!energy_) return;
-    const auto ledger = pd::energy_ledger(view, summary.duration, summary.transient);
+    const auto ledger = pd::energy_ledger(view, summary.duration);
     for (std::size_t k = 0; k < rows_.size(); ++k)
       if (rows_[k].energy) numbers_of_point(point)[k] = rows_[k].energy(ledger);
   }

@@ -1,4 +1,4 @@
-/// What the contacts did during a motion: how they slid and stuck, and what they took from it.
+/// Use of the contacts in a stretch of a motion: sliding, sticking, dissipation and peak forces.
 #pragma once
 
 #include <algorithm>
@@ -12,35 +12,37 @@
 
 namespace pindrive {
 
-/// What one contact did during the motion.
+/// Use of one contact in a stretch of a motion.
 template <class T>
 struct ContactUse {
-  T reversals{0};      ///< how often its sliding velocity came to zero
-  T time_stuck{0};     ///< elastically too, s
-  T distance_slid{0};  ///< by the pin over the surface, across its axis too, m
-  T dissipated{0};     ///< along its axis, J
+  T reversals{0};      ///< zeros of the sliding velocity
+  T time_stuck{0};     ///< time in stick or elastic stick, s
+  T distance_slid{0};  ///< of the pin over the surface, across its axis too, m
+  T dissipated{0};     ///< friction work, across its axis too, J
   T peak_force{0};     ///< largest friction force, N
 };
 
-/// What both did; NaN of the stretch of a rigid finger.
+/// Use of both contacts; the stretch of a rigid finger is NaN.
 template <class T>
 struct ContactsUse {
   ContactUse<T> plate, finger;
+  T across_dissipated{0};  ///< part of the friction work of the plate across the axis of the pin, J
   T peak_stretch{std::numeric_limits<T>::quiet_NaN()};       ///< largest of a compliant finger's, m
   T peak_stretch_rate{std::numeric_limits<T>::quiet_NaN()};  ///< m/s
 };
 
-/// Measures what the contacts did in a motion, which outlives it, over [0, duration].
+/// Measures the use of the contacts of a motion, which outlives the measurement.
 template <class T, class GoOn = Unattended>
 class ContactMeasurement {
  public:
-  ContactMeasurement(const Motion<T>& motion, T duration, GoOn go_on = {})
-      : motion_(motion), duration_(duration), go_on_(go_on) {}
+  explicit ContactMeasurement(const Motion<T>& motion, GoOn go_on = {})
+      : motion_(motion), go_on_(go_on) {}
 
-  ContactsUse<T> measure() const {
+  /// Use of the contacts in [begin, end], s.
+  ContactsUse<T> measure(T begin, T end) const {
     ContactsUse<T> result;
     if (skin()) result.peak_stretch = result.peak_stretch_rate = T(0);
-    motion_.stretches(duration_, [&](const Segment<T>& segment, T from, T to, T times) {
+    motion_.stretches(begin, end, [&](const Segment<T>& segment, T from, T to, T times) {
       motion_.along(segment,
                     [&](const auto& along) { stretch(result, along, segment, from, to, times); });
       return go_on_();
@@ -81,6 +83,7 @@ class ContactMeasurement {
       finger(along.velocity() + compliance * along.derivative(along.finger_force()),
              distance - compliance * stretched);
     }
+    across(result, along, segment, from, to, times);
     if (segment.mode.both_stuck())
       for (const T tau : {from, to}) {
         using std::abs;
@@ -93,6 +96,29 @@ class ContactMeasurement {
     const auto in_skin = (-1 / motion_.drive().finger.stiffness) * along.finger_force();
     peak(result.peak_stretch, along, in_skin, from, to);
     peak(result.peak_stretch_rate, along, along.derivative(in_skin), from, to);
+  }
+
+  /// Adds the distance and the friction work of a plate that slides across the axis of the pin, too.
+  template <class Trajectory>
+  void across(ContactsUse<T>& result, const Trajectory& along, const Segment<T>& segment, T from,
+              T to, T times) const {
+    if (segment.mode.plate != ContactState::slip_oblique) return;
+    const Drive<T>& drive = motion_.drive();
+    const auto lines = InputLines<T>::of(drive, motion_.inputs(), segment);
+    const auto speed = [&](T tau) {
+      const T u = along.at(along.velocity(), tau) - lines.plate_velocity.at(tau);
+      using detail::hypot;
+      return hypot(u, lines.across_velocity.at(tau));
+    };
+    result.plate.distance_slid += times * gauss<T>(speed, from, to);
+    const T work = gauss<T>(
+        [&](T tau) {
+          const T s = speed(tau), w = lines.across_velocity.at(tau);
+          return s > 0 ? drive.plate.friction_at(s) * lines.plate_load.at(tau) * w * w / s : T(0);
+        },
+        from, to);
+    result.plate.dissipated += times * work;
+    result.across_dissipated += times * work;
   }
 
   template <class Trajectory, class Quantity>
@@ -118,10 +144,6 @@ class ContactMeasurement {
       contact.time_stuck += times * (to - from);
       return;
     }
-    if constexpr (std::is_same_v<Trajectory, BySeries<T>>)
-      if (does == ContactState::slip_oblique)
-        contact.distance_slid +=
-            times * gauss<T>([&](T tau) { return along.at(along.sliding_speed(), tau); }, from, to);
     const T slid = abs(distance);
     if (does != ContactState::slip_oblique) contact.distance_slid += times * slid;
     if (came_to_zero) contact.reversals += times;
@@ -144,7 +166,6 @@ class ContactMeasurement {
   }
 
   const Motion<T>& motion_;
-  T duration_;
   GoOn go_on_;
 };
 

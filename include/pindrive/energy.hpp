@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pindrive/contact_use.hpp"
 #include "pindrive/motion.hpp"
 #include "pindrive/named_number.hpp"
 #include "pindrive/quadrature.hpp"
-#include "pindrive/transient.hpp"
 
 namespace pindrive {
 
@@ -20,7 +20,7 @@ struct Ledger {
   T spring_start, spring_end;    ///< J
   T skin_start, skin_end;        ///< in a compliant finger, J
   T stop_start, stop_end;        ///< in elastic end stops, J
-  T plate_work;                  ///< what the moving plate puts in through friction, J
+  T plate_work;                  ///< what the moving plate puts in through friction, across too, J
   T inertia_work;                ///< what the housing puts in by accelerating, J
   T force_work;                  ///< what the force from outside puts in, J
   T damper_dissipated, plate_dissipated, finger_dissipated, stop_dissipated;  ///< J
@@ -79,10 +79,9 @@ T lost_at_stop(const Motion<T>& motion, const Trajectory& along, const Segment<T
   return segment.mode.stop == StopState::apart ? T(0) : energy(from) - energy(to);
 }
 
-/// The ledger over [0, duration] of a motion whose numbers are known.
+/// The ledger of a motion over [0, duration].
 template <class T, class GoOn = Unattended>
-Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>& numbers,
-                        GoOn go_on = {}) {
+Ledger<T> energy_ledger(const Motion<T>& motion, T duration, GoOn go_on = {}) {
   using std::abs;
   using std::sqrt;
   const Drive<T>& drive = motion.drive();
@@ -104,7 +103,7 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
   state(T(0), ledger.kinetic_start, ledger.spring_start, ledger.skin_start, ledger.stop_start);
   state(duration, ledger.kinetic_end, ledger.spring_end, ledger.skin_end, ledger.stop_end);
 
-  motion.stretches(duration, [&](const Segment<T>& segment, T from, T to, T times) {
+  motion.stretches(T(0), duration, [&](const Segment<T>& segment, T from, T to, T times) {
     motion.along(segment, [&](const auto& along) {
       const auto over = [&](const auto& p, const auto& q) {
         return times * along.product_integral(p, q, from, to);
@@ -129,14 +128,11 @@ Ledger<T> energy_ledger(const Motion<T>& motion, T duration, const Transient<T>&
     });
     return go_on();
   });
-  ledger.plate_dissipated = numbers.plate.dissipated;
-  ledger.finger_dissipated = numbers.finger.dissipated;
+  const ContactsUse<T> used = ContactMeasurement<T, GoOn>(motion, go_on).measure(T(0), duration);
+  ledger.plate_work += used.across_dissipated;
+  ledger.plate_dissipated = used.plate.dissipated;
+  ledger.finger_dissipated = used.finger.dissipated;
   return ledger;
-}
-template <class T>
-Ledger<T> energy_ledger(const Motion<T>& motion, T duration) {
-  return energy_ledger(motion, duration,
-                       Measurement<T>(motion, duration).transient(T(settling_band)));
 }
 
 }  // namespace pindrive

@@ -50,6 +50,7 @@ inline constexpr int transient_columns[] = {
     KernelBlock::rest_time,  // the last event is that it comes to rest
     no_column,               // the stretch of a compliant finger, and its rate
     no_column,
+    PlainNumber::end_time,
     PlainNumber::plate_reversals,
     PlainNumber::plate_time_stuck,
     PlainNumber::plate_distance_slid,
@@ -67,6 +68,17 @@ inline constexpr int transient_columns[] = {
     no_column,
     no_column,
     no_column,
+    no_column,  // the energy of a decay
+    no_column,  // the plate in a period of a steady oscillation
+    no_column,
+    no_column,
+    no_column,
+    PlainNumber::plate_power,
+    no_column,  // and the finger
+    no_column,
+    no_column,
+    no_column,
+    PlainNumber::finger_power,
 };
 
 inline namespace PINDRIVE_TARGET {

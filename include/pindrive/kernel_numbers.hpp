@@ -102,19 +102,21 @@ struct TransientNumbers {
     give(Name::first_reversal_time, first_reversal);
     const V shown = larger(V(1.25) * time, period);  // of what is followed until it rests
     const V duration = select(r.until < V(__builtin_inf()), r.until, shown);
-    const V left = select(resting, duration - time, zero);
-    const V held = absolute(r.fp - r.stiffness * position), slid = plate_slid + r.vp * left;
+    const V held = absolute(r.fp - r.stiffness * position);
+    give(Name::end_time, select(resting, time, duration));
     give(Name::plate_reversals, plate_reversals);
     give(Name::plate_time_stuck, plate_stuck);
-    give(Name::plate_distance_slid, slid);
-    give(Name::plate_dissipated, r.fp * slid);
+    give(Name::plate_distance_slid, plate_slid);
+    give(Name::plate_dissipated, r.fp * plate_slid);
     give(Name::plate_peak_force, select(resting, larger(plate_peak, r.fp), plate_peak));
     const V stops = turns - inward, sliding = select(moved == zero, zero, r.ff);
     give(Name::finger_reversals, stops);
-    give(Name::finger_time_stuck, left);
+    give(Name::finger_time_stuck, zero);
     give(Name::finger_distance_slid, finger_slid);
     give(Name::finger_dissipated, r.ff * finger_slid);
     give(Name::finger_peak_force, select(resting, larger(sliding, held), sliding));
+    give(Name::plate_power, select(resting, r.fp * r.vp, V(none)));
+    give(Name::finger_power, select(resting, zero, V(none)));
     give(Name::duration, duration);
     give(Name::events, stops + plate_reversals + released);
   }

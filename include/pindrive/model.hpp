@@ -87,6 +87,8 @@ struct Contact {
     while (index + 1 < branches && speed >= curve[index].to) ++index;
     return index;
   }
+  /// Kinetic friction at a sliding speed, N.
+  T friction_at(T speed) const { return branch(branch_of(speed)).at(speed); }
   bool present() const {
     return static_limit > 0 || branches > 1 || (branches == 1 && curve[0].slope > 0);
   }

@@ -159,11 +159,11 @@ class Motion {
     return depth > 0 && !stops.rigid() ? stops.stiffness * depth * depth / 2 : T(0);
   }
 
-  /// Hands over each stretch of the motion in [0, until] as (segment, from τ, to τ, how often), until
-  /// the visitor returns false.
+  /// Hands over each stretch of the motion in [from, until] as (segment, from τ, to τ, how often), until
+  /// the visitor returns false; `from` lies in what was simulated.
   template <class Visitor>
-  void stretches(T until, Visitor&& visit) const {
-    if (!stretch(T(0), std::min(until, outcome_.until), T(1), visit)) return;
+  void stretches(T from, T until, Visitor&& visit) const {
+    if (!stretch(from, std::min(until, outcome_.until), T(1), visit)) return;
     if (!outcome_.cycles() || until <= outcome_.until) return;
     using std::floor;
     const T repeats = floor((until - outcome_.until) / outcome_.period);

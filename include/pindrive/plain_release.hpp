@@ -31,6 +31,7 @@ struct PlainNumber {
     return_velocity_time,
     first_reversal_time,
     settling_time,
+    end_time,
     plate_reversals,
     plate_time_stuck,
     plate_distance_slid,
@@ -41,6 +42,8 @@ struct PlainNumber {
     finger_distance_slid,
     finger_dissipated,
     finger_peak_force,
+    plate_power,
+    finger_power,
     duration,
     events,
     count

@@ -17,6 +17,23 @@
 
 namespace pindrive {
 
+/// Use of one contact after the transient: in each period of a steady motion, and in the mean.
+template <class T>
+struct Afterwards {
+  static constexpr T none = std::numeric_limits<T>::quiet_NaN();
+
+  T reversals{none}, time_stuck{none}, distance_slid{none}, dissipated{none};  ///< in one period
+  T power{none};  ///< mean power of the friction of a steady motion or under a pin at rest, W
+
+  void add(const ContactUse<T>& period, T time) {
+    reversals = period.reversals;
+    time_stuck = period.time_stuck;
+    distance_slid = period.distance_slid;
+    dissipated = period.dissipated;
+    power = period.dissipated / time;
+  }
+};
+
 template <class T>
 struct Transient {
   static constexpr T none = std::numeric_limits<T>::quiet_NaN();
@@ -34,9 +51,13 @@ struct Transient {
                          ///< infinite where they go on for ever
   T steady_since{none};  ///< when a steady oscillation began, s
   T peak_stretch{none}, peak_stretch_rate{none};  ///< largest of a compliant finger's: m, m/s
-  T end_position{none};     ///< x_end: where it rests, or the middle of the final oscillation, m
+  T end_position{none};  ///< x_end: where it rests, or the middle of the final oscillation, m
+  T end_time{none};      ///< t*: end of the transient, s
+  ContactUse<T> plate, finger;  ///< in the transient; peak forces of the whole motion
+
   SteadyNumbers<T> steady;  ///< of the final oscillation
-  ContactUse<T> plate, finger;
+  T decay_energy{none};     ///< that a final decay has left to dissipate, J
+  Afterwards<T> plate_afterwards, finger_afterwards;
 };
 
 /// Its numbers, by their names in the table of quantities.
@@ -56,6 +77,7 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"transient.last_event_time", [](const Transient<T>& t) { return t.last_event_time; }},
     {"transient.peak_stretch", [](const Transient<T>& t) { return t.peak_stretch; }},
     {"transient.peak_stretch_rate", [](const Transient<T>& t) { return t.peak_stretch_rate; }},
+    {"transient.end_time", [](const Transient<T>& t) { return t.end_time; }},
     {"transient.plate.reversals", [](const Transient<T>& t) { return t.plate.reversals; }},
     {"transient.plate.time_stuck", [](const Transient<T>& t) { return t.plate.time_stuck; }},
     {"transient.plate.distance_slid", [](const Transient<T>& t) { return t.plate.distance_slid; }},
@@ -74,6 +96,24 @@ inline constexpr NamedNumber<T, Transient<T>> transient_numbers[] = {
     {"ending.least_amplitude", [](const Transient<T>& t) { return t.steady.least_amplitude; }},
     {"ending.peak_velocity", [](const Transient<T>& t) { return t.steady.peak_velocity; }},
     {"ending.rounds", [](const Transient<T>& t) { return t.steady.rounds; }},
+    {"ending.decay_energy", [](const Transient<T>& t) { return t.decay_energy; }},
+    {"ending.plate.reversals", [](const Transient<T>& t) { return t.plate_afterwards.reversals; }},
+    {"ending.plate.time_stuck",
+     [](const Transient<T>& t) { return t.plate_afterwards.time_stuck; }},
+    {"ending.plate.distance_slid",
+     [](const Transient<T>& t) { return t.plate_afterwards.distance_slid; }},
+    {"ending.plate.dissipated",
+     [](const Transient<T>& t) { return t.plate_afterwards.dissipated; }},
+    {"ending.plate.power", [](const Transient<T>& t) { return t.plate_afterwards.power; }},
+    {"ending.finger.reversals",
+     [](const Transient<T>& t) { return t.finger_afterwards.reversals; }},
+    {"ending.finger.time_stuck",
+     [](const Transient<T>& t) { return t.finger_afterwards.time_stuck; }},
+    {"ending.finger.distance_slid",
+     [](const Transient<T>& t) { return t.finger_afterwards.distance_slid; }},
+    {"ending.finger.dissipated",
+     [](const Transient<T>& t) { return t.finger_afterwards.dissipated; }},
+    {"ending.finger.power", [](const Transient<T>& t) { return t.finger_afterwards.power; }},
 };
 
 /// Measures a motion, which outlives it, over [0, duration]; what happens later, or never, is NaN.
@@ -90,11 +130,8 @@ class Measurement {
     ending(result);
     settle(result, band);
     rest_and_events(result);
-    const ContactsUse<T> used = ContactMeasurement<T, GoOn>(motion_, duration_, go_on_).measure();
-    result.plate = used.plate;
-    result.finger = used.finger;
-    result.peak_stretch = used.peak_stretch;
-    result.peak_stretch_rate = used.peak_stretch_rate;
+    contacts(result);
+    afterwards(result);
     return result;
   }
 
@@ -262,6 +299,63 @@ class Measurement {
                            !(segment->begin < outcome.cycle_begin);
       result.last_event_time = repeats ? never : segment->end;
       return;
+    }
+  }
+
+  /// Use of the contacts in the transient, and their peaks in the whole motion.
+  void contacts(Transient<T>& result) const {
+    using std::isnan;
+    const Outcome<T>& outcome = motion_.outcome();
+    T end = duration_;
+    if (outcome.end == End::resting) end = result.rest_time;
+    if (outcome.end == End::decaying) end = result.last_event_time;
+    if (outcome.steady()) end = result.steady_since;
+    result.end_time = std::min({end, duration_, motion_.known_until()});
+    const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+    const ContactsUse<T> used = measurement.measure(T(0), result.end_time);
+    result.plate = used.plate;
+    result.finger = used.finger;
+    result.peak_stretch = used.peak_stretch;
+    result.peak_stretch_rate = used.peak_stretch_rate;
+    // The peaks of a steady motion are in its first period, those of a decay soon after it begins.
+    const ContactsUse<T> rest = measurement.measure(result.end_time, duration_);
+    result.plate.peak_force = std::max(result.plate.peak_force, rest.plate.peak_force);
+    result.finger.peak_force = std::max(result.finger.peak_force, rest.finger.peak_force);
+    if (isnan(used.peak_stretch)) return;
+    result.peak_stretch = std::max(used.peak_stretch, rest.peak_stretch);
+    result.peak_stretch_rate = std::max(used.peak_stretch_rate, rest.peak_stretch_rate);
+  }
+
+  /// Numbers of what goes on after the transient, if that is over within the duration.
+  void afterwards(Transient<T>& result) const {
+    const Outcome<T>& outcome = motion_.outcome();
+    const Drive<T>& drive = motion_.drive();
+    const Segment<T>& last = *std::prev(motion_.end());
+    const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
+    if (outcome.steady()) {
+      const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
+      const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
+      result.plate_afterwards.add(period.plate, outcome.period);
+      result.finger_afterwards.add(period.finger, outcome.period);
+    } else if (outcome.end == End::resting) {
+      // The plate goes on sliding under the pin, at constant speed and friction.
+      const ContactsUse<T> second = measurement.measure(last.begin, last.begin + T(1));
+      result.plate_afterwards.power = second.plate.dissipated;
+      result.finger_afterwards.power = second.finger.dissipated;
+    } else if (outcome.end == End::decaying) {
+      T stiffness = drive.stiffness;
+      if (last.mode.finger == ContactState::elastic_stick) stiffness += drive.finger.stiffness;
+      if (touches(last.mode.stop)) stiffness += drive.stops.stiffness;
+      const T x = last.flow.position.value, v = last.flow.velocity.start;
+      result.decay_energy = (stiffness * x * x + drive.mass * v * v) / 2;
+    }
+    // The first extrema of a motion that is steady already are those of the steady motion.
+    if (!outcome.steady()) return;
+    if (result.peak_time > result.steady_since)
+      result.peak_time = result.peak_displacement = result.none;
+    if (!(result.peak_time <= result.steady_since) || result.trough_time > result.steady_since) {
+      result.trough_time = result.trough_displacement = result.swing = result.none;
+      result.return_velocity = result.return_velocity_time = result.none;
     }
   }
 

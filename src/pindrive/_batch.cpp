@@ -396,7 +396,7 @@ class Batch {
       if (events_.size() > 0) events_[i] = static_cast<std::int32_t>(summary.events);
     }
     if (!energy_) return;
-    const auto ledger = pd::energy_ledger(motion, summary.duration, summary.transient, go_on);
+    const auto ledger = pd::energy_ledger(motion, summary.duration, go_on);
     for (std::size_t k = 0; k < rows_.size(); ++k)
       if (rows_[k].energy) numbers_[k][i] = rows_[k].energy(ledger);
   }

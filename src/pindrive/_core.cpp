@@ -279,10 +279,7 @@ template <class T>
 nb::dict ledger(const CoreMotion<T>& motion, double duration) {
   return named(pd::ledger_numbers<T>, interruptible([&](auto go_on) {
                  const auto view = motion.view();
-                 const T band(pd::settling_band);
-                 const auto numbers =
-                     pd::Measurement<T, decltype(go_on)>(view, T(duration), go_on).transient(band);
-                 return pd::energy_ledger(view, T(duration), numbers, go_on);
+                 return pd::energy_ledger(view, T(duration), go_on);
                }));
 }
 

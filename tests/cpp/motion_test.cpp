@@ -58,7 +58,7 @@ int main() {
   expect(motion.known_until() > 1e300, "... so all of it is known");
 
   double time = 0, counted = 0;
-  motion.stretches(9.5, [&](const Segment&, double from, double to, double times) {
+  motion.stretches(0, 9.5, [&](const Segment&, double from, double to, double times) {
     time += times * (to - from);
     counted += times;
   });

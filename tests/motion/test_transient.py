@@ -73,13 +73,17 @@ def test_numbers_against_samples(case: Case) -> None:
             distance = abs(motion.position(settled) - motion.ending.position)
             assert distance == pytest.approx(band, rel=1e-9, abs=1e-12 * size)
 
+    # Sums are those of the transient, peaks those of the motion.
+    end = transient.end_time
+    within = np.linspace(0.0, end, SAMPLES)
+    speeds, step = motion.velocity(within), within[1]
     names: tuple[Literal["plate", "finger"], ...] = ("plate", "finger")
     for name, surface in zip(names, (case.mouse_velocity, 0.0), strict=True):
         use, sliding = getattr(transient, name), getattr(motion.drive, name)
         if sliding.frictionless:
             assert use.distance_slid == use.dissipated == use.reversals == 0
             continue
-        slid = np.trapezoid(np.abs(v - surface), t)
+        slid = np.trapezoid(np.abs(speeds - surface), within)
         slack = step * np.abs(v).max() * (3 + use.reversals) + 1e-9 * size
         assert use.distance_slid == pytest.approx(slid, abs=slack, rel=1e-4)
         assert use.dissipated == pytest.approx(use.distance_slid * sliding.kinetic, rel=1e-12)
@@ -89,9 +93,9 @@ def test_numbers_against_samples(case: Case) -> None:
         assert use.peak_force == pytest.approx(max(forces), rel=1e-12)
         if motion.ending.cycle != "stick-slip":
             stops = [e for e in motion.events if e.kind != "slip" and e.contact in (name, "both")]
-            assert use.reversals == len([e for e in stops if e.time <= motion.duration])
+            assert use.reversals == len([e for e in stops if e.time <= end])
             stuck = [s for s in motion.segments if getattr(s, name) == 0]
-            lasted = [min(s.end, motion.duration) - s.begin for s in stuck]
+            lasted = [min(s.end, end) - s.begin for s in stuck]
             assert use.time_stuck == pytest.approx(sum(d for d in lasted if d > 0), rel=1e-12)
 
 
@@ -261,3 +265,53 @@ def test_a_long_vibration_in_the_skin_against_samples(seed: int) -> None:
         assert t[outside[-1]] <= settled
         distance = abs(motion.position(settled) - motion.ending.position)
         assert distance == pytest.approx(width, rel=1e-7)
+
+
+def test_numbers_of_the_transient_do_not_depend_on_the_duration() -> None:
+    drive = Drive(
+        mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005)
+    )
+    undamped = Drive(
+        mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.02, 0.03), finger=Contact(0.0)
+    )
+    for each in (drive, undamped):
+        short, long = (simulate(each, Release(0.1, 1.5e-3), duration=d) for d in (0.5, 5.0))
+        assert short.transient.plate == long.transient.plate
+        assert short.transient.finger == long.transient.finger
+        assert short.ending.plate.power == long.ending.plate.power
+
+
+def test_what_goes_on_is_reported_in_each_period_and_as_power() -> None:
+    resting = simulate(
+        Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005)),
+        Release(0.1, 1.5e-3),
+    )
+    assert resting.transient.end_time == resting.transient.rest_time
+    assert resting.ending.plate.power == pytest.approx(0.02 * 0.1, rel=1e-12)
+    assert resting.ending.finger.power == 0.0
+    assert isnan(resting.ending.plate.dissipated)
+    slip = simulate(
+        Drive(mass=1.0, stiffness=100.0, damping=0.0, plate=Contact(1.0, 2.0), finger=Contact(0.0)),
+        Release(0.1, 0.0),
+    )
+    period, each = slip.ending.period, slip.ending.plate
+    assert slip.transient.end_time == slip.ending.steady_since
+    assert each.power == pytest.approx(each.dissipated / period, rel=1e-15)
+    assert each.dissipated == pytest.approx(each.distance_slid, rel=1e-12)  # at 1 N
+    assert each.time_stuck == pytest.approx(2.0 * 0.01 / 0.1, rel=1e-12)
+    assert each.reversals == 1
+
+
+def test_friction_across_the_axis_is_dissipated_too() -> None:
+    drive = Drive(
+        mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=Contact(0.005)
+    )
+    hand = 0.1
+    angle = np.deg2rad(80.0)
+    release = Release(
+        hand * np.cos(angle), 1.5e-3, across_velocity=hand * np.sin(angle), velocity=0.0
+    )
+    motion = simulate(drive, release, duration=1.0)
+    slid = motion.transient.plate
+    assert slid.dissipated == pytest.approx(0.02 * slid.distance_slid, rel=1e-9)
+    assert abs(motion.energy.residual) < 1e-12 * slid.dissipated

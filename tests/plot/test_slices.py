@@ -390,7 +390,7 @@ REFUSED = {
     "grid.nc -o map.png --x mass": "--x mass: grid.nc does not vary it; it varies mouse_velocity,",
     "grid.nc -o map.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "
     "stiffness?",
-    "grid.nc -o map.png --number energy": '--number: unknown number "energy"',
+    "grid.nc -o map.png --number heat": '--number: unknown number "heat"',
     "grid.nc -o map.png --number peak_stretch": "--number peak_stretch: grid.nc does not hold it",
     "grid.nc -o map.png --at mass": '--at "mass": must be key=value',
     "grid.nc -o map.png --at plate.kinetic=5": "--at plate.kinetic: must be a number with its unit",

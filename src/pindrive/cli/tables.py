@@ -15,7 +15,7 @@ from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Rows, counted, significant
-from pindrive.quantities.results import TRANSIENT
+from pindrive.quantities.results import ENDING, TRANSIENT
 from pindrive.quantities.table import QUANTITIES, duration
 
 if TYPE_CHECKING:
@@ -101,54 +101,83 @@ def motion_report(motion: Motion) -> RenderableType:
     if motion.status:
         words.append(f"The simulation {motion.status.explanation}.")
     lines = whole_lines(words)
-    return Group(_phases(motion), _numbers(motion), *lines)
+    tables = [_phases(motion), _numbers(motion)]
+    if (afterwards := _afterwards(motion)).row_count:
+        tables.append(afterwards)
+    return Group(*tables, *lines)
 
 
 def _phases(motion: Motion) -> Table:
-    """A line for each mode the motion goes through; the middle of many left out."""
+    """A line for each stretch of one contact state; the middle of many left out."""
     table = new_table("Phases", ">from", ">to", ">duration", "phase", ">x", ">v", "ends as")
     t, x, v = _TIME.display_unit, _POSITION.display_unit, _VELOCITY.display_unit
     table.add_row(t, t, t, "", x, v, "", style="dim")
     causes: dict[float, list[str]] = {}
     for event in motion.events:
         causes.setdefault(event.time, []).append(f"{event.contact} {_KINDS[event.kind]}")
-    segments = motion.segments
-    for i, segment in enumerate(segments):
-        if HEAD <= i < len(segments) - TAIL:
+    phases: list[tuple[float, float, str]] = []
+    for segment in motion.segments:
+        # A segment also ends at a point of a friction curve and where an input changes.
+        goes_on = bool(phases) and segment.mode == phases[-1][2] and segment.begin not in causes
+        begin = phases.pop()[0] if goes_on else segment.begin
+        phases.append((begin, segment.end, segment.mode))
+    for i, (begin, end, mode) in enumerate(phases):
+        if HEAD <= i < len(phases) - TAIL:
             if i == HEAD:
-                table.add_row("...", "", "", counted(len(segments) - HEAD - TAIL, "more phase"))
+                table.add_row("...", "", "", counted(len(phases) - HEAD - TAIL, "more phase"))
             continue
-        lasts = isfinite(segment.end)
+        lasts = isfinite(end)
         table.add_row(
-            _TIME.digits(segment.begin),
-            _TIME.digits(segment.end) if lasts else "",
-            _TIME.digits(segment.end - segment.begin) if lasts else "forever",
-            segment.mode,
-            _POSITION.digits(motion.position(segment.begin)),
-            _VELOCITY.digits(motion.velocity(segment.begin)),
-            ", ".join(causes.get(segment.end, [])),
+            _TIME.digits(begin),
+            _TIME.digits(end) if lasts else "",
+            _TIME.digits(end - begin) if lasts else "forever",
+            mode,
+            _POSITION.digits(motion.position(begin)),
+            _VELOCITY.digits(motion.velocity(begin)),
+            ", ".join(causes.get(end, [])),
         )
     return table
 
 
 def _numbers(motion: Motion) -> Table:
     """The transient's numbers; those of an absent contact left out."""
-    followed = f"Transient, followed for {duration(motion.duration)}"
-    table = new_table(followed, "symbol", ">value", "unit", "meaning")
+    title = f"Transient, from the release to {duration(motion.transient.end_time)}"
+    table = new_table(title, "symbol", ">value", "unit", "meaning")
     values = motion.numbers()
     unseen = {"transient.settled"}
     if motion.drive.finger.rigid:
         unseen |= {"transient.peak_stretch", "transient.peak_stretch_rate"}
-    absent = tuple(
-        f"transient.{name}."
-        for name, contact in (("plate", motion.drive.plate), ("finger", motion.drive.finger))
-        if contact.frictionless
-    )
+    absent = _absent(motion, "transient")
+    steady = motion.ending.kind == "steady"
     for quantity in TRANSIENT:
         if not quantity.name.startswith(absent) and quantity.name not in unseen:
             in_band = f"within {100.0 * motion.settling_band:g} % of the way to the resting place"
-            said = f"from then on {in_band}" if quantity.name == "transient.settling_time" else ""
+            said = "steady from then on" if steady else f"from then on {in_band}"
+            said = said if quantity.name == "transient.settling_time" else ""
             _add_number(table, quantity.name, values[quantity.name], meaning=said)
+    return table
+
+
+def _absent(motion: Motion, table: str) -> tuple[str, ...]:
+    """Beginnings of the names of the numbers of contacts without friction."""
+    contacts = (("plate", motion.drive.plate), ("finger", motion.drive.finger))
+    return tuple(f"{table}.{name}." for name, contact in contacts if contact.frictionless)
+
+
+def _afterwards(motion: Motion) -> Table:
+    """The numbers of the motion after the transient, as far as these exist."""
+    table = new_table("Afterwards", "symbol", ">value", "unit", "meaning")
+    values, absent = motion.numbers(), _absent(motion, "ending")
+    once = motion.ending.rounds == 1.0
+    in_words = {"ending.position", "ending.steady_since"}
+    in_words |= {"ending.least_amplitude", "ending.rounds"} if once else set()
+    for quantity in ENDING:
+        if (
+            quantity.name not in in_words
+            and not quantity.name.startswith(absent)
+            and isfinite(values[quantity.name])
+        ):
+            _add_number(table, quantity.name, values[quantity.name])
     return table
 
 

@@ -5,7 +5,8 @@
 - `Certificate`: the largest violation of each law
 - `Coefficients`: friction forces over what presses
 - `Contact`: dry friction between the pin and a surface
-- `ContactUse`: what one contact did in it
+- `ContactUse`: use of one contact in it
+- `Afterwards`: use of one contact after it
 - `Crossings`: where a quantity of a motion crosses a level
 - `Drive`: a mass on a spring and a damper, rubbed by a plate and a fingertip
 - `Ending`: how a motion ends, in numbers

@@ -7,6 +7,7 @@ from pindrive.motion.profile import Profile as Profile
 from pindrive.motion.motion import Motion as Motion
 from pindrive.motion.release import Release as Release
 from pindrive.motion.results import Certificate as Certificate
+from pindrive.motion.results import Afterwards as Afterwards
 from pindrive.motion.results import ContactUse as ContactUse
 from pindrive.motion.results import Crossings as Crossings
 from pindrive.motion.results import Ending as Ending

@@ -16,6 +16,7 @@ from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import INPUTS, core_numbers
 from pindrive.motion.results import (
+    Afterwards,
     Certificate,
     ContactName,
     ContactUse,
@@ -316,7 +317,8 @@ class Motion(lazy.NotebookHtml):
     def _numbers(self) -> dict[str, float]:
         """Of the transient and the ending, by their names in the table of quantities."""
         numbers = self._core.transient(self.duration, self.settling_band)
-        return {k: int(n) if k.endswith(".reversals") else n for k, n in numbers.items()}
+        counts = ("transient.plate.reversals", "transient.finger.reversals")
+        return {k: int(n) if k in counts else n for k, n in numbers.items()}
 
     @cached_property
     def transient(self) -> Transient:
@@ -329,7 +331,10 @@ class Motion(lazy.NotebookHtml):
     @cached_property
     def ending(self) -> Ending:
         """How the motion ends."""
-        return Ending(End(self._core.end), **part(self._numbers, "ending."))
+        numbers = part(self._numbers, "ending.")
+        plate, finger = (Afterwards(**part(numbers, f"{name}.")) for name in ("plate", "finger"))
+        own = {name: number for name, number in numbers.items() if "." not in name}
+        return Ending(End(self._core.end), **own, plate=plate, finger=finger)
 
     def settling_time(self, band: float = _core.settling_band) -> float:
         """The settling time (s) for another band, a part of |x(0) - x_end|; NaN if none.

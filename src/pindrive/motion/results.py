@@ -180,7 +180,7 @@ _CYCLE: dict[End, Cycle] = {
 
 @dataclass(frozen=True, slots=True)
 class ContactUse:
-    """What one contact did during the motion, SI.
+    """Use of one contact in the transient, SI; the peak force is that of the whole motion.
 
     `pindrive.quantities.QUANTITIES` says what each is, under "transient.plate." and its name.
     """
@@ -190,6 +190,21 @@ class ContactUse:
     distance_slid: float
     dissipated: float
     peak_force: float
+
+
+@dataclass(frozen=True, slots=True)
+class Afterwards:
+    """Use of one contact after the transient, in one period of a steady motion, SI.
+
+    `pindrive.quantities.QUANTITIES` has the meanings, under "ending.plate." and the name. The power
+    also exists where the plate slides under a pin at rest; other numbers are NaN then.
+    """
+
+    reversals: float
+    time_stuck: float
+    distance_slid: float
+    dissipated: float
+    power: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,6 +229,7 @@ class Transient:
     last_event_time: float
     peak_stretch: float
     peak_stretch_rate: float
+    end_time: float
     plate: ContactUse
     finger: ContactUse
 
@@ -243,6 +259,10 @@ class Ending:
     """Largest speed of a steady or irregular motion, m/s."""
     rounds: float
     """Rounds about the centre in one period of a steady motion."""
+    decay_energy: float
+    """Energy that a final decay has left to dissipate, J."""
+    plate: Afterwards
+    finger: Afterwards
 
     @property
     def kind(self) -> EndKind:

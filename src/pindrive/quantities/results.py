@@ -7,11 +7,19 @@ from typing import Final
 from pindrive.quantities.quantity import NON_NEGATIVE, PAPER, Quantity, between, optional
 
 _USE: Final[tuple[tuple[str, str, str, str], ...]] = (
-    ("reversals", "n_{}", "", "times the sliding velocity reached zero, {}"),
-    ("time_stuck", "t_{},stuck", "s", "time stuck, {}"),
-    ("distance_slid", "s_{}", "m", "distance slid, {}"),
-    ("dissipated", "W_{}", "J", "energy turned into heat, {}"),
+    ("reversals", "n_{}", "", "zeros of the sliding velocity in the transient, {}"),
+    ("time_stuck", "t_{},stuck", "s", "time in stick in the transient, {}"),
+    ("distance_slid", "s_{}", "m", "distance slid in the transient, {}"),
+    ("dissipated", "W_{}", "J", "energy turned into heat in the transient, {}"),
     ("peak_force", "R_{},max", "N", "largest friction force on the pin, {}"),
+)
+
+_AFTERWARDS: Final[tuple[tuple[str, str, str, str], ...]] = (
+    ("reversals", "n_{},T", "", "zeros of the sliding velocity in one period, {}"),
+    ("time_stuck", "t_{},T", "s", "time in stick in one period, {}"),
+    ("distance_slid", "s_{},T", "m", "distance slid in one period, {}"),
+    ("dissipated", "W_{},T", "J", "energy turned into heat in one period, {}"),
+    ("power", "P_{}", "W", "mean power of friction at rest or in a steady motion, {}"),
 )
 
 _NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
@@ -58,6 +66,13 @@ _NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
     ),
     ("peak_stretch", "s_max", "m", "largest stretch of a compliant finger's skin", ""),
     ("peak_stretch_rate", "s'_max", "m/s", "largest rate at which that skin stretched", ""),
+    (
+        "end_time",
+        "t*",
+        "s",
+        "end of the transient: rest, steady motion, last event of a decay or end of the duration",
+        "",
+    ),
     ("settled", "", "", "whether the motion settled in its duration", ""),
 )
 """Name, symbol, unit, meaning, and where the paper has it."""
@@ -92,6 +107,14 @@ ENDING: Final[tuple[Quantity, ...]] = (
     Quantity("ending.least_amplitude", "X_min", "m", "half of the range of its smallest round"),
     Quantity("ending.peak_velocity", "v_end", "m/s", "largest speed in the final oscillation"),
     Quantity("ending.rounds", "n_end", "", "rounds about its centre in one period"),
+    Quantity(
+        "ending.decay_energy", "W_end", "J", "energy that a final decay has left to dissipate"
+    ),
+    *(
+        Quantity(f"ending.{contact}.{name}", symbol.format(contact[0]), unit, meaning.format(where))
+        for contact, where in (("plate", "at the plate"), ("finger", "at the finger"))
+        for name, symbol, unit, meaning in _AFTERWARDS
+    ),
 )
 """How a motion ends, in numbers."""
 
