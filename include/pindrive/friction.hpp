@@ -151,9 +151,14 @@ struct Touch : SlidingSkin<T> {
     return (contact.static_limit + rounded) * load.value + friction * load.value;
   }
 
-  /// Its force in its mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface.
+  /// Its force in its mode, unless it sticks: where it slips, −s (F + c (s u − from)) λ, u = x' − surface; where it
+  /// slips across too, that of its present sliding velocity.
   Force<T> law(const State<T>& s) const {
     if (elastic()) return {{-s.skin, T(0)}, T(0), contact.stiffness, T(0)};
+    if (oblique()) {
+      const T axial = -direction * this->carried();
+      return {{axial * load.value, axial * load.rate}};
+    }
     if (!sliding()) return {};
     const Branch<T> range = branch();
     const T force = -does.sense * range.force;

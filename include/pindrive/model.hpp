@@ -300,7 +300,8 @@ inline bool stops(Transition transition) {
 }
 
 /// The fast part that a series leaves out (creep.hpp, slow_slider.hpp).
-enum class FastPart : signed char { none, of_friction, of_slider };
+/// `motion`: the whole motion of a pin that is in equilibrium by the rest criterion.
+enum class FastPart : signed char { none, of_friction, of_slider, motion };
 
 /// One mode from begin to end (infinite for one that lasts for ever), with its friction.
 template <class T>

@@ -19,7 +19,8 @@ enum class Side : signed char { left, right };
 template <class T, class Visitor>
 auto visit_trajectory(const Drive<T>& drive, const Segment<T>& segment, const InputLines<T>& lines,
                       Visitor&& visit) {
-  if (!(segment.end > segment.begin) || SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
+  if (!(segment.end > segment.begin) || segment.without == FastPart::motion ||
+      SeriesMode<T>(drive, segment.mode, lines).has_closed_form())
     return visit(ClosedForm<T>(segment));
   return visit(BySeries<T>(drive, segment, lines));
 }

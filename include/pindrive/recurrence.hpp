@@ -25,7 +25,8 @@ void end_with(const Segment<T>& last, Outcome<T>& outcome) {
   const Flow<T>& flow = last.flow;
   const T alpha = flow.oscillator.alpha();
   if (!flow.position.oscillates()) {
-    if (flow.velocity.start == 0 && flow.velocity.straight()) outcome.end = End::resting;
+    const bool still = flow.velocity.start == 0 && flow.velocity.straight();
+    if (still) outcome.end = last.without == FastPart::motion ? End::decaying : End::resting;
   } else if (alpha < 0) {
     outcome.end = End::decaying;
   } else if (alpha == 0) {

@@ -60,22 +60,22 @@ class SeriesMode {
   SeriesMode(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs)
       : drive_(drive), mode_(mode), inputs_(inputs) {}
 
-  /// Whether flow.hpp has a mode in closed form, so that no series is needed.
-  static bool closed_form(const Drive<T>& drive, const Mode& mode, const Line<T>& plate_load,
-                          const Line<T>& across_velocity, const Line<T>& finger_load) {
+  /// True if flow.hpp has a mode in closed form, so that no series is needed.
+  /// Under a held pin a plate of constant velocity slides across with a friction that only the load changes.
+  static bool closed_form(const Drive<T>& drive, const Mode& mode, const InputLines<T>& inputs) {
     const auto bilinear = [](ContactState does, const Contact<T>& contact, int branch,
                              const Line<T>& load) {
       return slips(does) && load.rate != 0 && contact.branch(branch).slope != 0;
     };
-    return !(slips(mode.plate) && carries_across(plate_load, across_velocity)) &&
-           !bilinear(mode.plate, drive.plate, mode.plate_branch, plate_load) &&
-           !bilinear(mode.finger, drive.finger, mode.finger_branch, finger_load) &&
+    const bool across = slips(mode.plate) && inputs.oblique();
+    const bool steady = across && held(drive, mode) && inputs.plate_velocity.rate == 0 &&
+                        inputs.across_velocity.rate == 0;
+    return (steady || (!across &&
+                       !bilinear(mode.plate, drive.plate, mode.plate_branch, inputs.plate_load))) &&
+           !bilinear(mode.finger, drive.finger, mode.finger_branch, inputs.finger_load) &&
            !lags(drive.finger, mode);
   }
-  bool has_closed_form() const {
-    return closed_form(drive_, mode_, inputs_.plate_load, inputs_.across_velocity,
-                       inputs_.finger_load);
-  }
+  bool has_closed_form() const { return closed_form(drive_, mode_, inputs_); }
 
   bool lags() const { return lags(drive_.finger, mode_); }
 

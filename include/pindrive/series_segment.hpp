@@ -88,6 +88,13 @@ class SeriesSegment {
     return row < never && row - first_ <= known ? row : first_;
   }
 
+  /// The time at which a moving pin turns; infinite if it does not within the step.
+  T turning_point() const {
+    const Polynomial<T>& velocity = step_->velocity;
+    if (velocity.c[0] == 0) return never;
+    return first_zero(velocity.c[0] > 0 ? velocity : T(-1) * velocity);
+  }
+
   /// Brings the state on by τ, unless the mode has a closed form.
   template <class Side>
   void move(State<T>& state, const Drive<T>& drive, const Side& finger, T tau) const {

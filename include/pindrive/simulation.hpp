@@ -45,17 +45,20 @@ class Simulation : private Selection<T> {
     Segment<T> segment;
     for (long long events = 1;; ++events) {
       begin(segment);
-      const T tau = earliest(segment.flow);
+      const T event = earliest(segment.flow), turn = turning_point();
+      const T tau = std::min(event, turn);
       const bool finished = !(time_after(tau) < inputs_.duration);
       if (!finished) {
         jump(segment, tau);
+        if (turn < event) state_.v = T(0);
         select();
         const Mode after = mode();
         segment.event = {change(segment.mode.plate, after.plate),
                          change(segment.mode.finger, after.finger)};
         segment.event.stop = change(segment.mode.stop, after.stop, struck_);
         if (finger_.drops()) segment.event.finger = Transition::slip;
-        if (!(row_ < never) && (segment.event.any() || !same_mode(segment.mode, after)))
+        const bool changes = segment.event.any() || !same_mode(segment.mode, after);
+        if (!(row_ < never) && (changes || turn < event))
           cycles_.visit(segment, after, time_, state_, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);
@@ -126,8 +129,10 @@ class Simulation : private Selection<T> {
     segment.plate_velocity = plate_.surface;
     segment.without = FastPart::none;
     series_.reset();
-    if (!SeriesMode<T>::closed_form(drive_, segment.mode, plate_.load, plate_.across,
-                                    finger_.load)) {
+    if (!SeriesMode<T>::closed_form(
+            drive_, segment.mode,
+            {plate_.surface, plate_.load, plate_.across, force_, finger_.load})) {
+      if (in_equilibrium()) return stay(segment, plate, finger);
       series_.begin(segment, guards_, drive_, plate_, finger_, force_, state_, acceleration_,
                     continues() ? limit_ : 0, no_push(),
                     std::min(until_row(), inputs_.duration - time_));
@@ -143,6 +148,29 @@ class Simulation : private Selection<T> {
     guards_.add(finger_, segment, false);
     guards_.add(plate_, segment, true);
     if (!stop_.holds()) stop_.add_guards(guards_, state_, segment.flow);
+  }
+
+  /// True if a pin that no contact holds is at rest by the rest criterion (MODEL, section 10), for ever: under
+  /// constant inputs forces balance and the speed has decayed.
+  bool in_equilibrium() const {
+    using std::abs;
+    using std::sqrt;
+    const State<T>& s = state_;
+    if (row_ < never || held() || plate_.surface.rate != 0 || plate_.across.rate != 0) return false;
+    if (force_.rate != 0 || plate_.load.rate != 0 || finger_.load.rate != 0 || finger_.lags())
+      return false;
+    const T still = T(rest_tolerance) * s.x_size;  // the place of rest may be 0
+    return abs(s.v) <= still * sqrt(drive_.stiffness / drive_.mass) &&
+           drive_.mass * abs(acceleration_) <= still * drive_.stiffness;
+  }
+  /// The segment of a pin in equilibrium.
+  void stay(Segment<T>& segment, const Force<T>& plate, const Force<T>& finger) {
+    guards_.clear();
+    state_.v = T(0);
+    segment.without = FastPart::motion;
+    segment.flow = Flow<T>::stuck(state_.x, Line<T>{});
+    segment.plate_force = plate.along(segment.flow);
+    segment.finger_force = finger.along(segment.flow);
   }
 
   Flow<T> flow(const Force<T>& plate, const Force<T>& finger) const {
@@ -182,6 +210,13 @@ class Simulation : private Selection<T> {
            drive_.finger.branches == 0;
   }
 
+  /// The time to the next turning point of a pin over a plate that slides across, under constant inputs: it may
+  /// oscillate for ever without an event, and a cycle is closed there. Infinite elsewhere.
+  T turning_point() const {
+    return series_.used() && plate_.oblique() && !held() && !(row_ < never)
+               ? series_.turning_point()
+               : never;
+  }
   /// Time after τ, s: the rounding of earlier sums is taken into account.
   T time_after(T tau) const { return time_ + (tau + time_error_); }
   /// The time to the next row of an input, s.

@@ -513,7 +513,9 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
                         continue  # it jumps there
                     expected = getattr(core, name)(np.array([time]), True)[0]
                     apart = abs(value_now.value - expected) / scale[quantity]
-                    assert apart < 1e-12, (number, name, time)
+                    # A pin over a plate that slides across rests by the rest criterion.
+                    across = len(rows["across_velocity"]) > 1
+                    assert apart < (1e-10 if across else 1e-12), (number, name, time)
                     worst, steps = max(worst, apart), steps + 1
         c.free(drive=drive, release=release, stepper=stepper)
     print(f"{steps} values, {kept} states gone back to: within {worst:.1e} of their largest")
