@@ -84,39 +84,32 @@ class CycleDetector {
   /// outcome if the event closes a cycle.
   void visit(const Segment<T>& ended, const Mode& mode, T time, const State<T>& state,
              Outcome<T>& outcome) {
-    block_.add(ended.flow, state.x, state.v);
-    for (Visit* visit : {&kept_, &recent_, &followed_}) {
-      visit->extent.add(ended.flow, state.x, state.v);
-      if (ended.mode.plate == ContactState::stick) visit->stuck += ended.end - ended.begin;
-    }
-    const Visit now{count_, time, mode, state, {}, T(0)};
+    const Event now{time, mode, state};
     if (count_ > 0) {
-      for (const Visit* visit : {&recent_, &kept_}) {
-        const Visit& earlier = *visit;
-        const T distance = separation(earlier, now);
-        if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
-        if (!(distance < near_return) || (period_ > 0 && !(distance < distance_))) continue;
-        period_ = count_ - earlier.index;
-        distance_ = distance;
-        ratio_ = T(1);
-        followed_ = now;
-      }
-      if (period_ > 0 && count_ == followed_.index + period_) {
-        if (approaches(separation(followed_, now))) return close(followed_, now, outcome);
-        followed_ = now;
-      }
+      if (returns_to(kept_, ended, now, outcome)) return;
+      if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
+      if (period_ > 0 && approaches(ended, now, outcome)) return;
     }
-    if (++in_window_ == irregular_window) end_window(time, outcome);
-    if (count_ % short_memory == 0) recent_ = now;
+    if (count_ >= irregular_window) {
+      block_.add(ended.flow, state.x, state.v);
+      if (++in_window_ == irregular_window) end_window(time, outcome);
+    }
+    if (count_ > 0 && count_ % short_memory == 0) keep(recent_, now);
     if (count_ == next_) {
-      kept_ = now;
+      keep(kept_, now);
       next_ += std::max(next_ / 4, std::min(next_, short_memory)) + 1;
     }
     ++count_;
   }
 
  private:
-  /// State and mode after an event, and the scales of the motion since then.
+  /// An event: its time, and the mode and the state after it.
+  struct Event {
+    T time;
+    const Mode& mode;
+    const State<T>& state;
+  };
+  /// A kept event, and the scales of the motion since then.
   struct Visit {
     long long index{0};
     T time{0};
@@ -133,12 +126,21 @@ class CycleDetector {
   static constexpr double near_return = 1e-3;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
+  void keep(Visit& visit, const Event& now) const {
+    visit = {count_, now.time, now.mode, now.state, {}, T(0)};
+  }
+  /// Includes the segment that an event ends in the scales since a kept event.
+  static void extend(Visit& visit, const Segment<T>& ended, const Event& now) {
+    visit.extent.add(ended.flow, now.state.x, now.state.v);
+    if (ended.mode.plate == ContactState::stick) visit.stuck += ended.end - ended.begin;
+  }
+
   /// Distance between the states after two events as a part of the natural scales; infinite if they have
   /// different modes, or if the motion between them is not larger than the rounding of its position.
-  T separation(const Visit& earlier, const Visit& now) const {
+  T separation(const Visit& earlier, const Event& now) const {
     using std::abs;
     using std::sqrt;
-    if (!(now.time > earlier.time) || !same_mode(earlier.mode, now.mode)) return never;
+    if (!same_mode(earlier.mode, now.mode) || !(now.time > earlier.time)) return never;
     const T length = earlier.extent.length();
     if (!(length > T(rest_tolerance) * abs(now.state.x))) return never;
     const T rounded = rounding<T> * std::max(abs(now.state.x), length);
@@ -146,7 +148,7 @@ class CycleDetector {
       const T beyond = abs(one - other) - known;
       return beyond > 0 ? beyond / scale : T(0);
     };
-    const State<T>&one = earlier.state, other = now.state;
+    const State<T>&one = earlier.state, &other = now.state;
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
     const T speed = earlier.extent.speed();
     T most = std::max(apart(one.x, other.x, rounded, length),
@@ -160,17 +162,36 @@ class CycleDetector {
     return most;
   }
 
-  /// Updates the contraction with the distance of the next return of the followed period. True if the
-  /// remaining returns together, a geometric series, stay within the tolerance.
-  bool approaches(T distance) {
-    const T ratio = distance / distance_;
+  /// Compares an event with a kept one. True if it closes a cycle; a near return is followed.
+  bool returns_to(Visit& earlier, const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
+    extend(earlier, ended, now);
+    const T distance = separation(earlier, now);
+    if (distance <= T(return_tolerance)) return close(earlier, now, outcome);
+    if (distance < near_return && (period_ == 0 || distance < distance_)) {
+      period_ = count_ - earlier.index;
+      distance_ = distance;
+      ratio_ = T(1);
+      keep(followed_, now);
+    }
+    return false;
+  }
+
+  /// Compares the next return of the followed period. True if the remaining returns together, a geometric
+  /// series, stay within the tolerance, so that the cycle is closed.
+  bool approaches(const Segment<T>& ended, const Event& now, Outcome<T>& outcome) {
+    if (count_ == followed_.index) return false;
+    extend(followed_, ended, now);
+    if (count_ != followed_.index + period_) return false;
+    const T distance = separation(followed_, now), ratio = distance / distance_;
     const T slower = std::max(ratio, ratio_);
     ratio_ = ratio;
     distance_ = distance;
     if (!(ratio < 1)) period_ = 0;
-    if (distance <= T(return_tolerance)) return true;
-    return slower < 1 && distance <= T(approach_step) &&
-           distance / (1 - slower) <= T(approach_tolerance);
+    const bool within = slower < 1 && distance <= T(approach_step) &&
+                        distance / (1 - slower) <= T(approach_tolerance);
+    if (within || distance <= T(return_tolerance)) return close(followed_, now, outcome);
+    keep(followed_, now);
+    return false;
   }
 
   /// Compares the duration of a window of events with that of the window before.
@@ -205,11 +226,12 @@ class CycleDetector {
     block_ = {};
   }
 
-  void close(const Visit& begin, const Visit& now, Outcome<T>& outcome) const {
+  bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
     outcome.period = now.time - begin.time;
     const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // it does not graze
     outcome.end = sticks ? End::stick_slip : End::limit_cycle;
     outcome.cycle_begin = begin.time;
+    return true;
   }
 
   const Drive<T>& drive_;

@@ -233,7 +233,8 @@ def ending(motion: Motion) -> str:
     if end.kind == "steady":
         rounds = f" ({end.rounds:.0f} rounds)" if end.rounds > 1.0 else ""
         return (
-            f"Steady {end.cycle} oscillation about x = {place} from {duration(end.steady_since)} on: "
+            f"Steady {end.cycle} oscillation about x = {place} "
+            f"from {duration(end.steady_since)} on: "
             f"amplitude {_POSITION.text(end.amplitude)}, period {duration(end.period)}{rounds}, "
             f"peak velocity {_VELOCITY.text(end.peak_velocity)}."
         )
