@@ -90,8 +90,8 @@ class SeriesSegment {
 
   /// The time at which a moving pin turns; infinite if it does not within the step.
   T turning_point() const {
+    if (!step_ || step_->velocity.c[0] == 0) return never;
     const Polynomial<T>& velocity = step_->velocity;
-    if (velocity.c[0] == 0) return never;
     return first_zero(velocity.c[0] > 0 ? velocity : T(-1) * velocity);
   }
 

@@ -72,10 +72,10 @@ void irregular() {
                         {0.01, 5e-4, 0});
   const auto motion = drive.motion();
   const auto found = pd::steady_numbers(motion);
-  expect(
-      drive.outcome.end == pd::End::irregular &&
-          drive.segments.size() < 3 * pd::detail::irregular_window * pd::detail::irregular_windows,
-      "a chaotic motion is irregular after a stated number of events");
+  expect(drive.outcome.end == pd::End::irregular &&
+             drive.segments.size() <
+                 std::size_t{3} * pd::detail::irregular_window * pd::detail::irregular_windows,
+         "a chaotic motion is irregular after a stated number of events");
   expect(motion.known_until() == drive.outcome.until, "it is known until there");
   std::printf("# end %d, %zu segments, %g to %g m, period %g, %g rounds\n",
               static_cast<int>(drive.outcome.end), drive.segments.size(), found.least_amplitude,

@@ -92,8 +92,8 @@ struct Cycles {
   int none{}, other{}, late_found{}, early{}, late{}, cycles{}, irregular{};
 };
 
-/// Samples x(t) backwards beside the periodic continuation of its last period: where does it differ by more
-/// than a part of the amplitude?
+/// Time from which samples of x(t), taken backwards, agree with the periodic continuation of the last period to a
+/// part of the amplitude, s.
 double begin_by_sampling(const pd::Motion<double>& motion, double until, double period,
                          double part) {
   constexpr int samples = 64;  // in a period
@@ -103,9 +103,11 @@ double begin_by_sampling(const pd::Motion<double>& motion, double until, double 
   const auto [low, high] = std::minmax_element(last.begin(), last.end());
   const double tolerance =
       part * (*high - *low) / 2 + 1e-15 * std::max(std::abs(*low), std::abs(*high));
-  for (long long i = 1; until - i * step > 0; ++i)
-    if (std::abs(place(motion, until - i * step)[0] - last[(i - 1) % samples]) > tolerance)
-      return until - (i - 1) * step;
+  const auto at = [&](long long i) { return until - static_cast<double>(i) * step; };
+  for (long long i = 1; at(i) > 0; ++i) {
+    const double continued = last[static_cast<std::size_t>((i - 1) % samples)];
+    if (std::abs(place(motion, at(i))[0] - continued) > tolerance) return at(i - 1);
+  }
   return 0;
 }
 
