@@ -74,7 +74,7 @@ def core() -> Path:
     compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
     call(
         *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-DNDEBUG", "-s"),
-        *("-mllvm", "-inline-threshold=150"),  # more makes the page larger than it may be
+        *("-mllvm", "-inline-threshold=50"),  # more makes the page larger than it may be
         *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
         *sorted((ROOT / "capi").glob("*.cpp")),
         *("-o", str(target)),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "pindrive/extrema.hpp"
@@ -33,8 +34,11 @@ class Settling {
     T size = abs(x_end);
     for (const Segment<T>& segment : motion_)
       size = std::max(size, abs(segment.flow.position.start));
-    // What turns at the edge of the band to rounding stays within.
-    const T error = 16 * detail::rounding<T> * size;
+    // What turns at the edge of the band to rounding stays within. A pin that is at rest by the rest criterion
+    // would have moved on by that, times the ratio of its slowest and fastest rates.
+    const bool by_criterion = std::prev(motion_.end())->without == FastPart::motion;
+    const T part = by_criterion ? 64 * T(detail::rest_tolerance) : 16 * detail::rounding<T>;
+    const T error = part * size;
     const bool returns = !(abs(way) > error);  // to where it began: the band has no width
     const bool rests = motion_.outcome().end == End::resting;
     const T since =

@@ -29,7 +29,9 @@ export function sentence(view: View, statusText: (status: number) => string): st
   const parts = [`Ending: ${ENDINGS[curves.end]}`];
   if (curves.end === "resting") parts[0] += ` at ${of("ending.position")}`;
   if (Number.isFinite(curves.numbers["ending.period"]!)) parts.push(`period ${of("ending.period")}`);
-  if (Number.isFinite(curves.numbers["transient.settling_time"]!))
+  if (Number.isFinite(curves.numbers["ending.steady_since"]!))
+    parts.push(`steady from ${of("ending.steady_since")} on`);
+  else if (Number.isFinite(curves.numbers["transient.settling_time"]!))
     parts.push(`settled after ${of("transient.settling_time")}`);
   const count = curves.events.length;
   parts.push(`${count} event${count === 1 ? "" : "s"}`);
