@@ -25,6 +25,9 @@ inline constexpr int standstill_limit = 100;
 /// above the rounding of the events of one period.
 inline constexpr double return_tolerance = 1e-12;
 
+/// Distance below which returns are followed from one to the next, as a part of the natural scales.
+inline constexpr double near_return = 1e-3;
+
 /// Bound of the distance between a cycle that is approached geometrically and the simulated period that stands
 /// for it, and largest difference between begin and end of that period, as parts of the natural scales.
 inline constexpr double approach_tolerance = 1e-9, approach_step = 1e-10;
@@ -41,6 +44,13 @@ inline constexpr int irregular_window = 240, irregular_windows = 64;
 /// Speed below which a pin is at rest, as a part of |x| ω0: below what a decay leaves of the digits of the
 /// position (MODEL, section 10).
 inline constexpr double rest_tolerance = 3e-11;
+
+/// Error of the band of the settling time, as a part of the largest position: that of a sum of some dozens of
+/// roundings; and what a pin that rests by the rest criterion would still have moved, `rest_tolerance` times the
+/// ratio of its fastest and slowest rates.
+template <class T>
+inline constexpr T band_error = 16 * rounding<T>;
+inline constexpr double band_error_at_rest = 64 * rest_tolerance;
 
 /// So much of a radian before the end of a segment, what is there to rounding is at the end: the velocity
 /// at an event is set exactly, and its closed form comes to zero a little sooner or later.

@@ -343,6 +343,8 @@ struct Outcome {
   T cycle_begin{
       0};  ///< … from here, s; of an irregular motion, begin of the stretch that is measured
 
+  /// True if the state is known at all times, not only as far as it was simulated.
+  bool known() const { return end != End::moving && end != End::irregular; }
   bool steady() const { return cycles() || end == End::free || end == End::grazing; }
   bool cycles() const { return end == End::stick_slip || end == End::limit_cycle; }
 };

@@ -77,9 +77,7 @@ class Motion {
 
   /// The last time at which the state is known: for ever once the ending is.
   T known_until() const {
-    return outcome_.end == End::moving || outcome_.end == End::irregular
-               ? outcome_.until
-               : std::numeric_limits<T>::infinity();
+    return outcome_.known() ? std::numeric_limits<T>::infinity() : outcome_.until;
   }
 
   /// The segment that follows one, in a cycle its first one after the last; null without one.

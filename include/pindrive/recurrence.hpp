@@ -1,7 +1,7 @@
 /// Detection of steady motions by recurrence (docs/theory.md, section 5).
 ///
 /// A cycle is found in two phases (Brent 1980). `CycleDetector` finds its period during the simulation, by
-/// comparing the state after each event with one kept state. `steady_since` finds its beginning afterwards,
+/// comparing the state after each event with kept states. `steady_since` finds its beginning afterwards,
 /// from the stored segments.
 #pragma once
 
@@ -122,8 +122,6 @@ class CycleDetector {
   /// Events after which the recent state is renewed.
   static constexpr long long short_memory = 32;
   static constexpr int windows_in_block = irregular_windows / 8;
-  /// Distance below which a return is followed, as a part of the natural scales.
-  static constexpr double near_return = 1e-3;
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   void keep(Visit& visit, const Event& now) const {

@@ -34,10 +34,9 @@ class Settling {
     T size = abs(x_end);
     for (const Segment<T>& segment : motion_)
       size = std::max(size, abs(segment.flow.position.start));
-    // What turns at the edge of the band to rounding stays within. A pin that is at rest by the rest criterion
-    // would have moved on by that, times the ratio of its slowest and fastest rates.
+    // What turns at the edge of the band to its error stays within.
     const bool by_criterion = std::prev(motion_.end())->without == FastPart::motion;
-    const T part = by_criterion ? 64 * T(detail::rest_tolerance) : 16 * detail::rounding<T>;
+    const T part = by_criterion ? T(detail::band_error_at_rest) : detail::band_error<T>;
     const T error = part * size;
     const bool returns = !(abs(way) > error);  // to where it began: the band has no width
     const bool rests = motion_.outcome().end == End::resting;

@@ -63,7 +63,7 @@ class Simulation : private Selection<T> {
       } else if (tau == never) {
         end_with(segment, outcome_);
       }
-      if (finished && tau < never && inputs_.duration < never) {
+      if (finished && !outcome_.known() && inputs_.duration < never) {
         segment.end = inputs_.duration;
         segment.moved = segment.flow.after(segment.end - segment.begin);
       }
@@ -150,18 +150,21 @@ class Simulation : private Selection<T> {
     if (!stop_.holds()) stop_.add_guards(guards_, state_, segment.flow);
   }
 
+  /// Speed below which a pin is at rest, m/s. The place of rest may be 0: the scale is the largest term of x.
+  T rest_speed() const {
+    using std::sqrt;
+    return T(rest_tolerance) * state_.x_size * sqrt(drive_.stiffness / drive_.mass);
+  }
   /// True if a pin that no contact holds is at rest by the rest criterion (MODEL, section 10), for ever: under
   /// constant inputs forces balance and the speed has decayed.
   bool in_equilibrium() const {
     using std::abs;
-    using std::sqrt;
     const State<T>& s = state_;
     if (row_ < never || held() || plate_.surface.rate != 0 || plate_.across.rate != 0) return false;
     if (force_.rate != 0 || plate_.load.rate != 0 || finger_.load.rate != 0 || finger_.lags())
       return false;
-    const T still = T(rest_tolerance) * s.x_size;  // the place of rest may be 0
-    return abs(s.v) <= still * sqrt(drive_.stiffness / drive_.mass) &&
-           drive_.mass * abs(acceleration_) <= still * drive_.stiffness;
+    return abs(s.v) <= rest_speed() &&
+           drive_.mass * abs(acceleration_) <= T(rest_tolerance) * drive_.stiffness * s.x_size;
   }
   /// The segment of a pin in equilibrium.
   void stay(Segment<T>& segment, const Force<T>& plate, const Force<T>& finger) {
@@ -288,9 +291,7 @@ class Simulation : private Selection<T> {
   /// rigid surface at rest is at rest, and its friction may hold it.
   void come_to_rest() {
     using std::abs;
-    using std::sqrt;
-    const T still = T(rest_tolerance) * state_.x_size * sqrt(drive_.stiffness / drive_.mass);
-    if (state_.v == 0 || !(abs(state_.v) <= still)) return;
+    if (state_.v == 0 || !(abs(state_.v) <= rest_speed())) return;
     for (Side* side : {&plate_, &finger_}) {
       if (!side->sliding() || side->oblique() || !side->contact.rigid()) continue;
       if (side->surface.value != 0 || side->surface.rate != 0) continue;

@@ -89,7 +89,7 @@ bool judged(std::uint64_t seed, std::uint64_t number, std::uint64_t& given_up) {
 // ---- cycles ----------------------------------------------------------------------------------------
 
 struct Cycles {
-  int none{}, other{}, late_found{}, early{}, late{}, cycles{}, irregular{};
+  int none{}, other{}, late_found{}, early{}, late{}, cycles{};
 };
 
 /// Time from which samples of x(t), taken backwards, agree with the periodic continuation of the last period to a
