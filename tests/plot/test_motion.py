@@ -197,7 +197,8 @@ def test_cycle_goes_on_round_after_round(drawn: dict[str, tuple[Motion, Figure]]
     times = events(panel(figure, "v"), "stick", "plate")[0] / 1e3
     assert len(times) > 2
     assert np.diff(times) == pytest.approx(motion.ending.period)
-    assert len(spans(panel(figure, "v"), "carried")) == len(times) + 1  # it starts carried
+    before = times[times < motion.duration * (1 - 1e-9)]  # the picture ends at a stick
+    assert len(spans(panel(figure, "v"), "carried")) == len(before) + 1  # it starts carried
 
 
 @pytest.mark.parametrize("name", [name for name in MOTIONS if name not in ("skin", "magnet")])
