@@ -240,6 +240,6 @@ extern "C" pindrive_error pindrive_batch(
     for (std::size_t first = 0; first < points && !attended.stopped(); first += Block::capacity)
       batch->follow(first, std::min<std::size_t>(Block::capacity, points - first), attended);
     if (!attended.stopped()) return PINDRIVE_OK;
-    return fail(PINDRIVE_STOPPED, "the computation was stopped by its caller");
+    return stopped();
   });
 }

@@ -54,6 +54,18 @@ pindrive_error guarded(Function&& function) {
 #endif
 }
 
+/// Whether an input or a friction force is finite and small enough that nothing formed of it overflows.
+inline bool in_range(double value, bool may_be_negative) {
+  return value <= 1e12 && value >= (may_be_negative ? -1e12 : 0);
+}
+constexpr const char* range_of(bool may_be_negative) {
+  return may_be_negative ? "from -1e12 to 1e12" : "from 0 to 1e12";
+}
+
+inline pindrive_error stopped() {
+  return fail(PINDRIVE_STOPPED, "the computation was stopped by its caller");
+}
+
 /// Asks a caller now and then whether to go on.
 class Attended {
  public:

@@ -39,7 +39,7 @@ pindrive_error simulated(std::unique_ptr<pd::OwnedMotion<T>>& motion, pd::Number
   start(at, along);
   motion = std::make_unique<pd::OwnedMotion<T>>(at, along, [&] { return attended.go_on(); });
   if (!attended.stopped()) return PINDRIVE_OK;
-  return fail(PINDRIVE_STOPPED, "the computation was stopped by its caller");
+  return stopped();
 }
 
 template <class T>

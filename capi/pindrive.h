@@ -104,6 +104,8 @@ PINDRIVE_API pindrive_error pindrive_drive_set_curve(pindrive_drive *drive, cons
                                                      const double *speeds, const double *forces,
                                                      size_t count);
 
+/* Inputs, loads and the forces of curves are at most 1e12 in magnitude, in their units. */
+
 /* A release at rest at the spring's rest, with a plate that stands still; null when memory is out. */
 PINDRIVE_API pindrive_release *pindrive_release_new(void);
 PINDRIVE_API void pindrive_release_free(pindrive_release *release);
@@ -361,10 +363,12 @@ PINDRIVE_API pindrive_error pindrive_stepper_set_along(pindrive_stepper *derivat
                                                        const char *input, double value,
                                                        double rate);
 
-/* Goes on to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
- * a contact or an end stop until then. */
+/* Advances to the time `until`, not before now, s; or, where stop_at_event is not 0, to the first event of
+ * a contact or an end stop until then. go_on may be null; where it returns 0 the error is PINDRIVE_STOPPED,
+ * now is the last event reached, and the next step continues from there. */
 PINDRIVE_API pindrive_error pindrive_stepper_step(pindrive_stepper *stepper, double until,
-                                                  int stop_at_event);
+                                                  int stop_at_event, pindrive_go_on go_on,
+                                                  void *context);
 
 typedef struct pindrive_instant {
   double time;                                   /* now, s */

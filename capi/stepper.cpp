@@ -170,20 +170,21 @@ pindrive_error pindrive_stepper_set(pindrive_stepper* stepper, const char* input
   if (!stepper) return null_pointer("stepper");
   if (!input) return null_pointer("input");
   const bool load = std::strcmp(input, "plate_load") == 0 || std::strcmp(input, "finger_load") == 0;
-  if (!std::isfinite(value) || (load && value < 0))
-    return check(input, value, false, load ? "at least 0 and finite" : "finite");
+  if (!in_range(value, !load)) return check(input, value, false, range_of(!load));
   if (!std::isfinite(rate)) return check("rate", rate, false, "finite");
   return stepper->pin->set(input, value, rate);
 }
 
-pindrive_error pindrive_stepper_step(pindrive_stepper* stepper, double until, int stop_at_event) {
+pindrive_error pindrive_stepper_step(pindrive_stepper* stepper, double until, int stop_at_event,
+                                     pindrive_go_on go_on, void* context) {
   if (!stepper) return null_pointer("stepper");
   const double now = stepper->pin->now().time;
   if (!(until >= now) || !std::isfinite(until))
     return fail(PINDRIVE_BAD_VALUE, "until must be finite and at least %.17g s, not %.17g", now,
                 until);
-  const bool came = stepper->pin->step(until, stop_at_event != 0);
-  return came ? PINDRIVE_OK : given_up(stepper->pin->status());
+  Attended attended(go_on, context);
+  if (stepper->pin->step(until, stop_at_event != 0, attended)) return PINDRIVE_OK;
+  return attended.stopped() ? stopped() : given_up(stepper->pin->status());
 }
 
 pindrive_error pindrive_stepper_now(const pindrive_stepper* stepper, pindrive_instant* instant) {

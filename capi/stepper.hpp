@@ -27,7 +27,7 @@ class Following {
   virtual pd::Status status() const = 0;
   virtual pindrive_instant now() const = 0;
   virtual double evaluate(pindrive_quantity quantity) const = 0;
-  virtual bool step(double until, bool stop_at_event) = 0;
+  virtual bool step(double until, bool stop_at_event, Attended& attended) = 0;
   virtual pindrive_error set(const char* input, double value, double rate) = 0;
   virtual pindrive_error set_along(const char* input, double value, double rate) = 0;
   virtual const pd::Stepper<double>* values() const { return nullptr; }  ///< null: derivatives
@@ -66,8 +66,8 @@ class Followed final : public Following {
   pd::Status status() const override { return stepper_.status(); }
   pindrive_instant now() const override;
   double evaluate(pindrive_quantity quantity) const override;
-  bool step(double until, bool stop_at_event) override {
-    return stepper_.step(until, stop_at_event);
+  bool step(double until, bool stop_at_event, Attended& attended) override {
+    return stepper_.step(until, stop_at_event, [&] { return attended.go_on(); });
   }
   pindrive_error set(const char* input, double value, double rate) override {
     return set_input(input, [&](pd::Line<T>& line) { line = {value, rate}; });

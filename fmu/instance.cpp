@@ -276,7 +276,8 @@ pindrive_error Instance::step(double from, double size, bool may_end_early, bool
       error = pulled(stepper_.get(), magnet_, at.time);
     }
     const double next = magnet_.present() ? std::min(until, magnet_.next()) : until;
-    if (!error) error = pindrive_stepper_step(stepper_.get(), next, may_end_early);
+    if (!error)
+      error = pindrive_stepper_step(stepper_.get(), next, may_end_early, nullptr, nullptr);
     if (!error) error = instant(at);
     happens = !error && (at.plate_event != PINDRIVE_NONE || at.finger_event != PINDRIVE_NONE);
   } while (!error && at.time < until && !(may_end_early && happens));

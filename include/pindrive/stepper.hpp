@@ -78,11 +78,15 @@ class Stepper {
     return found;
   }
 
-  /// Goes on to the time `until`, not before now, s; or, if asked to, to the first event of a contact until
-  /// then. Whether it came there: `status` says otherwise why not.
-  bool step(T until, bool stop_at_event = false) {
+  /// Advances to the time `until`, not before now, s; or, with `stop_at_event`, to the first event of a contact
+  /// until then. `go_on` is called after each event. Returns false if the step was not completed: `status` is
+  /// then not ok, or go_on() returned false, and now() is the time of the event reached; the next step continues
+  /// from there.
+  template <class GoOn = Unattended>
+  bool step(T until, bool stop_at_event = false, GoOn go_on = {}) {
     int standing = 0;
-    while (status() == Status::ok && !(next() > until)) {
+    bool stopped = false;
+    while (status() == Status::ok && !stopped && !(next() > until)) {
       const bool together = !(tau_ > 0);
       if (stop_at_event && !together && happens_after(now_)) break;
       before_ = segment_.mode;
@@ -94,11 +98,13 @@ class Stepper {
       if (!together || event.stop != Transition::none) event_.stop = event.stop;
       standing = together ? standing + 1 : 0;
       if (standing > detail::standstill_limit) standstill_ = true;
+      stopped = !go_on();
     }
     if (status() != Status::ok) return false;
-    now_ = stop_at_event && happens_after(now_) ? T(plain(simulation_.time_)) : until;
+    const bool at_event = stopped || (stop_at_event && happens_after(now_));
+    now_ = at_event ? T(plain(simulation_.time_)) : until;
     if (now_ > simulation_.time_) event_ = {};
-    return true;
+    return !stopped;
   }
 
   /// Sets the inputs from now on, values and rates; a load that falls comes to zero at most. A mouse velocity

@@ -216,14 +216,6 @@ export function dampingOf(values: Found): number {
   return 2 * num(values, "drive.damping_ratio") * Math.sqrt(mass) * Math.sqrt(stiffness);
 }
 
-/** Refuses a release whose end is not known: its hand moves across the axis for ever. */
-function checkEnd(values: Found): void {
-  const across = values["motion.across_velocity"] ?? 0;
-  const last = typeof across === "number" ? across : across[across.length - 1]![1];
-  if (last === 0 || values["motion.duration"] != null) return;
-  throw new Refusal("duration", "given where the hand moves across the axis at the end", "None");
-}
-
 /** What is wrong with values that a person set, in one line; empty where nothing is. */
 export function problemOf(values: Values): string {
   const found: Record<string, Value | null> = {};
@@ -250,7 +242,6 @@ export function problemOf(values: Values): string {
     checkStretch(found);
     checkDrive(found);
     checkPhase(found);
-    checkEnd(found);
   } catch (error) {
     if (error instanceof Refusal) return error.message;
     throw error;

@@ -181,7 +181,7 @@ static void mistakes(void) {
       {"finger.stiffness", 0, PINDRIVE_BAD_VALUE, "finger.stiffness must be above 0"},
       {"displacement", NAN, PINDRIVE_BAD_VALUE, "displacement must be finite"},
       {"velocity", INFINITY, PINDRIVE_BAD_VALUE, "velocity must be finite, or NaN"},
-      {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be at least 0"},
+      {"plate_load", -1, PINDRIVE_BAD_VALUE, "row 0 of plate_load must be from 0 to 1e12"},
       {"skin_stretch", 1e-3, PINDRIVE_UNSUPPORTED, "skin_stretch must be NaN for a rigid finger"},
       {"duration", 0, PINDRIVE_BAD_VALUE, "duration must be above 0"},
       {"weight", 1, PINDRIVE_BAD_NAME, "has no weight, but"},
@@ -222,6 +222,20 @@ static void mistakes(void) {
   }
 }
 
+/* The position at a time to which steps lead. */
+static double position_after(pindrive_stepper *stepper, double until, double step) {
+  pindrive_instant now;
+  double x = NAN;
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK, "now");
+  while (now.time < until) {
+    const double next = now.time + step < until ? now.time + step : until;
+    expect(pindrive_stepper_step(stepper, next, 0, NULL, NULL) == PINDRIVE_OK, "step");
+    expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK, "now");
+  }
+  expect(pindrive_stepper_evaluate(stepper, PINDRIVE_POSITION, &x) == PINDRIVE_OK, "position");
+  return x;
+}
+
 static int never(void *context) {
   ++*(int *)context;
   return 0;
@@ -232,12 +246,25 @@ static void stopping(void) {
   pindrive_drive *drive = the_drive();
   pindrive_release *release = the_release();
   pindrive_motion *motion = NULL;
+  pindrive_stepper *stepper = NULL, *other = NULL;
+  pindrive_instant now;
+  double until;
   int asked = 0;
   pindrive_drive_set(drive, "damping", 0);
   pindrive_drive_set(drive, "plate.kinetic", 0);
   pindrive_drive_set(drive, "finger.kinetic", 1e-9);
   refuses(pindrive_simulate(drive, release, never, &asked, &motion), PINDRIVE_STOPPED, "stopped");
   expect(asked == 1 && motion == NULL, "it is asked once and makes no motion");
+  expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "its stepper");
+  expect(pindrive_stepper_new(drive, release, 0, &other) == PINDRIVE_OK, "another one");
+  refuses(pindrive_stepper_step(stepper, 1e6, 0, never, &asked), PINDRIVE_STOPPED, "stopped");
+  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK && now.time > 0 && now.time < 1e6,
+         "it stopped at an event");
+  until = now.time + 0.1;
+  expect(position_after(stepper, until, 0.01) == position_after(other, until, 1),
+         "and continues as if it had not");
+  pindrive_stepper_free(stepper);
+  pindrive_stepper_free(other);
   pindrive_drive_free(drive);
   pindrive_release_free(release);
 }
@@ -275,20 +302,6 @@ static void a_batch(void) {
   pindrive_motion_free(motion);
   pindrive_drive_free(drive);
   pindrive_release_free(release);
-}
-
-/* The position at a time to which steps lead. */
-static double position_after(pindrive_stepper *stepper, double until, double step) {
-  pindrive_instant now;
-  double x = NAN;
-  expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK, "now");
-  while (now.time < until) {
-    const double next = now.time + step < until ? now.time + step : until;
-    expect(pindrive_stepper_step(stepper, next, 0) == PINDRIVE_OK, "step");
-    expect(pindrive_stepper_now(stepper, &now) == PINDRIVE_OK, "now");
-  }
-  expect(pindrive_stepper_evaluate(stepper, PINDRIVE_POSITION, &x) == PINDRIVE_OK, "position");
-  return x;
 }
 
 static void stepping(void) {
@@ -359,14 +372,14 @@ static void stepping(void) {
   pindrive_segment_of(motion, 0, &first);
   expect(pindrive_stepper_now(copy, &now) == PINDRIVE_OK && now.next_event == first.end,
          "it knows its next event");
-  expect(pindrive_stepper_step(copy, 1, 1) == PINDRIVE_OK, "to the next event");
+  expect(pindrive_stepper_step(copy, 1, 1, NULL, NULL) == PINDRIVE_OK, "to the next event");
   expect(pindrive_stepper_now(copy, &now) == PINDRIVE_OK && now.time == first.end &&
              now.finger_event == first.finger_event,
          "where it stops");
 
-  refuses(pindrive_stepper_step(copy, 0, 0), PINDRIVE_BAD_VALUE, "until must be finite");
+  refuses(pindrive_stepper_step(copy, 0, 0, NULL, NULL), PINDRIVE_BAD_VALUE, "until must be finite");
   refuses(pindrive_stepper_set(copy, "plate_load", -1, 0), PINDRIVE_BAD_VALUE,
-          "plate_load must be at least 0 and finite, not -1");
+          "plate_load must be from 0 to 1e12, not -1");
   refuses(pindrive_stepper_set(copy, "mouse_velocity", 0, INFINITY), PINDRIVE_BAD_VALUE,
           "rate must be finite");
   refuses(pindrive_stepper_set(copy, "mass", 1, 0), PINDRIVE_BAD_NAME, "has no input mass");
@@ -434,7 +447,7 @@ static void at_stops(void) {
   pindrive_release_set(release, "force", 0.5);
   expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper with stops");
   do {
-    expect(pindrive_stepper_step(stepper, 1, 1) == PINDRIVE_OK, "to the next event");
+    expect(pindrive_stepper_step(stepper, 1, 1, NULL, NULL) == PINDRIVE_OK, "to the next event");
     pindrive_stepper_now(stepper, &now);
   } while (now.time < 1 && now.stop_event == PINDRIVE_NONE);
   expect(now.stop == 1 && now.stop_event == PINDRIVE_STICKS && now.time < 0.1, "it strikes");
@@ -459,6 +472,27 @@ static void at_stops(void) {
   pindrive_release_free(release);
 }
 
+/* Under a constant transverse velocity a step takes no longer the longer it is. */
+static void slipping_across(void) {
+  const double across[2] = {0.05, 1e12};
+  for (int i = 0; i < 2; ++i) {
+    pindrive_drive *drive = the_drive();
+    pindrive_release *release = the_release();
+    pindrive_stepper *stepper = NULL;
+    double x = NAN;
+    pindrive_release_set(release, "across_velocity", across[i]);
+    expect(pindrive_stepper_new(drive, release, 0, &stepper) == PINDRIVE_OK, "a stepper across");
+    expect(pindrive_stepper_step(stepper, 1e6, 0, NULL, NULL) == PINDRIVE_OK, "a step of 1e6 s");
+    expect(pindrive_stepper_evaluate(stepper, PINDRIVE_POSITION, &x) == PINDRIVE_OK, "position");
+    expect(fabs(x) < 1.5e-3, "it slips across");
+    refuses(pindrive_stepper_set(stepper, "across_velocity", 1e300, 0), PINDRIVE_BAD_VALUE,
+            "across_velocity must be from -1e12 to 1e12");
+    pindrive_stepper_free(stepper);
+    pindrive_drive_free(drive);
+    pindrive_release_free(release);
+  }
+}
+
 int main(void) {
   expect(pindrive_interface() == PINDRIVE_INTERFACE, "the header is that of the library");
   a_motion();
@@ -469,6 +503,7 @@ int main(void) {
   stepping();
   along_no_load();
   at_stops();
+  slipping_across();
   pindrive_motion_free(NULL);
   pindrive_drive_free(NULL);
   pindrive_release_free(NULL);

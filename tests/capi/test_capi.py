@@ -489,7 +489,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
             while time < end:
                 until = min(end, time + random.uniform(0, 0.02))
                 stop = int(random.integers(2))
-                c("stepper_step", stepper, c_double(until), stop)
+                c("stepper_step", stepper, c_double(until), stop, None, None)
                 c("stepper_now", stepper, byref(instant))
                 assert time < instant.time <= until
                 assert instant.next_event > instant.time
@@ -499,7 +499,7 @@ def test_random_steps_lead_to_what_one_simulation_has(c: Interface) -> None:
                     state = c_void_p()
                     c("stepper_copy", stepper, byref(state))
                     c("stepper_set", stepper, b"plate_load", c_double(2), c_double(-30))
-                    c("stepper_step", stepper, c_double(time + 0.1), 0)
+                    c("stepper_step", stepper, c_double(time + 0.1), 0, None, None)
                     c.free(stepper=stepper)
                     stepper, kept = state, kept + 1
                 at_stops += instant.stop != 0

@@ -224,7 +224,7 @@ def test_chaotic_motion_is_irregular_and_ends() -> None:
 def test_constant_transverse_velocity_ends(finger: Contact) -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.4, plate=Contact(0.02), finger=finger)
     release = Release(0.1, 1.5e-3, across_velocity=0.05)
-    motion, later = (simulate(drive, release, duration=duration) for duration in (10.0, 1e6))
+    motion, later = (simulate(drive, release, duration=duration) for duration in (None, 1e6))
     for each in (motion, later):
         assert each.ending.kind == ("resting" if finger.kinetic and finger.rigid else "decaying")
         assert len(each.segments) < 1000

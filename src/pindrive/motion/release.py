@@ -132,12 +132,6 @@ def check_fits(drive: Drive, release: Release) -> None:
         check_stretch(release.skin_stretch, drive.finger, initial(release.finger_load))
 
 
-def oblique_at_last(release: Release) -> bool:
-    """Whether the hand moves across the axis at the end: then no ending is found."""
-    across = release.across_velocity
-    return (across.values[-1] if isinstance(across, Profile) else across) != 0.0
-
-
 def core_numbers(drive: Drive, release: Release, duration: float | None) -> CoreNumbers:
     """A drive, a release and a duration (s; None: until the ending is seen) as the core has it."""
     plate, finger = drive.plate, drive.finger

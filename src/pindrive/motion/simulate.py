@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from pindrive import _core
 from pindrive.motion.motion import Motion
-from pindrive.motion.release import check_fits, oblique_at_last
+from pindrive.motion.release import check_fits
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
@@ -75,9 +75,6 @@ def simulated(
 ) -> Motion:
     """What `simulate` does, without its warnings: for numbers that no person has written."""
     check_fits(drive, release)
-    if duration is None and oblique_at_last(release):
-        required = "given where the hand moves across the axis at the end"
-        raise ValueError(refusal("duration", required, "None"))
     end = None if duration is None else check("duration", duration)
     if end is not None:
         check_phase(end, drive.natural_frequency)
