@@ -119,8 +119,7 @@ PINDRIVE_API void pindrive_release_free(pindrive_release *release);
  *   displacement    m    x(0), from the spring's rest
  *   velocity        m/s  x'(0); NaN: the plate's, as it is at first
  *   skin_stretch    m    of a compliant finger that grips; NaN: as it slides or, at rest, none
- *   duration        s    > 0; infinite: until the ending is known, as it is at first
- * A velocity across that lasts needs a finite duration. */
+ *   duration        s    > 0; infinite: until the ending is known, as it is at first */
 PINDRIVE_API pindrive_error pindrive_release_set(pindrive_release *release, const char *name,
                                                  double value);
 

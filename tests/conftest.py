@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -29,24 +30,45 @@ def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def c_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the C interface is installed, by the first commands of docs/c.md.
+    """Where the C interface is installed, by the first commands of docs/c.md."""
 
-    It is compiled once in a test run, whatever the number of workers.
+    def build(folder: Path) -> None:
+        for command in blocks(DOCS / "c.md")[0].text.splitlines():
+            _build(command, folder)
+
+    return _made_once(tmp_path_factory, "c-library", build) / "prefix"
+
+
+@pytest.fixture(scope="session")
+def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the C++ tests, `fuzz` and `endings` are built.
+
+    Compiling takes longer than running: -O1 halves the one and hardly adds to the other.
     """
+
+    def build(folder: Path) -> None:
+        quick = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
+        _run("cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DPINDRIVE_TESTS=ON", *quick)
+        _run("cmake", "--build", folder)
+
+    return _made_once(tmp_path_factory, "programs", build)
+
+
+def _made_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
+    """A folder that is built once in a test run, whatever the number of workers."""
     if sys.platform == "win32":
         pytest.skip("where the library lies is tested on the others")
     import fcntl
 
-    base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "c-library"
+    base = factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / name
     folder.mkdir(exist_ok=True)
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "done").exists():
-            for command in blocks(DOCS / "c.md")[0].text.splitlines():
-                _build(command, folder)
+            build(folder)
             (folder / "done").touch()
-    return folder / "prefix"
+    return folder
 
 
 def _build(command: str, folder: Path) -> None:
@@ -56,6 +78,10 @@ def _build(command: str, folder: Path) -> None:
     if "-S" in words:  # the bits are the same at -O1, half of the time is not
         words += ["-G", "Ninja", "-DCMAKE_INSTALL_LIBDIR=lib"]
         words += ["-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"]
-    words[0] = shutil.which(words[0], path=str(Path(sys.executable).parent)) or words[0]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    _run(*words)
+
+
+def _run(program: str, *words: str | Path) -> None:
+    found = shutil.which(program, path=str(Path(sys.executable).parent)) or program
+    done = subprocess.run([found, *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -9,9 +9,7 @@ import shutil
 import subprocess
 import sys
 from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
-from dataclasses import dataclass, field
-from itertools import pairwise
-from math import inf, nan
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import pindrive as pd
+from c_interface import QUANTITIES, Event, Interface, Outcome, Segment, doubles
+from core_case import Case, line
 from pindrive import Status, _core
 from pindrive.quantities.results import ENDING, TRANSIENT
 
@@ -67,65 +67,6 @@ def test_the_example_of_the_header_is_a_program(c_library: Path, tmp_path: Path)
 
 # ---- random drives, to the bit -------------------------------------------------------------------
 
-Rows = list[tuple[float, float]]
-
-
-@dataclass
-class Case:
-    """A drive and a release in the core's numbers; the default is that of the README."""
-
-    numbers: dict[str, float] = field(
-        default_factory=lambda: {
-            "mass": 0.010,
-            "stiffness": 100.0,
-            "damping": 0.40,
-            "plate.kinetic": 0.020,
-            "plate.static": 0.020,
-            "finger.kinetic": 0.005,
-            "finger.static": 0.005,
-            "finger.stiffness": inf,
-            "travel": inf,
-            "stop_stiffness": inf,
-            "stop_damping": 0.0,
-            "displacement": 1.5e-3,
-            "velocity": 0.10,
-            "skin_stretch": nan,
-            "duration": inf,
-        }
-    )
-    curves: dict[str, Rows] = field(default_factory=lambda: {"plate": [], "finger": []})
-    inputs: dict[str, Rows] = field(
-        default_factory=lambda: {
-            "mouse_velocity": [(0.0, 0.10)],
-            "plate_load": [(0.0, 1.0)],
-            "force": [(0.0, 0.0)],
-            "across_velocity": [(0.0, 0.0)],
-            "finger_load": [(0.0, 1.0)],
-        }
-    )
-
-    def as_core(self) -> tuple[Any, ...]:
-        """In the order of the extension."""
-        n = self.numbers
-
-        def contact(name: str, stiffness: float) -> tuple[float, float, float, Rows]:
-            kinetic, at_rest = n[f"{name}.kinetic"], n[f"{name}.static"]
-            return kinetic, at_rest, stiffness, self.curves[name]
-
-        return (
-            *(n["mass"], n["stiffness"], n["damping"]),
-            *(contact("plate", inf), contact("finger", n["finger.stiffness"])),
-            *(self.inputs["mouse_velocity"], self.inputs["plate_load"]),
-            *(n["displacement"], n["velocity"], n["skin_stretch"], self.inputs["force"]),
-            self.inputs["across_velocity"],
-            self.inputs["finger_load"],
-            (n["travel"], n["stop_stiffness"], n["stop_damping"]),
-            n["duration"],
-        )
-
-    def core(self) -> _core.Motion:
-        return _core.simulate(*self.as_core())
-
 
 def drawn(random: np.random.Generator) -> Case:
     """A drive of any kind that the core can follow."""
@@ -171,119 +112,6 @@ def drawn(random: np.random.Generator) -> Case:
     if random.integers(3) == 0:
         n["duration"] = between(0.01, 1)
     return case
-
-
-def doubles(values: Any) -> Any:
-    """An array as C takes it."""
-    return np.ascontiguousarray(values, float).ctypes.data_as(POINTER(c_double))
-
-
-class Interface:
-    """The installed library."""
-
-    def __init__(self, c_library: Path) -> None:
-        name = "libpindrive.dylib" if sys.platform == "darwin" else "libpindrive.so"
-        self.library = ctypes.CDLL(str(c_library / "lib" / name))
-        for function in ("drive_new", "release_new", "drive_rate_new", "release_rate_new"):
-            getattr(self.library, f"pindrive_{function}").restype = c_void_p
-        for function in ("number", "energy", "certificate"):
-            getattr(self.library, f"pindrive_{function}_count").restype = c_size_t
-            getattr(self.library, f"pindrive_{function}_name").restype = c_char_p
-        self.library.pindrive_last_error.restype = c_char_p
-        self.library.pindrive_status_text.restype = c_char_p
-
-    def __call__(self, name: str, *arguments: Any) -> int:
-        """Calls a function that may fail, which it must not; 1 where there was more."""
-        error: int = getattr(self.library, f"pindrive_{name}")(*arguments)
-        assert error <= 1, self.library.pindrive_last_error()
-        return error
-
-    def names(self, of: str) -> list[str]:
-        count = getattr(self.library, f"pindrive_{of}_count")()
-        name = getattr(self.library, f"pindrive_{of}_name")
-        return [name(c_size_t(i)).decode() for i in range(count)]
-
-    def filled(self, case: Case, drive: c_void_p, release: c_void_p) -> tuple[c_void_p, c_void_p]:
-        """A drive and a release with the numbers of a case."""
-        for contact, rows in case.curves.items():
-            if rows:
-                speeds, forces = zip(*rows, strict=True)
-                count = c_size_t(len(rows))
-                self(
-                    "drive_set_curve",
-                    drive,
-                    contact.encode(),
-                    *map(doubles, (speeds, forces)),
-                    count,
-                )
-        for name, value in case.numbers.items():
-            ours = name in ("displacement", "velocity", "skin_stretch", "duration")
-            target, of = (release, "release") if ours else (drive, "drive")
-            self(f"{of}_set", target, name.encode(), c_double(value))
-        for name, rows in case.inputs.items():
-            times, values = map(doubles, zip(*rows, strict=True))
-            self("release_set_profile", release, name.encode(), times, values, c_size_t(len(rows)))
-        return drive, release
-
-    def given(self, case: Case) -> tuple[c_void_p, c_void_p]:
-        new = (self.library.pindrive_drive_new, self.library.pindrive_release_new)
-        return self.filled(case, *(c_void_p(make()) for make in new))
-
-    def rate(self, case: Case, drive: c_void_p, release: c_void_p) -> tuple[c_void_p, c_void_p]:
-        of_drive, of_release = (
-            c_void_p(make(of))
-            for make, of in (
-                (self.library.pindrive_drive_rate_new, drive),
-                (self.library.pindrive_release_rate_new, release),
-            )
-        )
-        return self.filled(case, of_drive, of_release)
-
-    def free(self, **handles: c_void_p) -> None:
-        for kind, handle in handles.items():
-            getattr(self.library, f"pindrive_{kind.partition('_')[0]}_free")(handle)
-
-
-QUANTITIES = (
-    *("position", "velocity", "acceleration", "plate_force", "finger_force"),
-    *("stretch", "stretch_rate", "stop_force"),
-)
-"""In the order of pindrive_quantity."""
-
-
-class Outcome(ctypes.Structure):
-    """pindrive_outcome."""
-
-    _fields_ = (
-        ("status", ctypes.c_int),
-        ("end", ctypes.c_int),
-        ("steady_since", c_double),
-        ("period", c_double),
-        ("known_until", c_double),
-        ("simulated", c_double),
-        ("cycle_begin", c_double),
-        ("segments", c_size_t),
-    )
-
-
-class Segment(ctypes.Structure):
-    """pindrive_segment."""
-
-    _fields_ = (
-        *((name, c_double) for name in ("begin", "end", "position", "velocity", "acceleration")),
-        ("acceleration_bound", c_double),
-        *((name, ctypes.c_int) for name in ("plate", "finger", "plate_branch", "finger_branch")),
-        *((name, ctypes.c_int) for name in ("plate_event", "finger_event", "stop", "stop_event")),
-    )
-
-
-class Event(ctypes.Structure):
-    """pindrive_event."""
-
-    _fields_ = (
-        *((name, c_double) for name in ("time", "position", "velocity")),
-        *((name, ctypes.c_int) for name in ("plate", "finger", "stop")),
-    )
 
 
 @pytest.fixture(scope="module")
@@ -586,15 +414,6 @@ def test_a_batch_has_the_bits_of_python(c: Interface) -> None:
     assert_array_equal(events, expected["events"].values)
     assert not good[7] and good.sum() > 0.99 * points
     c.free(drive=drive, release=release)
-
-
-def line(rows: Rows, time: float) -> tuple[float, float]:
-    """The value and the rate of an input from a time on."""
-    for (t0, y0), (t1, y1) in pairwise(rows):
-        if t0 <= time < t1:
-            rate = (y1 - y0) / (t1 - t0)
-            return y0 + rate * (time - t0), rate
-    return rows[-1][1], 0.0
 
 
 def test_derivatives_have_the_bits_of_python(c: Interface) -> None:

@@ -108,12 +108,9 @@ def test_add_subdirectory(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
-def test_ctest(tmp_path: Path) -> None:
-    # Compiling takes longer than running: -O1 halves the one and hardly adds to the other.
-    quick = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
-    build(ROOT, tmp_path, "-DPINDRIVE_TESTS=ON", *quick)
-    run("ctest", "--test-dir", tmp_path, "--output-on-failure", "--parallel", "2")
-    same_however_it_is_run(tmp_path / "fuzz", tmp_path / "fuzz.log")
+def test_ctest(programs: Path, tmp_path: Path) -> None:
+    run("ctest", "--test-dir", programs, "--output-on-failure", "--parallel", "2")
+    same_however_it_is_run(programs / "fuzz", tmp_path / "fuzz.log")
 
 
 def same_however_it_is_run(fuzz: Path, log: Path) -> None:
