@@ -22,10 +22,12 @@ struct Certificate {
   T transitions{0};   ///< a contact slips from rest only where it cannot stick
   T energy{0};        ///< what goes in, is stored and is dissipated adds up
   T dissipation{0};   ///< friction and damper take energy, never give
+  T period{0};        ///< a steady motion repeats: difference of x beyond 2 `repeat_tolerance`
+  T steady_since{0};  ///< it did not repeat before: periods that it began too late by, beyond one
 
   T worst() const {
     return std::max({motion_law, kinematics, friction_law, force_bound, sliding_sign, sticking,
-                     continuity, transitions, energy, dissipation});
+                     continuity, transitions, energy, dissipation, period, steady_since});
   }
 };
 
@@ -42,6 +44,8 @@ inline constexpr NamedNumber<T, Certificate<T>> certificate_numbers[] = {
     {"transitions", [](const Certificate<T>& c) { return c.transitions; }},
     {"energy", [](const Certificate<T>& c) { return c.energy; }},
     {"dissipation", [](const Certificate<T>& c) { return c.dissipation; }},
+    {"period", [](const Certificate<T>& c) { return c.period; }},
+    {"steady_since", [](const Certificate<T>& c) { return c.steady_since; }},
 };
 
 }  // namespace pindrive

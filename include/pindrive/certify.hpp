@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "pindrive/breakaway.hpp"
 #include "pindrive/certificate.hpp"
 #include "pindrive/evaluated_segment.hpp"
 #include "pindrive/motion.hpp"
+#include "pindrive/period_samples.hpp"
 #include "pindrive/positivity.hpp"
 #include "pindrive/quadrature.hpp"
+#include "pindrive/recurrence.hpp"
 #include "pindrive/segment_guards.hpp"
 
 namespace pindrive {
@@ -51,10 +54,31 @@ class Certifier {
     const T time = std::min(duration_, motion_.outcome().until);
     const T known = detail::rounding<T> * scales_.force * scales_.v * time;
     worst(result_.dissipation, std::max(gained_ - known, T(0)), energy);
+    repetition();
     return result_;
   }
 
  private:
+  /// Holds the samples of a steady motion against its period and its begin.
+  void repetition() {
+    using std::abs;
+    if (!motion_.outcome().steady()) return;
+    const T since = steady_since(motion_);
+    if (!(since <= duration_)) return;
+    const detail::PeriodSamples<T> samples(motion_);
+    const T tolerance = T(detail::repeat_tolerance);
+    // The begin is found from four instants between two events: between those the difference may be larger.
+    raise(result_.period, std::max(samples.difference_since(since) - 2 * tolerance, T(0)));
+    const Outcome<T>& outcome = motion_.outcome();
+    if (!outcome.cycles()) return;  // a mode of its own begins where its mode does
+    // Continuity from the last segment to the begin of the cycle closes a round: it lasts one period.
+    const T round = std::prev(motion_.end())->end - outcome.cycle_begin;
+    const T known = detail::rounding<T> * outcome.until;
+    raise(result_.period, std::max(abs(round - outcome.period) - known, T(0)) / outcome.period);
+    const T begin = std::max(samples.begin(tolerance), detail::last_row(motion_.inputs()));
+    raise(result_.steady_since, std::max((since - begin) / outcome.period - T(1), T(0)));
+  }
+
   /// How deep, as a part of the largest, a guard may dip between two nodes unseen; and how many
   /// panels are walked at each end of a segment before what lies between is leapt over.
   static constexpr T unseen = T(1e-10);

@@ -248,6 +248,14 @@ class CycleDetector {
   T half_time_{0};                 ///< after half of the windows, s
 };
 
+/// Time of the last row of the inputs, s; 0 without rows. No motion is steady before.
+template <class T>
+T last_row(const Inputs<T>& inputs) {
+  T last{0};
+  for (T row; (row = inputs.next_row(last)) < std::numeric_limits<T>::infinity();) last = row;
+  return last;
+}
+
 /// Beginning of a steady motion: the first event from which the motion agrees with its own periodic
 /// continuation into the past.
 ///
@@ -307,12 +315,6 @@ class FirstRepeat {
   T amplitude() const {
     if (!motion_.outcome().cycles()) return std::prev(motion_.end())->flow.amplitude();
     return SteadyMeasurement<T>(motion_).range().half();
-  }
-  /// Time of the last row of the inputs, s; 0 without rows.
-  static T last_row(const Inputs<T>& inputs) {
-    T last{0};
-    for (T row; (row = inputs.next_row(last)) < std::numeric_limits<T>::infinity();) last = row;
-    return last;
   }
 
   const Motion<T>& motion_;

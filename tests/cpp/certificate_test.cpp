@@ -16,7 +16,7 @@ int main() {
       &Certificate::motion_law,  &Certificate::kinematics,   &Certificate::friction_law,
       &Certificate::force_bound, &Certificate::sliding_sign, &Certificate::sticking,
       &Certificate::continuity,  &Certificate::transitions,  &Certificate::energy,
-      &Certificate::dissipation,
+      &Certificate::dissipation, &Certificate::period,       &Certificate::steady_since,
   };
   const auto& numbers = pd::certificate_numbers<double>;
   expect(Certificate{}.worst() == 0, "nothing found, nothing wrong");

@@ -92,25 +92,6 @@ struct Cycles {
   int none{}, other{}, late_found{}, early{}, late{}, cycles{};
 };
 
-/// Time from which samples of x(t), taken backwards, agree with the periodic continuation of the last period to a
-/// part of the amplitude, s.
-double begin_by_sampling(const pd::Motion<double>& motion, double until, double period,
-                         double part) {
-  constexpr int samples = 64;  // in a period
-  const double step = period / samples;
-  std::vector<double> last(samples);
-  for (int i = 0; i < samples; ++i) last[i] = place(motion, until - (i + 1) * step)[0];
-  const auto [low, high] = std::minmax_element(last.begin(), last.end());
-  const double tolerance =
-      part * (*high - *low) / 2 + 1e-15 * std::max(std::abs(*low), std::abs(*high));
-  const auto at = [&](long long i) { return until - static_cast<double>(i) * step; };
-  for (long long i = 1; at(i) > 0; ++i) {
-    const double continued = last[static_cast<std::size_t>((i - 1) % samples)];
-    if (std::abs(place(motion, at(i))[0] - continued) > tolerance) return at(i - 1);
-  }
-  return 0;
-}
-
 void judge_cycle(std::uint64_t seed, std::uint64_t number, Cycles& found) {
   const Case c = self_excited_drive(seed, number);
   const Given given(c);
@@ -132,10 +113,9 @@ void judge_cycle(std::uint64_t seed, std::uint64_t number, Cycles& found) {
   } else {
     ++found.cycles;
     const double since = pd::steady_since(motion), period = outcome.period;
-    const double begin = begin_by_sampling(motion, outcome.until, period, 1e-8);
-    const double step = period / 64;
-    const bool early = begin > since + 2 * step &&
-                       begin_by_sampling(motion, outcome.until, period, 3e-8) > since + 2 * step;
+    const pd::detail::PeriodSamples<double> samples(motion);
+    const double begin = samples.begin(1e-8), after = since + 2 * samples.step();
+    const bool early = begin > after && samples.begin(3e-8) > after;
     // Sampling sees a difference between two events where the motion itself changes at these only.
     const bool late = begin < since - period;
     const double rounds = (outcome.until - begin) / period;

@@ -81,10 +81,10 @@ inline void print(const char* name, const Verdict& verdict) {
   std::printf(
       "%s: status %d, %zu segments; law %.1e kinematics %.1e friction %.1e bound %.1e "
       "sign %.1e sticking %.1e continuity %.1e transitions %.1e energy %.1e dissipation %.1e "
-      "mirror %.1e cut %.1e\n",
+      "period %.1e steady since %.1e mirror %.1e cut %.1e\n",
       name, static_cast<int>(verdict.status), verdict.segments, r.motion_law, r.kinematics,
       r.friction_law, r.force_bound, r.sliding_sign, r.sticking, r.continuity, r.transitions,
-      r.energy, r.dissipation, verdict.mirror, verdict.cut);
+      r.energy, r.dissipation, r.period, r.steady_since, verdict.mirror, verdict.cut);
 }
 
 }  // namespace fuzz

@@ -34,6 +34,24 @@ class Mutant:
 
 MUTANTS = (
     Mutant(
+        "a cycle's period is a thousandth too long",
+        "recurrence.hpp",
+        "outcome.period = now.time - begin.time;",
+        "outcome.period = (now.time - begin.time) * T(1.001);",
+    ),
+    Mutant(
+        "a motion is steady before it repeats",
+        "recurrence.hpp",
+        "const T tolerance = T(repeat_tolerance) * amplitude();",
+        "const T tolerance = T(1e-3) * amplitude();",
+    ),
+    Mutant(
+        "a motion is steady from where its period was found on",
+        "recurrence.hpp",
+        "for (T since = known_; since > last_row_;) {",
+        "for (T since = known_; since > last_row_;) {\n      if (known_ > 0) return known_;",
+    ),
+    Mutant(
         "breaks away and crosses to the wrong side",
         "friction.hpp",
         "return inwards > 0 ||",

@@ -19,7 +19,7 @@ struct Law {
   const char* name;
   double (*residual)(const Verdict&);
 };
-inline constexpr std::array<Law, 12> laws{{
+inline constexpr std::array<Law, 14> laws{{
     {"motion_law", [](const Verdict& v) { return v.certificate.motion_law; }},
     {"kinematics", [](const Verdict& v) { return v.certificate.kinematics; }},
     {"friction_law", [](const Verdict& v) { return v.certificate.friction_law; }},
@@ -30,6 +30,8 @@ inline constexpr std::array<Law, 12> laws{{
     {"transitions", [](const Verdict& v) { return v.certificate.transitions; }},
     {"energy", [](const Verdict& v) { return v.certificate.energy; }},
     {"dissipation", [](const Verdict& v) { return v.certificate.dissipation; }},
+    {"period", [](const Verdict& v) { return v.certificate.period; }},
+    {"steady_since", [](const Verdict& v) { return v.certificate.steady_since; }},
     {"mirror", [](const Verdict& v) { return v.mirror; }},
     {"cut", [](const Verdict& v) { return v.cut; }},
 }};

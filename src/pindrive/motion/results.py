@@ -328,6 +328,8 @@ class Certificate:
     transitions: float
     energy: float
     dissipation: float
+    period: float
+    steady_since: float
 
     @property
     def worst(self) -> float:

@@ -157,6 +157,8 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
     ),
     Quantity("certificate.energy", "r_E", "1", "the energy ledger closes"),
     Quantity("certificate.dissipation", "r_D", "1", "friction and damper never feed energy in"),
+    Quantity("certificate.period", "r_T", "1", "a steady motion repeats after its period"),
+    Quantity("certificate.steady_since", "r_S", "1", "and did not repeat a period earlier"),
 )
 """The largest residual of each law, relative to the size of its terms."""
 
