@@ -73,8 +73,8 @@ def core() -> Path:
     target = BUILD / "core.wasm"
     compiler = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
     call(
-        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-O2", "-DNDEBUG", "-s"),
-        *("-mllvm", "-inline-threshold=50"),  # more makes the page larger than it may be
+        *(*compiler, "-mexec-model=reactor", "-std=c++17", "-DNDEBUG", "-s"),
+        "-Os",  # a fifth slower than -O2, and 60 kB of the page smaller
         *("-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-Iinclude", "-Icapi"),
         *sorted((ROOT / "capi").glob("*.cpp")),
         *("-o", str(target)),
