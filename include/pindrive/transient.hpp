@@ -304,7 +304,6 @@ class Measurement {
 
   /// Use of the contacts in the transient, and their peaks in the whole motion.
   void contacts(Transient<T>& result) const {
-    using std::isnan;
     const Outcome<T>& outcome = motion_.outcome();
     T end = duration_;
     if (outcome.end == End::resting) end = result.rest_time;
@@ -318,12 +317,13 @@ class Measurement {
     result.peak_stretch = used.peak_stretch;
     result.peak_stretch_rate = used.peak_stretch_rate;
     // The peaks of a steady motion are in its first period, those of a decay soon after it begins.
-    const ContactsUse<T> rest = measurement.measure(result.end_time, duration_);
-    result.plate.peak_force = std::max(result.plate.peak_force, rest.plate.peak_force);
-    result.finger.peak_force = std::max(result.finger.peak_force, rest.finger.peak_force);
-    if (isnan(used.peak_stretch)) return;
-    result.peak_stretch = std::max(used.peak_stretch, rest.peak_stretch);
-    result.peak_stretch_rate = std::max(used.peak_stretch_rate, rest.peak_stretch_rate);
+    if (result.end_time < duration_) peaks(result, measurement.measure(result.end_time, duration_));
+  }
+  static void peaks(Transient<T>& result, const ContactsUse<T>& used) {
+    result.plate.peak_force = std::max(result.plate.peak_force, used.plate.peak_force);
+    result.finger.peak_force = std::max(result.finger.peak_force, used.finger.peak_force);
+    result.peak_stretch = std::max(result.peak_stretch, used.peak_stretch);
+    result.peak_stretch_rate = std::max(result.peak_stretch_rate, used.peak_stretch_rate);
   }
 
   /// Numbers of what goes on after the transient, if that is over within the duration.
@@ -331,17 +331,20 @@ class Measurement {
     const Outcome<T>& outcome = motion_.outcome();
     const Drive<T>& drive = motion_.drive();
     const Segment<T>& last = *std::prev(motion_.end());
-    const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
     if (outcome.steady()) {
+      const ContactMeasurement<T, GoOn> measurement(motion_, go_on_);
       const T begin = outcome.cycles() ? outcome.cycle_begin : last.begin;
       const ContactsUse<T> period = measurement.measure(begin, begin + outcome.period);
       result.plate_afterwards.add(period.plate, outcome.period);
       result.finger_afterwards.add(period.finger, outcome.period);
     } else if (outcome.end == End::resting) {
-      // The plate goes on sliding under the pin, at constant speed and friction.
-      const ContactsUse<T> second = measurement.measure(last.begin, last.begin + T(1));
-      result.plate_afterwards.power = second.plate.dissipated;
-      result.finger_afterwards.power = second.finger.dissipated;
+      // The plate continues to slide under the pin, at constant speed and friction.
+      const auto lines = InputLines<T>::of(drive, motion_.inputs(), last);
+      using detail::hypot;
+      const T speed = hypot(lines.plate_velocity.value, lines.across_velocity.value);
+      const T friction = drive.plate.friction_at(speed) * lines.plate_load.value;
+      result.plate_afterwards.power = speed > 0 ? friction * speed : T(0);
+      result.finger_afterwards.power = T(0);
     } else if (outcome.end == End::decaying) {
       T stiffness = drive.stiffness;
       if (last.mode.finger == ContactState::elastic_stick) stiffness += drive.finger.stiffness;
