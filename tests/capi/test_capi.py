@@ -26,9 +26,12 @@ from pindrive.quantities.results import ENDING, TRANSIENT
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
 
-pytestmark = pytest.mark.skipif(
-    sys.platform == "win32", reason="where the library lies is tested on the others"
-)
+pytestmark = [
+    pytest.mark.timeout(1800),  # the first of them compiles the library
+    pytest.mark.skipif(
+        sys.platform == "win32", reason="where the library lies is tested on the others"
+    ),
+]
 
 
 def run(*command: str | Path) -> None:

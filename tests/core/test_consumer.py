@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+COMPILES = pytest.mark.timeout(1800)
 CONSUMER = ROOT / "tests" / "consumer"
 PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
@@ -102,11 +103,13 @@ def test_each_header_has_a_test_file() -> None:
     assert headers <= tested, sorted(headers - tested)
 
 
+@COMPILES
 def test_add_subdirectory(tmp_path: Path) -> None:
     build(CONSUMER, tmp_path / "build", f"-DPINDRIVE_SOURCE={ROOT.as_posix()}")
     check(tmp_path / "build" / "consumer")
 
 
+@COMPILES
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
 def test_ctest(programs: Path, tmp_path: Path) -> None:
     run("ctest", "--test-dir", programs, "--output-on-failure", "--parallel", "2")
@@ -129,6 +132,7 @@ def same_however_it_is_run(fuzz: Path, log: Path) -> None:
     assert "is not the log of seed 6" in other.stderr
 
 
+@COMPILES
 @pytest.mark.skipif(not list(ROOT.glob("tests/cpp/*.cpp")), reason="there are no C++ tests")
 @pytest.mark.sanitizers
 def test_no_sanitizer_complains(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from core_case import Case, line, read
 from fmu_unit import Unit, unpacked
 from pindrive import Status, load_device, simulate, simulate_batch
 
+pytestmark = pytest.mark.timeout(1800)  # the first of them compiles the programs
 COUNT = int(os.environ.get("PINDRIVE_ROUND_DRIVES", "680"))
 """680 has each three of the 17 features once."""
 
