@@ -1,6 +1,6 @@
 """The pages of the site and their blocks of code, each of which a test runs.
 
-How a page is written for that stands in CONTRIBUTING.md, "The site".
+How a page is written for that stands in tests/README.md, "Pages".
 """
 
 from __future__ import annotations
