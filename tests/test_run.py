@@ -14,8 +14,9 @@ import pytest
 from hypothesis import settings
 
 import run
+from tasks import commands, environment, machine
 
-SCRIPT = run.ROOT / "run.py"
+SCRIPT = environment.ROOT / "run.py"
 
 
 @pytest.fixture
@@ -25,19 +26,19 @@ def installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
     def quietly(what: str, command: list[str]) -> None:
         steps.append(what)
-        run.VENV.mkdir(exist_ok=True)
+        environment.VENV.mkdir(exist_ok=True)
 
-    monkeypatch.setattr(run, "VENV", tmp_path / ".venv")
-    monkeypatch.setattr(run, "STAMP", tmp_path / ".venv" / "pindrive.json")
-    monkeypatch.setattr(run, "quietly", quietly)
-    monkeypatch.setattr(run, "fingerprint", lambda: "as it was")
+    monkeypatch.setattr(environment, "VENV", tmp_path / ".venv")
+    monkeypatch.setattr(environment, "STAMP", tmp_path / ".venv" / "pindrive.json")
+    monkeypatch.setattr(environment, "quietly", quietly)
+    monkeypatch.setattr(environment, "fingerprint", lambda: "as it was")
     return steps
 
 
 def refusal(capsys: pytest.CaptureFixture[str]) -> str:
     """The one line with which the machine is refused."""
     with pytest.raises(SystemExit) as stopped:
-        run.check_machine()
+        machine.check_machine()
     assert stopped.value.code == 2
     line = capsys.readouterr().err
     assert line.count("\n") == 1
@@ -50,7 +51,7 @@ def only(*programs: str) -> object:
 
 
 def test_this_machine_has_what_it_takes() -> None:
-    run.check_machine()
+    machine.check_machine()
 
 
 @pytest.mark.parametrize(
@@ -77,14 +78,14 @@ def test_no_compiler(
 def test_the_compiler_named_by_cxx_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", only("clang++-19"))
     monkeypatch.setenv("CXX", "clang++-19 -stdlib=libc++")
-    assert run.compiler() == "clang++-19"
+    assert machine.compiler() == "clang++-19"
 
 
 @pytest.mark.parametrize("module", ["venv", "ensurepip"])
 def test_no_venv_module(
     module: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(run, "has", lambda name: name != module)
+    monkeypatch.setattr(machine, "has", lambda name: name != module)
     monkeypatch.setattr(shutil, "which", only("apt-get"))
     package = "python{}.{}-venv".format(*sys.version_info)
     assert f"sudo apt-get install {package}" in refusal(capsys)
@@ -93,9 +94,9 @@ def test_no_venv_module(
 def test_an_empty_folder_is_no_module(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "hollow").mkdir()
     monkeypatch.syspath_prepend(tmp_path)
-    assert run.has("venv")
-    assert not run.has("hollow")
-    assert not run.has("nowhere")
+    assert machine.has("venv")
+    assert not machine.has("hollow")
+    assert not machine.has("nowhere")
 
 
 def test_no_headers(
@@ -142,16 +143,16 @@ MADE, NEEDS, BUILT = "making .venv", "installing what pindrive needs", "building
 def test_what_is_installed_is_not_installed_again(
     installed: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run.install(set())
+    environment.install(set())
     assert installed == [MADE, NEEDS, BUILT]
-    run.install(set())
+    environment.install(set())
     assert installed[3:] == []
-    monkeypatch.setattr(run, "fingerprint", lambda: "edited")
-    run.install(set())
+    monkeypatch.setattr(environment, "fingerprint", lambda: "edited")
+    environment.install(set())
     assert installed[3:] == [BUILT]
-    run.install({"test"})
+    environment.install({"test"})
     assert installed[4:] == [NEEDS]
-    run.install(set())
+    environment.install(set())
     assert installed[5:] == [], "the extra stays"
 
 
@@ -159,19 +160,19 @@ def test_what_is_installed_is_not_installed_again(
 def test_an_interrupted_setup_is_taken_up_again(
     interrupted: str, installed: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    finish = run.quietly
+    finish = environment.quietly
 
     def quietly(what: str, command: list[str]) -> None:
         finish(what, command)
         if what == interrupted:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(run, "quietly", quietly)
+    monkeypatch.setattr(environment, "quietly", quietly)
     with pytest.raises(KeyboardInterrupt):
-        run.install(set())
-    monkeypatch.setattr(run, "quietly", finish)
+        environment.install(set())
+    monkeypatch.setattr(environment, "quietly", finish)
     installed.clear()
-    run.install(set())
+    environment.install(set())
     assert installed == ([BUILT] if interrupted == BUILT else [MADE, NEEDS, BUILT])
 
 
@@ -179,23 +180,25 @@ def test_an_interrupted_setup_is_taken_up_again(
 def test_an_environment_of_another_python_or_place_is_made_anew(
     key: str, installed: list[str]
 ) -> None:
-    run.install(set())
-    stamp = json.loads(run.STAMP.read_text("utf-8"))
-    run.STAMP.write_text(json.dumps({**stamp, key: "another"}), "utf-8")
+    environment.install(set())
+    stamp = json.loads(environment.STAMP.read_text("utf-8"))
+    environment.STAMP.write_text(json.dumps({**stamp, key: "another"}), "utf-8")
     installed.clear()
-    run.install(set())
+    environment.install(set())
     assert installed == [MADE, NEEDS, BUILT]
 
 
 def test_a_step_that_fails_says_what_it_said(capsys: pytest.CaptureFixture[str]) -> None:
     speak = [sys.executable, "-c", "print('no such header'); raise SystemExit(3)"]
     with pytest.raises(SystemExit, match="building failed"):
-        run.quietly("building", speak)
+        environment.quietly("building", speak)
     assert "no such header" in capsys.readouterr().err
 
 
 def test_the_extras_hold_the_extras_they_name() -> None:
-    build, test, dev = (set(run.requirements({extra})) for extra in ("build", "test", "dev"))
+    build, test, dev = (
+        set(environment.requirements({extra})) for extra in ("build", "test", "dev")
+    )
     assert build < test < dev
     assert all("pindrive" not in line for line in dev)
 
@@ -203,20 +206,20 @@ def test_the_extras_hold_the_extras_they_name() -> None:
 def test_explore_draws_each_seed_and_says_how_to_draw_it_again(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    commands: list[tuple[str, ...]] = []
+    started: list[tuple[str, ...]] = []
 
     def fake(*command: str | Path) -> int:
-        commands.append(tuple(map(str, command)))
+        started.append(tuple(map(str, command)))
         return int("--hypothesis-seed=8" in command)
 
-    monkeypatch.setattr(run, "install", lambda extras: None)
-    monkeypatch.setattr(run, "run", fake)
+    monkeypatch.setattr(commands, "install", lambda extras: None)
+    monkeypatch.setattr(commands, "run", fake)
     assert run.main(["explore", "3", "7"]) == 1
-    seeds = [next(a for a in command if "seed" in a) for command in commands]
+    seeds = [next(a for a in command if "seed" in a) for command in started]
     assert seeds == ["--hypothesis-seed=7", "--hypothesis-seed=8", "--hypothesis-seed=9"]
-    assert all("--hypothesis-profile=explore" in command for command in commands)
-    assert any(a.endswith("test_laws.py") for a in commands[0])
-    assert not any(a.endswith("test_readme.py") for a in commands[0])
+    assert all("--hypothesis-profile=explore" in command for command in started)
+    assert any(a.endswith("test_laws.py") for a in started[0])
+    assert not any(a.endswith("test_readme.py") for a in started[0])
     assert "again with: python3 run.py explore 1 8" in capsys.readouterr().out
     with pytest.raises(SystemExit) as stopped:
         run.main(["explore", "many"])

@@ -4,7 +4,7 @@ import ast
 from importlib.resources import files
 from pathlib import Path
 
-import run
+from tasks.checks import STUB
 
 
 def declarations(text: str) -> str:
@@ -13,7 +13,7 @@ def declarations(text: str) -> str:
 
 def test_the_committed_stub_is_up_to_date() -> None:
     built = files("pindrive").joinpath("_core.pyi").read_text("utf-8")
-    assert declarations(run.STUB.read_text("utf-8")) == declarations(built), (
+    assert declarations(STUB.read_text("utf-8")) == declarations(built), (
         "src/pindrive/_core.pyi is out of date: refresh it with `python3 run.py stubs`"
     )
 

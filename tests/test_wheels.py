@@ -12,13 +12,15 @@ from pathlib import Path
 
 import pytest
 
-import run
+from tasks.commands import wheel
+from tasks.environment import ROOT
+from tasks.fmu_binaries import FMU_PLATFORMS
 from wheels.build import contents, faults, serves
 
-WORKFLOWS = sorted((run.ROOT / ".github" / "workflows").glob("*.yml"))
-PROJECT = tomllib.loads((run.ROOT / "pyproject.toml").read_text("utf-8"))
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 
-LIBRARIES = [f"pindrive/fmu/{name}/pindrive.{end}" for name, (_, end) in run.FMU_PLATFORMS.items()]
+LIBRARIES = [f"pindrive/fmu/{name}/pindrive.{end}" for name, (_, end) in FMU_PLATFORMS.items()]
 WHOLE = ["pindrive/_core.abi3.so", "pindrive/studio.html", *LIBRARIES]
 GOOD = "pindrive-0.1.0-cp312-abi3-manylinux_2_28_x86_64.whl"
 
@@ -26,7 +28,7 @@ GOOD = "pindrive-0.1.0-cp312-abi3-manylinux_2_28_x86_64.whl"
 @pytest.mark.parametrize("name", [GOOD, GOOD.replace("cp312-abi3", "cp311-cp311")])
 def test_a_whole_wheel_is_right(name: str) -> None:
     assert faults(name, 7.9, WHOLE, complete=True) == []
-    assert contents(WHOLE) == (True, sorted(run.FMU_PLATFORMS))
+    assert contents(WHOLE) == (True, sorted(FMU_PLATFORMS))
 
 
 @pytest.mark.parametrize(
@@ -73,7 +75,7 @@ def test_an_action_has_one_version() -> None:
 
 
 def test_three_systems_and_the_oldest_and_a_newer_python_are_tested() -> None:
-    text = (run.ROOT / ".github" / "workflows" / "tests.yml").read_text("utf-8")
+    text = (ROOT / ".github" / "workflows" / "tests.yml").read_text("utf-8")
     assert "system: [ubuntu-latest, windows-latest, macos-latest]" in text
     (versions,) = re.findall(r'python: \["([\d.]+)", "([\d.]+)"\]', text)
     assert PROJECT["project"]["requires-python"] == f">={versions[0]}"
@@ -82,13 +84,13 @@ def test_three_systems_and_the_oldest_and_a_newer_python_are_tested() -> None:
 
 def test_the_extension_forwards_the_component_of_the_stable_abi() -> None:
     """Without it nanobind drops STABLE_ABI and the wheel's tag is untrue."""
-    text = (run.ROOT / "CMakeLists.txt").read_text("utf-8")
+    text = (ROOT / "CMakeLists.txt").read_text("utf-8")
     assert "Development.Module ${SKBUILD_SABI_COMPONENT})" in text
     assert "nanobind_add_module(_core STABLE_ABI" in text
 
 
 def test_the_recipe_asks_for_what_the_project_does() -> None:
-    recipe = (run.ROOT / "recipe" / "recipe.yaml").read_text("utf-8")
+    recipe = (ROOT / "recipe" / "recipe.yaml").read_text("utf-8")
     listed = {line.replace(" ", "") for line in re.findall(r"^    - (.*)", recipe, re.MULTILINE)}
     project = PROJECT["project"]
     needed = {
@@ -100,14 +102,14 @@ def test_the_recipe_asks_for_what_the_project_does() -> None:
     assert {on_conda.get(name, name) for name in needed} - listed == set()
     version = re.findall(
         r"^project\(pindrive VERSION ([\d.]+)",
-        (run.ROOT / "CMakeLists.txt").read_text("utf-8"),
+        (ROOT / "CMakeLists.txt").read_text("utf-8"),
         re.MULTILINE,
     )
     assert re.findall(r'^  version: "(.*)"', recipe, re.MULTILINE) == version
 
 
 def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> None:
-    form = (run.ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
+    form = (ROOT / ".github" / "ISSUE_TEMPLATE" / "wrong-result.yml").read_text("utf-8")
     asked = re.findall(r"id: (\w+)\n(?:.*\n)*?    validations:\n      required: true", form)
     assert {"device", "certificate", "command", "version"} <= set(asked)
 
@@ -115,7 +117,7 @@ def test_who_reports_a_wrong_result_is_asked_for_device_and_certificate() -> Non
 @pytest.mark.parametrize("arguments", [["--whole"], ["--complete", "no-python"]])
 def test_arguments_of_wheel(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
-        run.wheel(arguments)
+        wheel(arguments)
     assert stopped.value.code == 2
     assert " ".join(arguments) in capsys.readouterr().err
 
@@ -126,7 +128,7 @@ def test_a_release_names_the_address_that_its_workflow_runs_in(tmp_path: Path) -
     for name in (*names, "recipe/recipe.yaml", "wheels/address.py"):
         target = tmp_path / name
         target.parent.mkdir(exist_ok=True)
-        shutil.copyfile(run.ROOT / name, target)
+        shutil.copyfile(ROOT / name, target)
     script = [sys.executable, str(tmp_path / "wheels" / "address.py")]
     told = {"GITHUB_SERVER_URL": "https://forge.example", "GITHUB_REPOSITORY": "someone/pindrive"}
     left = {k: v for k, v in os.environ.items() if k not in told}
