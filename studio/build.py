@@ -101,7 +101,7 @@ def build() -> None:
     part = PAGE.with_suffix(".html.new")
     shutil.copyfile(page, part)
     part.replace(PAGE)
-    print(f"{PAGE.relative_to(ROOT)}: {PAGE.stat().st_size} bytes")
+    print(f"The page is {PAGE} ({PAGE.stat().st_size} bytes): open it in a browser")
 
 
 def main(arguments: list[str]) -> None:

@@ -331,7 +331,7 @@ def test_states_must_fit() -> None:
 def test_threads_are_a_count(threads: Any) -> None:
     with pytest.raises(ValueError) as refused:
         scan(Device(drive=drive()), grating(0.004), across(grating(0.004)), threads=threads)
-    assert str(refused.value) == (f"threads must be a whole number of at least 1, got {threads!r}")
+    assert str(refused.value) == (f"threads must be a whole number from 1 to 4096, got {threads!r}")
 
 
 def test_a_count_may_be_numpys() -> None:

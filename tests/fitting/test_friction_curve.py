@@ -49,6 +49,13 @@ def test_coulomb_friction_needs_one_row_and_a_smooth_law_more() -> None:
     assert len(fit_friction(speed, 0.02 + speed, rows=5).rows) == 5
 
 
+def test_hysteresis_is_no_noise() -> None:
+    """Friction that lags behind a swinging speed: another force as it rises than as it falls."""
+    t = np.linspace(0.0, 4.0 * np.pi, 400)
+    with pytest.warns(UserWarning, match="friction depends on more than the speed"):
+        fit_friction(np.sin(t), np.sign(np.sin(t)) * (0.02 + 0.01 * np.cos(t) * np.sign(np.sin(t))))
+
+
 @pytest.mark.parametrize(
     ("speed", "force", "said"),
     [

@@ -293,6 +293,12 @@ def test_every_variable_has_its_meaning_and_unit() -> None:
 # ---- refusals ------------------------------------------------------------------------------------
 
 
+def test_masked_entries_are_points_that_are_refused() -> None:
+    masses = np.ma.masked_array([0.01, 0.02, 0.03], mask=[False, True, False])
+    found = simulate_batch(DRIVE, RELEASE, mass=masses)
+    assert found.status.values.tolist() == [Status.ok, Status.bad_mass, Status.ok]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -304,8 +310,9 @@ def test_every_variable_has_its_meaning_and_unit() -> None:
             {"mass": [1.0, 2.0], "damping": [1.0, 2.0, 3.0]},
             r"arguments must be of shapes that broadcast, got mass \(2,\), damping \(3,\)",
         ),
-        ({"threads": 0}, "threads must be a whole number of at least 1, got 0"),
-        ({"threads": 1.5}, "threads must be a whole number of at least 1, got 1.5"),
+        ({"threads": 0}, "threads must be a whole number from 1 to 4096, got 0"),
+        ({"threads": 10**30}, f"threads must be a whole number from 1 to 4096, got {10**30}"),
+        ({"threads": 1.5}, "threads must be a whole number from 1 to 4096, got 1.5"),
         (
             {"mass": xr.DataArray([1.0, 2.0], dims="m"), "damping": [1.0, 2.0]},
             r"damping must be a number or a DataArray .* got an array of shape \(2,\)",

@@ -50,6 +50,7 @@ def test_degrees_are_parts_of_a_turn() -> None:
 @pytest.mark.parametrize(
     ("text", "unit", "words"),
     [
+        ("１２ g", "kg", 'a number with its unit, like "10 g"'),
         ("12", "kg", 'a number with its unit (give a unit, like "10 g")'),
         ("12 m", "kg", 'in kg or a unit alike, like "10 g"'),
         ("12 bananas", "kg", 'in kg or a unit alike ("bananas" is not a known unit), like "10 g"'),

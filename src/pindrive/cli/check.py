@@ -9,6 +9,7 @@ import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import command
+from pindrive.cli.options import OverridesOption
 
 
 @command("Device and study files", "pindrive check device.toml")
@@ -16,6 +17,7 @@ def check(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Device file (TOML), or an input of one (CSV).")
     ],
+    overrides: OverridesOption = None,
 ) -> None:
     """Say what is wrong with a device file and the CSVs it names, or what it describes.
 
@@ -41,7 +43,7 @@ def check(
     from pindrive.files.device import load_device
 
     with refusing():
-        device = load_device(file)
+        device = load_device(file, overrides or ())
     from pindrive.cli.tables import device_report, show
     from pindrive.motion.coefficients import Coefficients
 

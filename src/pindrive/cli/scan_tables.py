@@ -140,19 +140,19 @@ def verdict_words(judgement: Judgement) -> list[str]:
     if not counts["lines"]:
         return [f"No line passed whole under a pin; {_number(counts['echoes'], 'false line')}."]
     missed = counts["unseen"] + counts["merged"] + counts["faint"]
-    why = ", ".join(
-        f"{counts[fate]} {words}"
-        for fate, words in (
-            ("unseen", "not seen by the control block"),
-            ("merged", "run into the one before"),
-            ("faint", "too faint"),
-        )
-        if counts[fate]
+    why = _brackets(
+        (counts["unseen"], "not seen by the control block"),
+        (counts["merged"], "run into the one before"),
+        (counts["faint"], "too faint"),
+    )
+    doubts = _brackets(
+        (counts["unsettled"], "not settled before the next"),
+        (counts["shown"] - counts["sure"], "of uncertain direction"),
     )
     limits = judgement.criteria
     words = [
-        f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown, "
-        f"{missed} missed{f' ({why})' if why else ''}; {_number(counts['echoes'], 'false line')}.",
+        f"{_number(counts['lines'], 'line')} passed under the pins: {counts['shown']} shown"
+        f"{doubts}, {missed} missed{why}; {_number(counts['echoes'], 'false line')}.",
         f"Motion of the skin is felt from {limits.felt * _MM:g} mm on, its direction from "
         f"{limits.direction * _MM:g} mm, and right in 95 % of cases from "
         f"{limits.direction_sure * _MM:g} mm at {limits.direction_speed * _MM:g} mm/s; a false "
@@ -164,6 +164,12 @@ def verdict_words(judgement: Judgement) -> list[str]:
             "move."
         )
     return words
+
+
+def _brackets(*counted: tuple[int, str]) -> str:
+    """The counts that are not 0, in brackets; empty where all are."""
+    said = ", ".join(f"{count} {words}" for count, words in counted if count)
+    return f" ({said})" if said else ""
 
 
 def _number(count: int, noun: str) -> str:

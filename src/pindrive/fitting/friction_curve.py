@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from math import log, pi, sqrt
 from typing import TYPE_CHECKING, Any, Final
@@ -122,6 +123,10 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     Raises:
         ValueError: no numbers, lengths that differ, too few samples, no speed or no force other
             than zero, or a force that mostly pushes the way of sliding at some speeds only.
+
+    Warns:
+        UserWarning: the residuals of neighbouring samples are alike, as of hysteresis: friction
+            depends on more than the speed.
     """
     u, f = (
         np.asarray(values, float).ravel() if not isinstance(values, str) else np.empty(0)
@@ -148,9 +153,24 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     count = rows or min(aicc, key=lambda n: aicc[n])
     knots = next(k for k in tried if len(k) == count)
     values, errors, noise = _solved(u, f, knots)
+    left = (f - np.interp(u, knots, values))[np.argsort(order)]  # as recorded
+    together = float(np.sum(left[1:] * left[:-1]))
+    alike = together > HYSTERESIS * float(np.sum(left**2))
+    if len(u) >= 20 and alike and noise > SMALL * float(np.mean(f)):
+        warnings.warn(
+            f"the forces differ from the curve by {noise:.3g} N, and neighbouring samples to the "
+            "same side: friction depends on more than the speed (hysteresis, wear or a load that "
+            "changes), or the curve has too few rows",
+            stacklevel=2,
+        )
     found = tuple(zip(knots.tolist(), np.maximum(values, 0.0).tolist(), strict=True))
     return FrictionCurve(found, tuple(errors.tolist()), noise, aicc, u, f)
 
+
+HYSTERESIS: Final = 0.7
+"""Correlation of the residuals of neighbouring samples beyond which they are no noise."""
+SMALL: Final = 0.1
+"""Noise, a part of the mean force, below which what the curve leaves out does not matter."""
 
 FEWEST: Final = 8
 """Samples of a friction curve."""

@@ -407,7 +407,9 @@ def _aligned(variable: xr.Variable, dims: tuple[str, ...]) -> NDArray[np.float64
 
 
 def _floats(name: str, values: object) -> NDArray[np.float64]:
-    """An argument as an array of floats, if it holds numbers."""
+    """An argument as an array of floats, if it holds numbers; masked entries are NaN."""
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "iuf":
+        values = np.ma.filled(values.astype(np.float64), nan)
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unlike length

@@ -385,11 +385,10 @@ def _values(given: float | Profile) -> Sequence[float]:
 
 
 def _course(name: str, values: Sequence[float]) -> str:
-    """One value, or those that it takes in turn: "60 → 0 mm/s"; of many the first and the last."""
+    """One value, or those that it takes in turn: "60 → 0 mm/s"; of many the least and the most."""
     turns = [value for value, _ in groupby(values)]
     if len(turns) > _MOST_TURNS:
-        turns = [turns[0], turns[-1]]
-        return " … ".join(short(name, value) for value in turns)
+        return " … ".join(short(name, value) for value in (min(turns), max(turns)))
     scale = QUANTITIES[name].display_scale
     return " → ".join([*(digits(value * scale) for value in turns[:-1]), short(name, turns[-1])])
 

@@ -143,10 +143,14 @@ def usable_cores() -> int:
     return len(of_this_process(0)) if of_this_process else os.cpu_count() or 1
 
 
+MOST_THREADS: Final = 4096
+"""More than any machine has cores; each takes memory of its own."""
+
+
 def worker_count(threads: int | None) -> int:
     """As many as given, or as there are cores to run on.
 
     Raises:
         ValueError: that is no count.
     """
-    return usable_cores() if threads is None else check_whole(threads, "threads")
+    return usable_cores() if threads is None else check_whole(threads, "threads", most=MOST_THREADS)

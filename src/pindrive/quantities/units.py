@@ -45,7 +45,7 @@ kelvin = [temperature] = K
 
 _NUMBER_AND_UNIT = re.compile(
     r"\s*(?P<number>[+-]?(?:nan|inf|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))(?P<unit>.*)",
-    re.IGNORECASE,
+    re.IGNORECASE | re.ASCII,  # other digits look like these but are refused
 )
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?![\d,])")
 _PLAIN = str.maketrans({"·": "*", "⋅": "*", "×": "*", "−": "-", "²": "^2"})
