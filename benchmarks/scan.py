@@ -30,7 +30,7 @@ def main() -> None:
     parser.add_argument("--angle", type=float, default=0.0, help="of the drive, degrees")
     arguments = parser.parse_args()
 
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=0.010,
         stiffness=100.0,
         damping_ratio=0.16,

@@ -76,7 +76,7 @@ def contacts(draw: st.DrawFn) -> Contact:
 
 @st.composite
 def cases(draw: st.DrawFn) -> Case:
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=draw(decades(2e-3, 2e-2)),
         stiffness=draw(decades(20.0, 400.0)),
         damping_ratio=draw(damping_ratio),

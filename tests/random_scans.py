@@ -54,7 +54,7 @@ class RandomScan:
         speeds = np.cumsum([0.0, *np.exp(rows.uniform(np.log(0.002), np.log(0.2), 2))])
         forces = plate * np.array([1.0, *rows.uniform(0.3, 1.5, 2)])
         curve = list(zip(speeds.tolist(), forces.tolist(), strict=True)) if curved else None
-        drive = Drive.with_damping_ratio(
+        drive = Drive(
             mass=between(0.002, 0.05),
             stiffness=between(20.0, 1000.0),
             damping_ratio=either(0.0, between(0.01, 2.0)),

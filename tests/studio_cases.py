@@ -55,7 +55,7 @@ def drawn(random: np.random.Generator) -> tuple[Drive, Release, float | None]:
         if random.integers(2):
             stops["stop_stiffness"] = between(1e3, 1e5)
             stops["stop_damping"] = between(0, 10)
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=mass,
         stiffness=stiffness,
         damping_ratio=ratio,

@@ -235,7 +235,7 @@ def test_several_files_at_once_and_nothing_else() -> None:
 
 def skin() -> pindrive.Motion:
     """The motion of the second example, from Python."""
-    drive = pindrive.Drive.with_damping_ratio(
+    drive = pindrive.Drive(
         mass=0.010,
         stiffness=100.0,
         damping_ratio=0.16,

@@ -33,9 +33,7 @@ def free_motion(of: Drive, x0: float, v0: float, t: float) -> tuple[mpf, mpf]:
     "ratio", [0.0, 0.04, 0.7, 1 - 1e-9, 1 - 1e-15, 1.0, 1 + 1e-15, 1 + 1e-9, 1.5, 30.0, 1e4]
 )
 def test_closed_form_in_every_damping_regime(ratio: float) -> None:
-    of = Drive.with_damping_ratio(
-        mass=MASS, stiffness=STIFFNESS, damping_ratio=ratio, plate=ABSENT, finger=ABSENT
-    )
+    of = Drive(mass=MASS, stiffness=STIFFNESS, damping_ratio=ratio, plate=ABSENT, finger=ABSENT)
     times = [float(t) for t in np.logspace(-9, np.log10(2.0), 60)]
     for x0, v0 in ((1.5e-3, 0.1), (1.5e-3, -0.15), (0.0, 0.1), (1e-3, 0.0)):
         motion = simulate(of, Release(SPEED, x0, velocity=v0), duration=2.0)

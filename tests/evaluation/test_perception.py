@@ -339,7 +339,7 @@ def test_rebounds_are_false_lines_unless_damped() -> None:
 def test_a_ripple_on_a_line_is_not_its_height() -> None:
     """A pin that breaks loose at its reach ripples there; a rebound is held against the line."""
     weight = 0.001 * 9.80665
-    body = Drive.with_damping_ratio(
+    body = Drive(
         mass=0.001,
         stiffness=150.0,
         damping_ratio=0.5,

@@ -293,6 +293,20 @@ def test_every_variable_has_its_meaning_and_unit() -> None:
 # ---- refusals ------------------------------------------------------------------------------------
 
 
+def test_damping_ratio_is_taken_in_place_of_damping() -> None:
+    ratios, masses = np.array([0.1, 0.3]), np.array([0.01, 0.02])
+    found = simulate_batch(DRIVE, RELEASE, damping_ratio=ratios, mass=masses)
+    for i, (ratio, mass) in enumerate(zip(ratios, masses, strict=True)):
+        drive = DRIVE.replace(damping_ratio=ratio, mass=mass)
+        assert drive.damping_ratio == pytest.approx(ratio, rel=1e-15)
+        expected = simulate(drive, RELEASE).transient.settling_time
+        assert found.transient_settling_time[i] == pytest.approx(expected, rel=1e-12)
+    refused = simulate_batch(DRIVE, RELEASE, damping_ratio=[-1.0])
+    assert refused.status == [Status.bad_damping]
+    with pytest.raises(ValueError, match="damping must be given as damping or as damping_ratio"):
+        simulate_batch(DRIVE, RELEASE, damping_ratio=0.1, damping=0.1)
+
+
 def test_masked_entries_are_points_that_are_refused() -> None:
     masses = np.ma.masked_array([0.01, 0.02, 0.03], mask=[False, True, False])
     found = simulate_batch(DRIVE, RELEASE, mass=masses)

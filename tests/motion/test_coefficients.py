@@ -69,7 +69,7 @@ def test_forces_are_coefficients_times_what_presses() -> None:
     weight = 0.010 * G
     assert forces(DRIVE) == pytest.approx((0.225 * weight, 0.27 * weight, 0.005, 0.0075))
     assert DRIVE.normal_force == pytest.approx(weight)
-    pressed = replace(DRIVE, preload="50 mN", touch_force=0.020)
+    pressed = DRIVE.replace(preload="50 mN", touch_force=0.020)
     assert forces(pressed) == pytest.approx(
         (0.225 * (weight + 0.05), 0.27 * (weight + 0.05), 0.010, 0.015)
     )
@@ -96,7 +96,7 @@ def test_the_motion_is_that_of_the_forces() -> None:
 
 
 def test_a_magnet_adds_its_pull_to_weight_and_preload() -> None:
-    drive = replace(DRIVE, preload=0.05)
+    drive = DRIVE.replace(preload=0.05)
     device = Device(drive=drive, magnet=Electromagnet(hold_force=1.0))
     held = drive.plate.static_friction * device.load(1.0)
     assert held == pytest.approx(0.27 * (0.010 * G + 0.05 + 1.0))
@@ -233,7 +233,7 @@ def test_a_batch_refuses_a_coefficient_beside_a_force() -> None:
             "touch_force must be finite and at least 0 N, got -0.01 N",
         ),
         (
-            lambda: replace(DRIVE, preload="-1 mN"),
+            lambda: DRIVE.replace(preload="-1 mN"),
             'preload must be finite and at least 0 N, got "-1 mN"',
         ),
     ],

@@ -45,10 +45,26 @@ def test_natural_frequency_and_damping_ratio() -> None:
     damping_ratio=st.one_of(st.just(0.0), st.floats(1e-10, 100.0)),
 )
 def test_damping_ratio_there_and_back(mass: float, stiffness: float, damping_ratio: float) -> None:
-    made = Drive.with_damping_ratio(
+    made = Drive(
         mass=mass, stiffness=stiffness, damping_ratio=damping_ratio, plate=PLATE, finger=FINGER
     )
     assert made.damping_ratio == pytest.approx(damping_ratio, rel=1e-14)
+
+
+def test_replace_takes_the_arguments_of_a_drive() -> None:
+    drive = Drive(
+        mass=0.01, stiffness=100.0, damping_ratio=0.5, plate=Contact(0.02), finger=Contact(0.0)
+    )
+    assert drive.damping == pytest.approx(1.0, rel=1e-15)
+    assert drive.replace(damping="0.3 N*s/m").damping == 0.3
+    assert drive.replace(mass="20 g") == drive.replace(mass=0.02)
+    assert drive.replace(mass=0.02).damping == drive.damping
+    with pytest.raises(ValueError, match="given as damping or as damping_ratio, got neither"):
+        Drive(mass=0.01, stiffness=100.0, plate=Contact(0.02), finger=Contact(0.0))
+    with pytest.raises(ValueError, match="got both"):
+        drive.replace(damping=0.1, damping_ratio=0.1)
+    with pytest.raises(TypeError, match="weight"):
+        drive.replace(weight=1.0)
 
 
 def test_static_friction_is_kinetic_unless_given() -> None:

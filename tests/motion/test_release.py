@@ -31,6 +31,14 @@ def test_the_initial_velocity_is_the_plates_unless_given() -> None:
     assert Release(Profile([-0.1, 0.1], [0.06, 0.0])).initial_velocity == 0.03
 
 
+def test_replace_takes_the_arguments_of_a_release() -> None:
+    release = Release("60 mm/s", force=0.01)
+    changed = release.replace(displacement="1 mm")
+    assert changed == Release(0.06, 0.001, force=0.01)
+    with pytest.raises(ValueError, match="displacement must be"):
+        release.replace(displacement="far")
+
+
 def test_it_is_a_value() -> None:
     release = Release(STOP, 2e-3, plate_load=Profile([0.0, 0.01], [5.0, 1.0]))
     assert pickle.loads(pickle.dumps(release)) == release
@@ -51,9 +59,7 @@ def test_text_with_a_unit_is_the_number_in_si() -> None:
     given: dict[str, Any] = {"plate": Contact(0.02), "finger": finger}
     drive = Drive(mass="10 g", stiffness="0.1 N/mm", damping="0.4 N*s/m", **given)
     assert drive == DRIVE
-    ratio = Drive.with_damping_ratio(
-        mass="10 g", stiffness="100 N/m", damping_ratio="20 %", **given
-    )
+    ratio = Drive(mass="10 g", stiffness="100 N/m", damping_ratio="20 %", **given)
     assert ratio.damping_ratio == pytest.approx(0.2, rel=1e-15)
     assert Profile(["0 ms", "40 ms"], [1.0, 0.0]) == Profile([0.0, 0.04], [1.0, 0.0])
     motion = simulate(drive, Release("60 mm/s", "2 mm"), duration="300 ms", settling_band="2 %")

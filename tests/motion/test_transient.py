@@ -236,7 +236,7 @@ def test_constant_transverse_velocity_ends(finger: Contact) -> None:
 
 
 def test_overdamped_pin_approaches_its_trough_for_ever() -> None:
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=0.01, stiffness=100.0, damping_ratio=2.0, plate=Contact(0.02), finger=Contact(0.0)
     )
     transient = Case(drive, Release(0.1, 1.5e-3)).run().transient

@@ -479,7 +479,7 @@ def test_the_maps_are_the_simulations(made: Report) -> None:
             groups = {name: group.baseline for name, group in maps.GROUPS.items()}
             groups[across] = float(data[f"{key}_{across}"][i])
             groups[up] = float(data[f"{key}_{up}"][j])
-            drive = Drive.with_damping_ratio(
+            drive = Drive(
                 mass=m,
                 stiffness=k,
                 damping_ratio=groups["damping"],

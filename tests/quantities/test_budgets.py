@@ -119,7 +119,7 @@ def test_a_damping_ratio_of_any_size_is_judged() -> None:
     ):
         said = run(*line.split(), *one)
         assert said.exit_code == 0, said.output
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=0.01, stiffness=100.0, damping_ratio=1e6, plate=Contact(0.02), finger=Contact(0.005)
     )
     assert drive.slowest_rate == pytest.approx(drive.natural_frequency / 2e6, rel=1e-12)

@@ -45,7 +45,7 @@ def parameters(made: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 @pytest.mark.parametrize(
     "made",
     [
-        *(Drive, Drive.with_damping_ratio, Release, simulate, ControlBlock, Electromagnet),
+        *(Drive, Release, simulate, ControlBlock, Electromagnet),
         *(Electromagnet.from_times, Coil, PinArray, PinArray.grid, Criteria),
     ],
 )

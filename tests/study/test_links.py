@@ -104,7 +104,7 @@ def test_a_swept_point_is_the_device_with_that_value_set() -> None:
         plate, finger = at["plate.kinetic"], at["finger.kinetic"]
         shape = [(0.0, 22.0 / 22.0), (0.05, 15.0 / 22.0), (0.2, 16.0 / 22.0)]
         by_hand = simulate(
-            Drive.with_damping_ratio(
+            Drive(
                 mass=0.010,
                 stiffness=100.0,
                 damping_ratio=0.16,

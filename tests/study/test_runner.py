@@ -41,7 +41,7 @@ def test_numbers_are_those_of_simulate() -> None:
         for i in (0, 1, 499, 777, 2047):
             for j in (0, 1):
                 at = data.isel(sample=i, mouse_velocity=j, duration=0)
-                drive = Drive.with_damping_ratio(
+                drive = Drive(
                     mass=float(at.mass),
                     stiffness=float(at.stiffness),
                     damping_ratio=float(at.damping_ratio),

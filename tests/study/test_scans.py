@@ -90,7 +90,7 @@ def direct(at: dict[str, float], coiled: bool = False) -> Judgement:
     magnet = tables["magnet"]
     made = {name: magnet.pop(name) for name in [*magnet] if name in COIL}
     device = Device(
-        drive=Drive(**body) if "damping" in body else Drive.with_damping_ratio(**body),
+        drive=Drive(**body),
         magnet=Electromagnet.from_coil(Coil(**made), **magnet)
         if made
         else Electromagnet.from_times(**magnet),
@@ -484,7 +484,7 @@ def test_the_example_is_a_study_of_scans() -> None:
     columns = plan.columns(begin, begin + 2)
     found = evaluate(plan, columns, 2, SCAN_OUTPUTS)
     assert (found["status"] == 0).all()
-    drive = Drive.with_damping_ratio(
+    drive = Drive(
         mass=0.001,
         stiffness=250.0,
         damping_ratio=0.5,

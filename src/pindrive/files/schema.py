@@ -194,12 +194,9 @@ def drive_of(values: Mapping[str, Value]) -> Drive:
         ValueError: each value is in range, but not what follows from them together.
     """
     given = table_of(values, "drive")
-    damping, ratio = given.pop("damping"), given.pop("damping_ratio")
     given |= {name: contact_of(values, name) for name in ("plate", "finger")}
     given |= {"preload": values["plate.preload"], "touch_force": values["finger.touch_force"]}
-    if damping is None:
-        return Drive.with_damping_ratio(**given, damping_ratio=ratio)
-    return Drive(**given, damping=damping)
+    return Drive(**given)
 
 
 def release_of(values: Mapping[str, Value]) -> Release:

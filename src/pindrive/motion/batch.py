@@ -62,7 +62,7 @@ _TAKEN: Final = (
     | _STOPS
     | {
         name.replace(".", "_"): QUANTITIES[name]
-        for name in (*(COEFFICIENT_OF[name] for name in _FORCES), *_PRESSING)
+        for name in ("damping_ratio", *(COEFFICIENT_OF[n] for n in _FORCES), *_PRESSING)
     }
 )
 # What an argument is where it is left out: another one, infinite, or the usual value.
@@ -133,9 +133,9 @@ def simulate_batch(
             ledger. `status` is always there. The fewer, the faster: the state alone takes a third
             of the time of all numbers.
         threads: how many to use, at least 1; None: all cores. The results are the same to the bit.
-        **varied: of the drive `mass`, `stiffness`, `damping`, `plate_kinetic`, `plate_static`,
-            `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite: rigid); in place of
-            forces, of a contact given by coefficients, `plate_coefficient`,
+        **varied: of the drive `mass`, `stiffness`, `damping` or `damping_ratio`, `plate_kinetic`,
+            `plate_static`, `finger_kinetic`, `finger_static`, `finger_stiffness` (infinite:
+            rigid); in place of forces, of a contact given by coefficients, `plate_coefficient`,
             `plate_static_coefficient`, `preload`, `finger_coefficient`,
             `finger_static_coefficient` and `touch_force`; of the release
             `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
@@ -199,6 +199,8 @@ def _followed(
 
     workers = worker_count(threads)
     wanted = _wanted(outputs, energy)
+    if all(varied.get(name) is not None for name in ("damping", "damping_ratio")):
+        raise ValueError(refusal("damping", "given as damping or as damping_ratio", "both"))
     named: dict[str, Broadcastable] = {
         **_constants(drive, release, varied),
         **{name: value for name, value in varied.items() if value is not None},
@@ -207,7 +209,7 @@ def _followed(
     shape = tuple(sizes.values())
 
     aligned = {k: _aligned(v, tuple(sizes)) for k, v in arguments.items()}
-    aligned |= _forces(aligned)
+    aligned |= _forces(aligned) | _damping(aligned)
     for name in _ARGUMENTS.keys() - aligned.keys():
         aligned[name] = aligned[_SAME_AS[name]] if name in _SAME_AS else np.array(_LEFT_OUT[name])
     spread = [np.broadcast_to(aligned[name], shape) for name in _ARGUMENTS]
@@ -256,7 +258,7 @@ def _constants(
     has = {
         "mass": drive.mass,
         "stiffness": drive.stiffness,
-        "damping": drive.damping,
+        "damping": None if varied.get("damping_ratio") is not None else drive.damping,
         **_friction(drive, {name for name, value in varied.items() if value is not None}),
         "finger_stiffness": None if finger.rigid else finger.stiffness,
         "mouse_velocity": release.mouse_velocity,
@@ -319,6 +321,14 @@ def _stops(
         np.ascontiguousarray(part if part.size == 1 else np.broadcast_to(part, shape)).ravel()
         for part in parts
     ]
+
+
+def _damping(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+    """The damping that a damping ratio makes; NaN where the ratio is refused."""
+    if "damping_ratio" not in given:
+        return {}
+    ratio = _allowed("damping_ratio", given["damping_ratio"])
+    return {"damping": 2.0 * ratio * np.sqrt(given["mass"]) * np.sqrt(given["stiffness"])}
 
 
 def _forces(given: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from functools import partial
 from math import inf, isinf, nan, sqrt
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities.drive import INPUTS, PARTS
-from pindrive.quantities.part import Part, checked_by
+from pindrive.quantities.part import Part
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
-
-if TYPE_CHECKING:
-    from pindrive.quantities.part import Number, OptionalNumber
 
 __all__ = ["Contact", "Drive"]
 
@@ -143,7 +140,7 @@ class Contact:
         return isinf(self.stiffness)
 
 
-@checked_by(_TABLE)
+@dataclass(frozen=True, init=False)
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.
 
@@ -152,7 +149,8 @@ class Drive:
     Args:
         mass: electromagnet and pin, kg, from 1e-12 to 1e12.
         stiffness: of the spring, N/m, from 1e-12 to 1e12.
-        damping: viscous, N*s/m, from 0 to 1e12; the damping ratio is 0 or from 1e-11 to 1e6.
+        damping: viscous, N*s/m, from 0 to 1e12.
+        damping_ratio: in place of damping, b / (2 sqrt(m k)), 0 or from 1e-11 to 1e6.
         plate: friction of the moving plate on the electromagnet; given by a coefficient it is
             that of weight and preload (and the pull, by which a load multiplies it).
         finger: friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
@@ -167,22 +165,66 @@ class Drive:
         stop_damping: of elastic end stops, N*s/m, from 0 to 1e12. They push and never pull.
 
     Raises:
-        ValueError: a value is no number or out of its range.
+        ValueError: a value is no number or out of its range, or the damping is given twice or not
+            at all.
     """
 
-    mass: Number
-    stiffness: Number
-    damping: Number
+    mass: float
+    stiffness: float
+    damping: float
     plate: Contact
     finger: Contact
-    preload: Number = default("preload")
-    touch_force: OptionalNumber = default("touch_force")
-    travel: OptionalNumber = default("travel")
-    stop_stiffness: OptionalNumber = default("stop_stiffness")
-    stop_damping: OptionalNumber = default("stop_damping")
+    preload: float
+    touch_force: float | None
+    travel: float | None
+    stop_stiffness: float | None
+    stop_damping: float | None
 
-    def __post_init__(self) -> None:
-        """Validate what follows from them; coefficients become forces."""
+    def __init__(
+        self,
+        *,
+        mass: float | str,
+        stiffness: float | str,
+        damping: float | str | None = None,
+        damping_ratio: float | str | None = None,
+        plate: Contact,
+        finger: Contact,
+        preload: float | str = default("preload"),
+        touch_force: float | str | None = default("touch_force"),
+        travel: float | str | None = default("travel"),
+        stop_stiffness: float | str | None = default("stop_stiffness"),
+        stop_damping: float | str | None = default("stop_damping"),
+    ) -> None:
+        """Validate, and keep plain floats; coefficients become forces."""
+        put = object.__setattr__
+        put(self, "mass", check("mass", mass))
+        put(self, "stiffness", check("stiffness", stiffness))
+        put(self, "damping", self._damping_of(damping, damping_ratio))
+        put(self, "plate", plate)
+        put(self, "finger", finger)
+        put(self, "preload", check("preload", preload))
+        optional = {
+            "touch_force": touch_force,
+            "travel": travel,
+            "stop_stiffness": stop_stiffness,
+            "stop_damping": stop_damping,
+        }
+        for name, value in optional.items():
+            put(self, name, None if value is None else check(name, value))
+        self._check_together()
+
+    def _damping_of(self, damping: float | str | None, ratio: float | str | None) -> float:
+        """The damping that is given, or that which a ratio makes, N*s/m."""
+        if (damping is None) == (ratio is None):
+            given = "neither" if ratio is None else f"both, {damping!r} and {ratio!r}"
+            raise ValueError(refusal("damping", "given as damping or as damping_ratio", given))
+        if ratio is None:
+            assert damping is not None
+            return check("damping", damping)
+        return check("damping_ratio", ratio) * self._critical_damping
+
+    def _check_together(self) -> None:
+        """Validate what follows from the values together; coefficients become forces."""
         ratios = _TABLE.rows["damping_ratio"].limits
         if (
             float(f"{self.damping_ratio:.12g}") not in ratios
@@ -205,40 +247,17 @@ class Drive:
                 most = f"at most {brief(ratios.upper)} times critical damping"
                 raise ValueError(refusal(f"{label} curve slope", most, f"{steepest:g} N*s/m"))
 
-    @classmethod
-    def with_damping_ratio(
-        cls,
-        *,
-        mass: float | str,
-        stiffness: float | str,
-        damping_ratio: float | str,
-        plate: Contact,
-        finger: Contact,
-        preload: float | str = default("preload"),
-        touch_force: float | str | None = None,
-        travel: float | str | None = None,
-        stop_stiffness: float | str | None = None,
-        stop_damping: float | str | None = None,
-    ) -> Drive:
-        """A drive whose damping is given as a fraction of the critical one, 0 or from 1e-11 to 1e6.
+    def replace(self, **changes: Any) -> Drive:
+        """A drive with other values of the arguments of `Drive`; the damping stays unless given.
 
         Raises:
             ValueError: as for `Drive`.
+            TypeError: there is no such argument.
         """
-        mass, stiffness = check("mass", mass), check("stiffness", stiffness)
-        damping = 2.0 * check("damping_ratio", damping_ratio) * sqrt(mass) * sqrt(stiffness)
-        return cls(
-            mass=mass,
-            stiffness=stiffness,
-            damping=damping,
-            plate=plate,
-            finger=finger,
-            preload=preload,
-            touch_force=touch_force,
-            travel=travel,
-            stop_stiffness=stop_stiffness,
-            stop_damping=stop_damping,
-        )
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        if "damping_ratio" in changes:
+            del given["damping"]
+        return Drive(**given | changes)
 
     @property
     def normal_force(self) -> float:
@@ -251,7 +270,7 @@ class Drive:
         plate, finger = (
             Contact(c.kinetic, c.static, c.curve, c.stiffness) for c in (self.plate, self.finger)
         )
-        return replace(self, plate=plate, finger=finger, touch_force=None)
+        return self.replace(plate=plate, finger=finger, touch_force=None)
 
     @property
     def rigid_travel(self) -> float | None:

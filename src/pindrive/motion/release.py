@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, nan
-from typing import Final
+from typing import Any, Final
 
 from pindrive.motion.core_numbers import CoreNumbers, Rows
 from pindrive.motion.drive import (
@@ -42,8 +42,7 @@ class Release:
             or a `Profile`, which may have steps.
         across_velocity: w, the velocity of the plate across the axis of the pin, m/s, up to 1e12
             either way; constant or a `Profile` without steps. While it is not 0 the plate slips:
-            its friction opposes the whole sliding velocity. With one that lasts `simulate` needs a
-            duration.
+            its friction opposes the whole sliding velocity.
         finger_load: factor on the finger's friction, from 0 to 1e12: how the touch force changes,
             over the `touch_force` of a drive whose finger has a coefficient; constant or a
             `Profile`, which may have steps.
@@ -83,6 +82,16 @@ class Release:
         put(self, "force", input_of("force", force))
         put(self, "across_velocity", input_of("across_velocity", across_velocity))
         put(self, "finger_load", input_of("finger_load", finger_load))
+
+    def replace(self, **changes: Any) -> Release:
+        """A release with other values of the arguments of `Release`.
+
+        Raises:
+            ValueError: as for `Release`.
+            TypeError: there is no such argument.
+        """
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Release(**given | changes)
 
     @property
     def initial_velocity(self) -> float:

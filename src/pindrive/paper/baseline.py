@@ -30,7 +30,7 @@ MASS, STIFFNESS = VALUES["mass"], VALUES["stiffness"]
 CRITICAL: Final = 2 * sqrt(MASS * STIFFNESS)
 """Damping at which it stops oscillating, N·s/m."""
 
-DRIVE: Final = Drive.with_damping_ratio(
+DRIVE: Final = Drive(
     mass=MASS,
     stiffness=STIFFNESS,
     damping_ratio=VALUES["damping_ratio"],
