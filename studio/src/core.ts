@@ -35,7 +35,7 @@ const ENDS = [
   "irregular",
 ] as const;
 export type End = (typeof ENDS)[number];
-const TRANSITIONS = ["none", "stick", "slip", "cross"] as const;
+const TRANSITIONS = ["none", "stick", "slip", "reverse"] as const;
 export type Transition = (typeof TRANSITIONS)[number];
 /** The same numbers at an end stop, which meets the pin, lets it go, or throws it back. */
 const AT_STOP = ["none", "stop", "leave", "stop"] as const;

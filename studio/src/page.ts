@@ -422,8 +422,8 @@ function legend(more: HTMLElement): HTMLElement {
     entry("swatch resting", "at rest"),
     entry("swatch gripping", "gripped by skin"),
     entry("mark stick plate", "sticks"),
-    entry("mark slip plate", "breaks loose"),
-    entry("mark cross plate", "reverses"),
+    entry("mark slip plate", "slips"),
+    entry("mark reverse plate", "reverses"),
     h("span", {}, "filled at the plate, open at the finger"),
     more,
   );

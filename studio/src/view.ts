@@ -40,7 +40,7 @@ export function currentValues(view: View): Values {
   return currentDesign(view.state).values;
 }
 
-/** The shape of an event: a square sticks, a triangle breaks loose, a diamond reverses; at an end stop a bar. */
+/** The shape of an event: a square sticks, a triangle slips, a diamond reverses; at an end stop a bar. */
 export function eventPath(
   kind: EventKind,
   x: number,

@@ -142,7 +142,7 @@ def test_json_holds_every_number() -> None:
     assert document["ending"]["kind"] == "resting"
     assert document["numbers"]["transient.peak_time"] == pytest.approx(3.022e-3, abs=1e-6)
     assert document["units"]["transient.peak_time"] == "s"
-    assert document["events"][0]["kind"] == "cross"
+    assert document["events"][0]["kind"] == "reverse"
     assert document["segments"][-1]["mode"] == "resting"
     assert document["segments"][-1]["end"] == "Infinity"
     assert document["certificate"]["worst"] < 1e-12

@@ -66,7 +66,7 @@ def test_phases(motion: Motion) -> None:
             assert close(row[2], segment.end - segment.begin)
         else:
             assert row[2] == "forever"
-        words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}
+        words = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}
         ends = [e for e in motion.events if e.time == segment.end]
         assert row[6] == ", ".join(f"{e.contact} {words[e.kind]}" for e in ends)
 

@@ -184,9 +184,9 @@ def test_enough_cases_of_every_kind() -> None:
     assert min(DATA["families"].values()) >= 10
     kinds = {(e[1], e[2]) for case in CASES for e in case["events"]}
     assert kinds >= {
-        ("plate", "stick"), ("plate", "slip"), ("plate", "cross"),
-        ("finger", "stick"), ("finger", "cross"),
-        ("both", "stick"), ("both", "cross"),
+        ("plate", "stick"), ("plate", "slip"), ("plate", "reverse"),
+        ("finger", "stick"), ("finger", "reverse"),
+        ("both", "stick"), ("both", "reverse"),
     }  # fmt: skip
 
 
@@ -201,7 +201,7 @@ def test_trap_crosses_instead_of_sticking() -> None:
     drive = Drive(mass=0.01, stiffness=100.0, damping=0.0, plate=Contact(0.01), finger=Contact(0.0))
     x_d, mouse_velocity = 0.01 / 100.0, 0.1
     motion = simulate(drive, Release(mouse_velocity, 10.25 * x_d), duration=1.0)
-    assert [e.kind for e in motion.events] == ["cross"] * 4 + ["stick", "slip"]
+    assert [e.kind for e in motion.events] == ["reverse"] * 4 + ["stick", "slip"]
     assert {e.contact for e in motion.events} == {"plate"}
     positions = np.array([e.position for e in motion.events]) / x_d
     np.testing.assert_allclose(positions, [-8.25, 6.25, -4.25, 2.25, -0.25, 1.0], atol=1e-9)

@@ -291,6 +291,6 @@ def test_enough_cases_of_every_kind() -> None:
     assert kinds >= {
         (contact, kind)
         for contact in ("plate", "finger", "both")
-        for kind in ("stick", "slip", "cross")
+        for kind in ("stick", "slip", "reverse")
     }
     assert {case["mode"] for case in CASES} == {"slip", "carried", "resting"}

@@ -11,22 +11,22 @@ from oracle import mp_oblique, random_cases
 # Cheap ones of `python -m oracle.random_cases KIND 200 1`, with what happens at the contacts.
 CASES: dict[tuple[str, int], dict[str, int]] = {
     ("skin", 5): {"finger slip": 4, "finger stick": 4, "plate slip": 2, "plate stick": 2,
-                  "plate cross": 1},
-    ("skin", 12): {"finger slip": 3, "finger stick": 2, "plate cross": 1},
+                  "plate reverse": 1},
+    ("skin", 12): {"finger slip": 3, "finger stick": 2, "plate reverse": 1},
     ("skin", 15): {"finger slip": 1, "finger stick": 1, "plate slip": 1, "plate stick": 1},
     ("skin", 20): {"finger slip": 5, "finger stick": 4, "plate slip": 1, "plate stick": 1,
-                   "plate cross": 1},
-    ("load", 70): {"finger cross": 1, "plate stick": 1, "plate slip": 1},
+                   "plate reverse": 1},
+    ("load", 70): {"finger reverse": 1, "plate stick": 1, "plate slip": 1},
     # Its plate is never loaded: the core tells no event of it.
-    ("load", 77): {"finger slip": 6, "finger stick": 6, "plate cross": 4},
+    ("load", 77): {"finger slip": 6, "finger stick": 6, "plate reverse": 4},
     ("skin_load", 2): {"finger slip": 3, "finger stick": 1, "plate slip": 1, "plate stick": 1,
-                       "plate cross": 1},
+                       "plate reverse": 1},
     ("skin_load", 5): {"finger slip": 4, "finger stick": 4, "plate slip": 3, "plate stick": 3},
-    ("skin_load", 8): {"finger slip": 3, "finger stick": 3, "plate cross": 2},
+    ("skin_load", 8): {"finger slip": 3, "finger stick": 3, "plate reverse": 2},
     ("skin_load", 15): {"finger slip": 1, "finger stick": 1, "plate slip": 1, "plate stick": 1},
     ("oblique", 3): {"finger slip": 1, "finger stick": 1},
-    ("oblique", 7): {"finger cross": 1},
-    ("oblique", 8): {"finger cross": 1, "finger stick": 1},
+    ("oblique", 7): {"finger reverse": 1},
+    ("oblique", 8): {"finger reverse": 1, "finger stick": 1},
 }  # fmt: skip
 AT_ONCE = {20}  # skin that becomes shorter at once as it slides
 CREEPS = {7}  # through w = 0

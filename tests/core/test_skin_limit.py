@@ -133,7 +133,7 @@ def test_each_reversal_comes_sooner_by_tan_phi_less_phi(damping: float) -> None:
     case = Case(damping=damping)
     rigid, soft = case.run(), case.run(STIFFEST)
     unit = sqrt(MASS / STIFFEST)
-    reversals = [e.time for e in rigid.events if e.contact == "finger" and e.kind == "cross"]
+    reversals = [e.time for e in rigid.events if e.contact == "finger" and e.kind == "reverse"]
     regrips = [e.time for e in soft.events if e.contact == "finger" and e.kind == "stick"]
     assert len(reversals) >= 4
     sooner = 0.0

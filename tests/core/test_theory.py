@@ -109,7 +109,7 @@ def test_undamped_reversals_follow_the_recursion_and_end_grazing() -> None:
         expected.append(x)
         side = -side
     *crossings, stick, slip = motion.events
-    assert [e.kind for e in crossings] == ["cross"] * (len(expected) - 1)
+    assert [e.kind for e in crossings] == ["reverse"] * (len(expected) - 1)
     assert (stick.kind, slip.kind) == ("stick", "slip")
     assert [e.position for e in (*crossings, stick)] == pytest.approx(expected, rel=1e-13)
     assert slip.position == pytest.approx(x_d, rel=1e-15)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from pindrive import Contact, Drive, Motion, Profile, Release, simulate
+from pindrive import Contact, Drive, Motion, Profile, Release, load_device, simulate
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 DRIVE = Drive(
     mass=0.010, stiffness=100.0, damping=0.32, plate=Contact(0.022, 0.0265), finger=Contact(0.005)
@@ -70,7 +73,7 @@ def test_all_columns_at_once_are_each_by_itself(changes: dict[str, Any], others:
 
 def test_the_limits_at_an_event_are_those_from_its_sides(motion: Motion) -> None:
     """Friction jumps, and the acceleration with it; just beside the event they are the limits."""
-    assert {event.kind for event in motion.events} == {"cross", "stick", "slip"}
+    assert {event.kind for event in motion.events} == {"reverse", "stick", "slip"}
     beside = 1e-9
     for event in motion.events:
         jump = 0.0
@@ -140,3 +143,14 @@ def test_plate_load_multiplies_the_friction_of_the_plate() -> None:
     pressed = simulate(DRIVE, Release(0.06, 2e-3, plate_load=2.0))
     assert pressed.events == simulate(doubled, Release(0.06, 2e-3)).events
     assert pressed.events != simulate(DRIVE, Release(0.06, 2e-3)).events
+
+
+def test_a_device_file_is_simulated_with_all_that_it_says() -> None:
+    device = load_device(EXAMPLES / "tactile-mouse.toml", ["motion.settling_band=0.1"])
+    motion = simulate(device)
+    assert motion.release == device.release
+    assert motion.settling_band == 0.1
+    assert simulate(device, duration=0.01).duration == 0.01
+    assert simulate(device, device.release.replace(displacement=1e-3)).position(0.0) == 1e-3
+    with pytest.raises(ValueError, match="release must be a Release, got None"):
+        simulate(device.drive)

@@ -196,7 +196,7 @@ class ExplicitModes:
     def decide(self, sides: dict[str, float]) -> str:
         place = self.place()
         sticks = abs(self.excess(place)) <= self.capacity(place)
-        self.run.events.append((self.t, place, "stick" if sticks else "cross", self.x, self.v))
+        self.run.events.append((self.t, place, "stick" if sticks else "reverse", self.x, self.v))
         for name in ("plate", "finger") if place == "both" else (place,):
             sides[name] *= -1
         if not sticks:

@@ -364,7 +364,7 @@ class ExplicitModes:
             self.on_finger, self.f, self.pieces[name] = sticks, -self.f, 0
         if not sticks:
             self.left.add(f"{name} level")
-        kind = "stick" if sticks else "cross"
+        kind = "stick" if sticks else "reverse"
         if also:  # the skin grips at the same moment
             grip = self.run.events.pop()
             if kind == "stick":
@@ -383,7 +383,7 @@ class ExplicitModes:
         self.p, self.f = -self.p, -self.f
         self.pieces = {"plate": 0, "finger": 0}
         self.left = set() if sticks else {"plate level", "finger level"}
-        self.note("both", "stick" if sticks else "cross")
+        self.note("both", "stick" if sticks else "reverse")
 
     def pass_knot(self) -> None:
         was_rest, load = self.stopped(), self.load_at(self.t)
@@ -415,7 +415,7 @@ class ExplicitModes:
         self.decide(True, True)
         after = (0 if self.on_plate else self.p, 0 if self.on_finger else self.f)
         kinds = [
-            "" if a == b else "stick" if b == 0 else "slip" if a == 0 else "cross"
+            "" if a == b else "stick" if b == 0 else "slip" if a == 0 else "reverse"
             for a, b in zip(before, after, strict=True)
         ]
         if kinds[0] == kinds[1] != "":

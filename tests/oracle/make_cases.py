@@ -309,7 +309,7 @@ FAMILIES: dict[str, Callable[[random.Random], Inputs]] = {
 
 # What a motion must show to belong; most families are defined by their inputs alone.
 SHOWS: dict[str, Callable[[list[mp_oracle.Event]], bool]] = {
-    "trap": lambda events: any((e.contact, e.kind) == ("plate", "cross") for e in events),
+    "trap": lambda events: any((e.contact, e.kind) == ("plate", "reverse") for e in events),
     "undamped_grazing": lambda events: bool(events) and events[-1].kind == "slip",
 }
 

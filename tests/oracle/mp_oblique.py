@@ -280,7 +280,7 @@ class _Oblique:
             if abs(abs(needed) - self.static) < mpf("1e-6") * self.static:
                 raise DoubtError("at its limit")
             self.rests = abs(needed) < self.static
-            told = "stick" if self.rests else "cross"
+            told = "stick" if self.rests else "reverse"
             if not self.rests:
                 self.finger = 1 if needed > 0 else -1
         self.path.events.append(Event(self.t, "finger", told, self.x, self.v))

@@ -56,7 +56,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Event:
-    """What happened at a level: "stick", "slip" or "cross"; time, position and velocity in SI."""
+    """What happened at a level: "stick", "slip" or "reverse"; time, position and velocity in SI."""
 
     time: mpf
     contact: str
@@ -244,7 +244,7 @@ class _Simulation:
             self.note(i, "stick")
         else:
             self.signs[i] = -self.signs[i]
-            self.note(i, "cross")
+            self.note(i, "reverse")
 
     # -- one step ------------------------------------------------------------------------------
 

@@ -438,7 +438,7 @@ class _Simulation:
         for contact in self.law:
             before, after = was[contact], self.side[contact]
             if before != after:
-                kinds[contact] = "stick" if after == 0 else "slip" if before == 0 else "cross"
+                kinds[contact] = "stick" if after == 0 else "slip" if before == 0 else "reverse"
         if len(kinds) == 2 and len(set(kinds.values())) == 1:
             kinds = {"both": kinds["plate"]}
         for contact, kind in kinds.items():

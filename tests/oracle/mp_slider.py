@@ -212,7 +212,7 @@ class _Skin:
             self.event("plate", "stick")
         else:
             self.plate = -int(sign(needed))
-            self.event("plate", "cross")
+            self.event("plate", "reverse")
 
     @property
     def lifted(self) -> bool:
@@ -239,7 +239,7 @@ class _Skin:
             if drops or (self.lifted and not gone and was == 0):
                 self.event("finger", "slip")
             elif not self.lifted and (gone or self.side != was):
-                kinds = {0: "slip", -self.side: "cross"}
+                kinds = {0: "slip", -self.side: "reverse"}
                 self.event("finger", "stick" if self.side == 0 else kinds[was])
             return
         if self.gone:

@@ -399,7 +399,7 @@ def has(contact: str, kind: str) -> Callable[[Event], bool]:
 # What a motion must show to belong; most families are defined by their inputs alone.
 SHOWS: dict[str, Callable[[Event], bool]] = {
     "mouse_stops_while_carried": lambda e: e.velocity == 0 and e.contact != "plate",
-    "reversal_while_carried": lambda e: has("finger", "cross")(e) and e.velocity == 0,
+    "reversal_while_carried": lambda e: has("finger", "reverse")(e) and e.velocity == 0,
     "handed_over_at_the_turn": lambda e: e.contact == "plate" and e.velocity == 0,
     "resting_pin_shaken_loose": has("finger", "slip"),
     "load_falls": has("plate", "slip"),

@@ -142,7 +142,7 @@ def test_events_are_marked(drawn: dict[str, tuple[Motion, Figure]], name: str) -
     if motion.ending.cycle == "stick-slip":
         return
     scale = 1e3 if motion.duration < 2.0 else 1.0
-    for kind, contact in product(("stick", "slip", "cross"), ("plate", "finger", "both")):
+    for kind, contact in product(("stick", "slip", "reverse"), ("plate", "finger", "both")):
         chosen = [e for e in motion.events if (e.kind, e.contact) == (kind, contact)]
         for axes, field in (("x", "position"), ("v", "velocity"), ("portrait", "velocity")):
             across, up = events(panel(figure, axes), kind, contact)
@@ -164,12 +164,12 @@ def test_kinds_and_contacts_differ_without_colour(
             seen.setdefault(kind, set()).add(line.get_marker())
             filled = {"plate": "full", "finger": "none", "both": "left"}[contact]
             assert line.get_fillstyle() == filled
-            words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+            words = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}[kind]
             where = "both" if contact == "both" else f"the {contact}"
             handle = handles[f"{words} at {where}"]
             assert (handle.get_marker(), handle.get_fillstyle()) == (line.get_marker(), filled)
             assert to_hex(handle.get_color()) == to_hex(line.get_color())
-    assert seen == {"stick": {"s"}, "slip": {"^"}, "cross": {"D"}}
+    assert seen == {"stick": {"s"}, "slip": {"^"}, "reverse": {"D"}}
 
 
 @pytest.mark.parametrize("name", MARKED)
@@ -392,7 +392,7 @@ def test_no_words_overlap(drawn: dict[str, tuple[Motion, Figure]], name: str) ->
 
 def test_colours_are_from_the_palette() -> None:
     assert {to_hex(colour).upper() for colour in PALETTE.values()} <= OKABE_ITO
-    assert len({PALETTE[name] for name in ("curve", "stick", "slip", "cross")}) == 4
+    assert len({PALETTE[name] for name in ("curve", "stick", "slip", "reverse")}) == 4
     assert PALETTE["carried"] != PALETTE["resting"]
 
 

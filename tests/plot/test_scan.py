@@ -108,12 +108,12 @@ def test_the_history_is_that_of_the_pin(judged: Judgement, figure: Figure) -> No
         clear = np.abs(times[:, None] - jumps).min(axis=1) > 1e-9
         assert y[clear] == pytest.approx(scale * of(times[clear]), rel=1e-6, abs=1e-9)
     within = [e for e in pin.events if chosen.begin < e.time < chosen.end]
-    for kind, contact in product(("stick", "slip", "cross"), ("plate", "finger", "both")):
+    for kind, contact in product(("stick", "slip", "reverse"), ("plate", "finger", "both")):
         own = [e for e in within if (e.kind, e.contact) == (kind, contact)]
         t, x = events(panel(figure, "x"), kind, contact)
         assert t == pytest.approx([1e3 * (e.time - chosen.begin) for e in own])
         assert x == pytest.approx([1e3 * e.position for e in own])
-        words = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+        words = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}[kind]
         said = f"{words} at {'both' if contact == 'both' else f'the {contact}'}"
         assert (said in legend_of(figure)) == bool(own)
     units = {name: panel(figure, name).get_ylabel() for name in ("x", "pull", "force", "seen")}

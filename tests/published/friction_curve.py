@@ -70,7 +70,7 @@ def turns_of(motion: Motion) -> list[Event]:
     """Where the mass turns or sticks, after it has struck the stop."""
     ends = [event for event in motion.events if event.contact == "finger" and event.velocity == 0.0]
     struck = next(event.time for event in motion.events if event.contact == "stop")
-    return [e for e in ends if e.time > struck and e.kind in ("cross", "stick")]
+    return [e for e in ends if e.time > struck and e.kind in ("reverse", "stick")]
 
 
 @cache
@@ -99,7 +99,7 @@ def msl() -> Case:
     for i, ((t, s), event) in enumerate(
         zip(GIVEN["published"]["turning"], turns, strict=True), start=1
     ):
-        what = f"turn {i}" if event.kind == "cross" else f"turn {i}, sticks"
+        what = f"turn {i}" if event.kind == "reverse" else f"turn {i}, sticks"
         numbers += [
             number(f"{what}, s", t, event.time),
             number(f"{what}, m", s, moved() + event.position),

@@ -36,8 +36,8 @@ TRUSTED = 1e-8
 
 _KINDS = {
     "stick": "sticks",
-    "slip": "breaks loose",
-    "cross": "reverses",
+    "slip": "slips",
+    "reverse": "reverses",
     "stop": "is met",
     "leave": "is left",
 }

@@ -31,14 +31,14 @@ def part(numbers: Mapping[str, float], table: str) -> dict[str, Any]:
 
 
 Cause = Literal["plate", "finger", "both", "stop"]
-EventKind = Literal["stick", "slip", "cross", "stop", "leave"]
+EventKind = Literal["stick", "slip", "reverse", "stop", "leave"]
 ModeName = Literal["slip", "carried", "resting"]
 QuantityName = Literal["position", "velocity", "acceleration"]
 Table = dict[str, "NDArray[Any]"]
 """The core's columns, one row a segment."""
 
 # In the order of `Kind` and `Slide` in model.hpp.
-_KINDS: tuple[EventKind, ...] = ("stick", "slip", "cross")
+_KINDS: tuple[EventKind, ...] = ("stick", "slip", "reverse")
 _EACH: tuple[Cause, ...] = ("plate", "finger")
 _BOTH: tuple[Cause, ...] = ("both",)
 _AT_STOP: tuple[EventKind, ...] = ("stop", "leave", "stop")
@@ -55,8 +55,8 @@ class Event:
     contact: Cause
     """Where; `both` when plate and finger, at one velocity, do the same; `stop`: an end stop."""
     kind: EventKind
-    """`stick`: sliding stopped and the contact holds; `slip`: it breaks loose; `cross`: sliding
-    reversed without sticking; at a `stop`: the pin meets it, `stop`, or loses touch, `leave`."""
+    """`stick`: sliding stopped and the contact holds; `slip`: it begins to slide; `reverse`: the
+    sliding velocity changes sign; at a `stop`: the pin meets it, `stop`, or loses touch, `leave`."""
     position: float
     """m"""
     velocity: float

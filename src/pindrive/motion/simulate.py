@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from pindrive import _core
+from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
-from pindrive.motion.release import check_fits
+from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
@@ -15,8 +16,6 @@ from pindrive.quantities.table import QUANTITIES, check, warn_of
 
 if TYPE_CHECKING:
     from pindrive.motion.core_numbers import CoreNumbers
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (
@@ -30,21 +29,22 @@ _GLANCE = (
 
 
 def simulate(
-    drive: Drive,
-    release: Release,
+    drive: Drive | Described,
+    release: Release | None = None,
     *,
     duration: float | str | None = None,
-    settling_band: float | str = _core.settling_band,
+    settling_band: float | str | None = None,
 ) -> Motion:
     """Follow the pin of a drive from its release, exactly.
 
     Args:
-        drive: the drive; its finger may be compliant, its contacts may have friction curves.
-        release: the initial state, and the inputs that act on the pin.
-        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; None: long enough
-            to see the ending.
+        drive: the drive; its finger may be compliant, its contacts may have friction curves. Or
+            what `load_device` reads, which has all arguments.
+        release: the initial state, and the inputs that act on the pin; None: that of the device.
+        duration: s, from 1e-12 to 1e12, and to 1e12 over the natural frequency; None: that of the
+            device, or long enough to see the ending.
         settling_band: half the band about the end in which the motion counts as settled, a part of
-            |x(0) - x_end|, above 0 and at most 1.
+            |x(0) - x_end|, above 0 and at most 1; None: that of the device, or 0.05.
 
     Returns:
         The motion. Sustained motions are recognised and reported in its `ending`.
@@ -56,7 +56,14 @@ def simulate(
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    motion = simulated(drive, release, duration=duration, settling_band=settling_band)
+    if not isinstance(drive, Drive) and isinstance(drive, Described):
+        release = drive.release if release is None else release
+        duration = drive.duration if duration is None else duration
+        settling_band = drive.settling_band if settling_band is None else settling_band
+        drive = drive.drive
+    band = _core.settling_band if settling_band is None else settling_band
+    motion = simulated(drive, cast(Release, release), duration=duration, settling_band=band)
+    release = motion.release
     if not _plausible(motion.core_numbers):
         given = motion.inputs()
         for name in ("velocity",) * (release.velocity is None) + ("duration",) * (duration is None):
@@ -81,6 +88,7 @@ def simulated(
     return Motion(drive, release, end, check("settling_band", settling_band))
 
 
+@runtime_checkable
 class Described(Protocol):
     """What says all of a motion, as a device file does."""
 

@@ -26,7 +26,7 @@ PALETTE: Final = {
     "curve": "#0072B2",  # blue
     "stick": "#D55E00",  # vermillion
     "slip": "#009E73",  # bluish green
-    "cross": "#000000",
+    "reverse": "#000000",
     "stop": "#000000",
     "leave": "#000000",
     "plate": "#000000",
@@ -36,7 +36,7 @@ PALETTE: Final = {
 }
 """Okabe and Ito's colours, which colour-blind readers tell apart (Color Universal Design, 2008)."""
 
-EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "cross": "D", "stop": "X", "leave": "o"}
+EVENT_SHAPE: Final = {"stick": "s", "slip": "^", "reverse": "D", "stop": "X", "leave": "o"}
 CONTACTS: Final = {
     "plate": ("full", 3.2),
     "finger": ("none", 6.0),
@@ -45,7 +45,7 @@ CONTACTS: Final = {
 }
 """How a marker is filled, and its size, by the contact that changes."""
 SIGNS: Final[tuple[Sign, ...]] = (
-    *product(("stick", "slip", "cross"), ("plate", "finger", "both")),
+    *product(("stick", "slip", "reverse"), ("plate", "finger", "both")),
     ("stop", "stop"),
     ("leave", "stop"),
 )
@@ -120,7 +120,7 @@ def event_name(kind: str, contact: str) -> str:
     """What such an event is called: "sticks at the plate", "strikes an end stop"."""
     if contact == "stop":
         return {"stop": "strikes an end stop", "leave": "leaves an end stop"}[kind]
-    change = {"stick": "sticks", "slip": "breaks loose", "cross": "reverses"}[kind]
+    change = {"stick": "sticks", "slip": "slips", "reverse": "reverses"}[kind]
     return f"{change} at {'both' if contact == 'both' else f'the {contact}'}"
 
 

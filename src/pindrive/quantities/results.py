@@ -42,7 +42,13 @@ _NUMBERS: Final[tuple[tuple[str, str, str, str, str], ...]] = (
     ("swing", "x_m,a - x_m,c", "m", "from peak to trough", "(17)"),
     ("return_velocity", "v_m,b", "m/s", "extreme velocity on the way back", "(20)"),
     ("return_velocity_time", "t_b", "s", "time of the extreme return velocity", "(19)"),
-    ("first_reversal_time", "t_1", "s", "first time the pin stops sliding on the plate", "(21)"),
+    (
+        "first_reversal_time",
+        "t_1",
+        "s",
+        "first time the sliding velocity at the plate is zero",
+        "(21)",
+    ),
     (
         "settling_time",
         "t_s",
@@ -152,9 +158,7 @@ CERTIFICATE: Final[tuple[Quantity, ...]] = (
     Quantity("certificate.sliding_sign", "r_s", "1", "friction opposes sliding"),
     Quantity("certificate.sticking", "r_0", "1", "a stuck contact does not slide"),
     Quantity("certificate.continuity", "r_c", "1", "position and velocity without jumps"),
-    Quantity(
-        "certificate.transitions", "r_t", "1", "breaks loose or crosses only where it cannot hold"
-    ),
+    Quantity("certificate.transitions", "r_t", "1", "slips from rest only where it cannot stick"),
     Quantity("certificate.energy", "r_E", "1", "the energy ledger closes"),
     Quantity("certificate.dissipation", "r_D", "1", "friction and damper never feed energy in"),
     Quantity("certificate.period", "r_T", "1", "a steady motion repeats after its period"),
