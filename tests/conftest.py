@@ -41,7 +41,7 @@ def c_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for command in blocks(DOCS / "c.md")[0].text.splitlines():
             _build(command, folder)
 
-    return _made_once(tmp_path_factory, "c-library", build) / "prefix"
+    return _built_once(tmp_path_factory, "c-library", build) / "prefix"
 
 
 @pytest.fixture(scope="session")
@@ -56,23 +56,29 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         _run("cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DPINDRIVE_TESTS=ON", *quick)
         _run("cmake", "--build", folder)
 
-    return _made_once(tmp_path_factory, "programs", build)
+    return _built_once(tmp_path_factory, "programs", build)
 
 
-def _made_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
-    """A folder that is built once in a test run, whatever the number of workers."""
+def _built_once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
+    """A folder of build/tests that is brought up to date once in a run, by one of the workers."""
     if sys.platform == "win32":
         pytest.skip("where the library lies is tested on the others")
     import fcntl
 
     base = factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / name
-    folder.mkdir(exist_ok=True)
-    with (folder / "lock").open("w") as lock:
+    done = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"{name}-is-built"
+    folder = ROOT / "build" / "tests" / name
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (folder / "done").exists():
+        if not done.exists():
+            for cache in folder.rglob("CMakeCache.txt"):
+                if f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT.as_posix()}\n" not in cache.read_text():
+                    shutil.rmtree(folder)  # the checkout has moved
+                    break
+            folder.mkdir(exist_ok=True)
             build(folder)
-            (folder / "done").touch()
+            done.touch()
     return folder
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import signal
 import subprocess
 import sys
@@ -16,13 +17,20 @@ pytestmark = [
     pytest.mark.usefixtures("in_empty_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT"),
 ]
+MOUSE, READER, STUDY, RECORDING = (
+    shlex.quote(str(EXAMPLES / name))
+    for name in (
+        *("tactile-mouse.toml", "tactile-reader.toml", "tactile-reader-study.toml"),
+        "release-recording.csv",
+    )
+)
 LONG = {
-    "scan": f"scan {EXAMPLES / 'tactile-reader.toml'} --text reads\\nreads --set array.columns=16 "
+    "scan": f"scan {READER} --text 'reads\\nreads' --set array.columns=16 "
     "--set array.rows=16 -o a.nc --plot a.png",
-    "speed": f"speed {EXAMPLES / 'tactile-reader.toml'} --plot a.png --slowest 1mm/s",
-    "robustness": f"robustness {EXAMPLES / 'tactile-reader-study.toml'} --plot a.png",
-    "sensitivity": f"sensitivity {EXAMPLES / 'tactile-reader-study.toml'} --plot a.pdf",
-    "fit": f"fit {EXAMPLES / 'tactile-mouse.toml'} {EXAMPLES / 'release-recording.csv'} "
+    "speed": f"speed {READER} --plot a.png --slowest 1mm/s",
+    "robustness": f"robustness {STUDY} --plot a.png",
+    "sensitivity": f"sensitivity {STUDY} --plot a.pdf",
+    "fit": f"fit {MOUSE} {RECORDING} "
     "--free stiffness,damping,plate.kinetic,finger.kinetic,displacement,time_offset -o a.toml "
     "--plot a.png",
 }
@@ -31,7 +39,7 @@ LONG = {
 @pytest.mark.parametrize("name", LONG)
 def test_ctrl_c_ends_a_command(name: str) -> None:
     """Sent when the file that it is to write has been begun."""
-    command = [sys.executable, "-m", "pindrive", *LONG[name].split()]
+    command = [sys.executable, "-m", "pindrive", *shlex.split(LONG[name])]
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, preexec_fn=taking_ctrl_c
     ) as running:
@@ -64,7 +72,8 @@ main()
 @pytest.mark.parametrize("name", WISHES)
 def test_ctrl_c_ends_a_design(name: str) -> None:
     """Sent between the screening and the search; a folder is written at the end alone."""
-    words = f"design {EXAMPLES}/{WISHES[name]} -o out".split()
+    wish, *options = WISHES[name].split()
+    words = ["design", str(EXAMPLES / wish), *options, "-o", "out"]
     ended = subprocess.run(
         [sys.executable, "-c", INTERRUPTED, *words],
         stderr=subprocess.PIPE,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import sys
 import textwrap
@@ -119,15 +120,20 @@ def test_one_outside_of_a_command_ends_in_a_line_too(tmp_path: Path) -> None:
     assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", said)
 
 
-MOUSE, READER = (EXAMPLES / f"tactile-{name}-study.toml" for name in ("mouse", "reader"))
+MOUSE, READER = (
+    shlex.quote(f"{EXAMPLES}/tactile-{name}-study.toml") for name in ("mouse", "reader")
+)
+DEVICE, RECORDING, WISH = (
+    shlex.quote(f"{EXAMPLES}/{name}")
+    for name in ("tactile-mouse.toml", "release-recording.csv", "tactile-mouse-wish.toml")
+)
 MOMENTS = {
     "typer": f"sweep {MOUSE} -o study.nc",
     "pindrive.study.runner": f"sweep {MOUSE} -o study.nc",
     "numpy": f"sensitivity {MOUSE}",
     "pindrive.study.robustness": f"robustness {READER}",
-    "pindrive.fitting.recording": f"fit {EXAMPLES / 'tactile-mouse.toml'} "
-    f"{EXAMPLES / 'release-recording.csv'} --free mass,stiffness",
-    "pindrive.optimisation.wish": f"design {EXAMPLES / 'tactile-mouse-wish.toml'} -o design.toml",
+    "pindrive.fitting.recording": f"fit {DEVICE} {RECORDING} --free mass,stiffness",
+    "pindrive.optimisation.wish": f"design {WISH} -o design.toml",
 }
 """A command that takes long, by a module that it is just importing."""
 
@@ -142,7 +148,7 @@ def test_a_command_ends_in_a_line_while_it_is_imported(module: str, tmp_path: Pa
                     sys.meta_path.remove(self)
                     os.kill(os.getpid(), signal.SIGINT)
         sys.meta_path.insert(0, Moment())
-        sys.argv = ["pindrive", *{MOMENTS[module].split()!r}]
+        sys.argv = ["pindrive", *{shlex.split(MOMENTS[module])!r}]
         from pindrive.__main__ import main
         main()
     """

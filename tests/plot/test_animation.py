@@ -95,8 +95,8 @@ def test_mp4_frames_go_to_ffmpeg(
 ) -> None:
     stand_in = tmp_path / "ffmpeg"
     end = "print('no such codec', file=sys.stderr); sys.exit(1)" if fails else ""
-    stand_in.write_text(
-        f"#!{sys.executable}\n"
+    stand_in.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{tmp_path}/stand_in.py" "$@"\n')
+    (tmp_path / "stand_in.py").write_text(
         "import sys\n"
         "data = sys.stdin.buffer.read()\n"
         "open(sys.argv[-1], 'w').write(f'{len(data)} {sys.argv[1:]}')\n"

@@ -56,7 +56,7 @@ class Event:
     """Where; `both` when plate and finger, at one velocity, do the same; `stop`: an end stop."""
     kind: EventKind
     """`stick`: sliding stopped and the contact holds; `slip`: it begins to slide; `reverse`: the
-    sliding velocity changes sign; at a `stop`: the pin meets it, `stop`, or loses touch, `leave`."""
+    sliding velocity changes sign; at a `stop`: the pin meets it, `stop`, or leaves it, `leave`."""
     position: float
     """m"""
     velocity: float
