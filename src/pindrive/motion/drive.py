@@ -221,7 +221,8 @@ class Drive:
         if ratio is None:
             assert damping is not None
             return check("damping", damping)
-        return check("damping_ratio", ratio) * self._critical_damping
+        # In this order everywhere, so that a batch and the page have the same bits.
+        return 2.0 * check("damping_ratio", ratio) * sqrt(self.mass) * sqrt(self.stiffness)
 
     def _check_together(self) -> None:
         """Validate what follows from the values together; coefficients become forces."""
