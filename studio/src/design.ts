@@ -95,7 +95,12 @@ export function withValue(values: Values, key: string, value: Value | null): Val
     moved.add(other);
     const given = values[other];
     const [before, after] = [quotient(values, follows), quotient(next, follows)];
-    if (given === undefined || !before || after === null) continue;
+    if (given === undefined || before === null || after === null) continue;
+    if (before === 0) {
+      // Without a ratio to keep, static friction follows kinetic friction up from 0.
+      if (given === 0 && other.includes(".static")) next[other] = after;
+      continue;
+    }
     const scale = (y: number): number => (y / before) * after;
     next[other] = isRows(given)
       ? given[0]![1] === 0

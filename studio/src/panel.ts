@@ -28,6 +28,8 @@ export class Panel {
   readonly element = h("div", { class: "parameters" });
   private readonly controls: Control[] = [];
   private values: Values = {};
+  /** Before the first of the last changes, where all of them are of one key. */
+  private base: { key: string; values: Values; now: string } | null = null;
 
   constructor(private readonly change: Change) {
     for (const [table, title] of GROUPS) {
@@ -49,8 +51,18 @@ export class Panel {
     for (const control of this.controls) control.update(values);
   }
 
+  /** What a change of a key starts from: ratios survive a slider that is dragged to 0 and back. */
+  private before(key: string): Values {
+    const { base } = this;
+    const same = base?.key === key && base.now === JSON.stringify(this.values);
+    return same ? base.values : this.values;
+  }
+
   private set(key: string, value: Value | null, kind: string): void {
-    this.change(withValue(this.values, key, value), kind);
+    const values = this.before(key);
+    const next = withValue(values, key, value);
+    this.base = { key, values, now: JSON.stringify(next) };
+    this.change(next, kind);
   }
 
   /** Whether friction is given by forces or by coefficients. */
@@ -107,7 +119,7 @@ export class Panel {
           quantity.usual!,
           key,
         );
-        const problem = problemOf(withValue(this.values, key, value));
+        const problem = problemOf(withValue(this.before(key), key, value));
         note.textContent = problem;
         if (!problem) this.set(key, value, "");
       } catch (error) {
@@ -118,7 +130,7 @@ export class Panel {
     field.addEventListener("change", () => type(field.value));
     slider.addEventListener("input", () => {
       const value = valueAt(range, Number(slider.value) / STEPS);
-      const problem = problemOf(withValue(this.values, key, value));
+      const problem = problemOf(withValue(this.before(key), key, value));
       note.textContent = problem;
       if (!problem) this.set(key, value, `slider ${key}`);
     });

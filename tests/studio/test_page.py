@@ -77,6 +77,23 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     assert value(page, "plate.kinetic") == 0.03
 
 
+def test_a_ratio_survives_a_value_of_zero(page: Any) -> None:
+    for given in ("0 N", "22 mN"):
+        page.fill("#plate-kinetic", given)
+        page.keyboard.press("Enter")
+        settled(page)
+        assert page.locator("#plate-kinetic-note").inner_text() == ""
+    assert value(page, "plate.static") == pytest.approx(0.0265, rel=1e-15)
+    page.fill("#plate-kinetic", "0 N")
+    page.keyboard.press("Enter")
+    page.fill("#drive-mass", "11 g")
+    page.keyboard.press("Enter")
+    page.fill("#plate-kinetic", "22 mN")
+    page.keyboard.press("Enter")
+    settled(page)
+    assert value(page, "plate.static") == value(page, "plate.kinetic") == 0.022
+
+
 @pytest.mark.parametrize("device", [EXAMPLE, SKIN, READER, pushed, rigid_stops, elastic_stops])
 def test_what_is_shown_is_what_python_computes(
     page: Any, device: Path | Callable[[Path], Path], tmp_path: Path
