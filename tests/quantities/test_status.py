@@ -107,3 +107,8 @@ def test_json_names_the_code(tmp_path: Path) -> None:
     target = tmp_path / "motion.json"
     assert run("simulate", EXAMPLE, "--json", target).exit_code == 0
     assert json.loads(target.read_text(encoding="utf-8"))["status"] == "ok"
+
+
+def test_a_status_is_written_as_its_name() -> None:
+    assert str(Status.ok) == "ok"
+    assert int(Status.ok) == 0

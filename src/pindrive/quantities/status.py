@@ -53,6 +53,10 @@ class Status(IntEnum):
     bad_stop_stiffness = 33
     bad_stop_damping = 34
 
+    def __str__(self) -> str:
+        """Its name, such as "ok"."""
+        return self.name
+
     @property
     def exists(self) -> bool:
         """Whether there is a motion, if only up to where it was stopped."""
