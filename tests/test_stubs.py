@@ -2,7 +2,6 @@
 
 import ast
 from importlib.resources import files
-from pathlib import Path
 
 from tasks.checks import STUB
 
@@ -19,4 +18,4 @@ def test_the_committed_stub_is_up_to_date() -> None:
 
 
 def test_the_package_says_that_it_is_typed() -> None:
-    assert Path(str(files("pindrive")), "py.typed").exists()
+    assert files("pindrive").joinpath("py.typed").is_file()
