@@ -16,6 +16,8 @@ namespace pindrive::detail {
 template <class T>
 class PeriodSamples {
  public:
+  /// The motion outlives the samples.
+  explicit PeriodSamples(Motion<T>&& motion) = delete;
   explicit PeriodSamples(const Motion<T>& motion)
       : motion_(motion), period_(motion.outcome().period), step_(period_ / samples) {
     const Segment<T>& last = *std::prev(motion.end());

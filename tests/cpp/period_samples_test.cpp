@@ -28,9 +28,10 @@ struct StickSlip {
 };
 
 void cycle() {
-  StickSlip found;
-  const double since = pd::steady_since(found.motion()), period = found.outcome.period;
-  const pd::detail::PeriodSamples<double> samples(found.motion());
+  const StickSlip found;
+  const pd::Motion<double> motion = found.motion();
+  const double since = pd::steady_since(motion), period = found.outcome.period;
+  const pd::detail::PeriodSamples<double> samples(motion);
   expect(found.outcome.end == pd::End::stick_slip && since > 0.2 * period, "it begins in between");
   expect(samples.difference_since(since) < 1e-12, "it repeats from its begin on");
   expect(samples.difference_since(since - 0.2 * period) > 1e-3, "and not before");
@@ -39,7 +40,10 @@ void cycle() {
 
 void certified() {
   StickSlip found;
-  const auto certificate = [&] { return pd::Certifier<double>(found.motion(), 10.0).certify(); };
+  const auto certificate = [&] {
+    const pd::Motion<double> motion = found.motion();
+    return pd::Certifier<double>(motion, 10.0).certify();
+  };
   expect(certificate().period == 0 && certificate().steady_since == 0, "the certificate agrees");
   found.outcome.period *= 1.001;
   expect(certificate().period > 1e-4, "but not with a longer period");
