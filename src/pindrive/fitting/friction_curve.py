@@ -153,10 +153,8 @@ def fit_friction(speed: ArrayLike, force: ArrayLike, *, rows: int | None = None)
     count = rows or min(aicc, key=lambda n: aicc[n])
     knots = next(k for k in tried if len(k) == count)
     values, errors, noise = _solved(u, f, knots)
-    left = (f - np.interp(u, knots, values))[np.argsort(order)]  # as recorded
-    together = float(np.sum(left[1:] * left[:-1]))
-    alike = together > HYSTERESIS * float(np.sum(left**2))
-    if len(u) >= 20 and alike and noise > SMALL * float(np.mean(f)):
+    residuals = (f - np.interp(u, knots, values))[np.argsort(order)]  # as recorded
+    if noise > SMALL * float(np.mean(f)) and _are_alike(residuals):
         warnings.warn(
             f"the forces differ from the curve by {noise:.3g} N, and neighbouring samples to the "
             "same side: friction depends on more than the speed (hysteresis, wear or a load that "
@@ -174,6 +172,12 @@ SMALL: Final = 0.1
 
 FEWEST: Final = 8
 """Samples of a friction curve."""
+
+
+def _are_alike(residuals: Array) -> bool:
+    """Whether neighbouring residuals correlate more than noise does."""
+    correlation = float(np.sum(residuals[1:] * residuals[:-1]) / np.sum(residuals**2))
+    return len(residuals) >= 20 and correlation > HYSTERESIS
 
 
 def _against(u: Array, f: Array) -> Array:
