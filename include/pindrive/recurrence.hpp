@@ -68,8 +68,8 @@ class Extent {
 /// compared.
 ///
 /// Each state is compared with two kept states. One is renewed after ever more events, so that a period of any
-/// length is found, and the other after few events, so that a short period is found soon. A return within
-/// `return_tolerance` closes a cycle. A cycle that is approached geometrically is followed from return to
+/// length is found, and the other after few events, so that a short period is found soon. The first three events
+/// are not kept: most motions have few events and rest. A return within `return_tolerance` closes a cycle. A cycle that is approached geometrically is followed from return to
 /// return, and closed when the contraction bounds its remaining distance by `approach_tolerance`.
 ///
 /// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
@@ -84,8 +84,12 @@ class CycleDetector {
   /// outcome if the event closes a cycle.
   void visit(const Segment<T>& ended, const Mode& mode, T time, const State<T>& state,
              Outcome<T>& outcome) {
+    if (count_ < first_kept) {
+      ++count_;
+      return;
+    }
     const Event now{time, mode, state};
-    if (count_ > 0) {
+    if (count_ > first_kept) {
       if (returns_to(kept_, ended, now, outcome)) return;
       if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
       if (period_ > 0 && approaches(ended, now, outcome)) return;
@@ -94,7 +98,7 @@ class CycleDetector {
       block_.add(ended.flow, state.x, state.v);
       if (++in_window_ == irregular_window) end_window(time, outcome);
     }
-    if (count_ > 0 && count_ % short_memory == 0) keep(recent_, now);
+    if (count_ % short_memory == 0) keep(recent_, now);
     if (count_ == next_) {
       keep(kept_, now);
       next_ += std::max(next_ / 4, std::min(next_, short_memory)) + 1;
@@ -119,6 +123,7 @@ class CycleDetector {
     T stuck{0};  ///< for how long the plate has stuck to the pin since then, s
   };
 
+  static constexpr long long first_kept = 3;  ///< of the events from 0 on
   /// Events after which the recent state is renewed.
   static constexpr long long short_memory = 32;
   static constexpr int windows_in_block = irregular_windows / 8;
@@ -147,10 +152,11 @@ class CycleDetector {
       return beyond > 0 ? beyond / scale : T(0);
     };
     const State<T>&one = earlier.state, &other = now.state;
+    const T displaced = apart(one.x, other.x, rounded, length);
+    if (!(displaced < near_return)) return never;  // most events: the rest need not be compared
     const T omega0 = sqrt(drive_.stiffness / drive_.mass);
     const T speed = earlier.extent.speed();
-    T most = std::max(apart(one.x, other.x, rounded, length),
-                      apart(one.v, other.v, rounded * omega0, speed));
+    T most = std::max(displaced, apart(one.v, other.v, rounded * omega0, speed));
     const Contact<T>& finger = drive_.finger;
     if (finger.may_lag())
       most = std::max(most, apart(one.slide, other.slide, rounded * omega0, speed));
@@ -234,9 +240,10 @@ class CycleDetector {
 
   const Drive<T>& drive_;
   Visit kept_, recent_, followed_;
-  long long count_{0}, next_{0};  ///< events so far; count at which the kept visit is renewed
-  long long period_{0};           ///< of the followed approach, in events; 0 without one
-  T distance_{0}, ratio_{1};      ///< of its last return, and to the distance before
+  long long count_{0},
+      next_{first_kept};      ///< events so far; count at which the kept visit is renewed
+  long long period_{0};       ///< of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};  ///< of its last return, and to the distance before
 
   int in_window_{0}, windows_{0};  ///< events in the window, windows so far
   int turns_{0};                   ///< changes between longer and shorter windows

@@ -59,7 +59,7 @@ int rounds_until_cycle(double offset, double q) {
 }
 
 void cycles() {
-  expect(rounds_until_cycle(0, 1) == 1, "the second release like the first closes a cycle");
+  expect(rounds_until_cycle(0, 1) == 4, "a return to the first kept state closes a cycle");
   const int rounds = rounds_until_cycle(1e-2, 0.5);
   expect(rounds > 25 && rounds < 80, "one that is approached does so when it has been reached");
   expect(rounds_until_cycle(1e-9, 1.5) == -1, "states that part close none");
