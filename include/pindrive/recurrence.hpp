@@ -80,15 +80,15 @@ class CycleDetector {
  public:
   explicit CycleDetector(const Drive<T>& drive) : drive_(drive) {}
 
-  /// Compares an event, between a segment and the mode and state after the event. Sets the ending in the
-  /// outcome if the event closes a cycle.
-  void visit(const Segment<T>& ended, const Mode& mode, T time, const State<T>& state,
+  /// Compares an event at time + time_error, between a segment and the mode and state after the event. Sets the
+  /// ending in the outcome if the event closes a cycle.
+  void visit(const Segment<T>& ended, const Mode& mode, T time, T time_error, const State<T>& state,
              Outcome<T>& outcome) {
     if (count_ < first_kept) {
       ++count_;
       return;
     }
-    const Event now{time, mode, state};
+    const Event now{time, time_error, mode, state};
     if (count_ > first_kept) {
       if (returns_to(kept_, ended, now, outcome)) return;
       if (count_ > short_memory && returns_to(recent_, ended, now, outcome)) return;
@@ -109,14 +109,14 @@ class CycleDetector {
  private:
   /// An event: its time, and the mode and the state after it.
   struct Event {
-    T time;
+    T time, time_error;  ///< s; their sum is the time
     const Mode& mode;
     const State<T>& state;
   };
   /// A kept event, and the scales of the motion since then.
   struct Visit {
     long long index{0};
-    T time{0};
+    T time{0}, time_error{0};
     Mode mode{};
     State<T> state{};
     Extent<T> extent{};
@@ -130,7 +130,7 @@ class CycleDetector {
   static constexpr T never = std::numeric_limits<T>::infinity();
 
   void keep(Visit& visit, const Event& now) const {
-    visit = {count_, now.time, now.mode, now.state, {}, T(0)};
+    visit = {count_, now.time, now.time_error, now.mode, now.state, {}, T(0)};
   }
   /// Includes the segment that an event ends in the scales since a kept event.
   static void extend(Visit& visit, const Segment<T>& ended, const Event& now) {
@@ -231,7 +231,7 @@ class CycleDetector {
   }
 
   bool close(const Visit& begin, const Event& now, Outcome<T>& outcome) const {
-    outcome.period = now.time - begin.time;
+    outcome.period = (now.time - begin.time) + (now.time_error - begin.time_error);
     const bool sticks = begin.stuck > T(repeat_tolerance) * outcome.period;  // it does not graze
     outcome.end = sticks ? End::stick_slip : End::limit_cycle;
     outcome.cycle_begin = begin.time;

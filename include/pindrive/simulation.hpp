@@ -59,7 +59,7 @@ class Simulation : private Selection<T> {
         if (finger_.drops()) segment.event.finger = Transition::slip;
         const bool changes = segment.event.any() || !same_mode(segment.mode, after);
         if (!(row_ < never) && (changes || turn < event))
-          cycles_.visit(segment, after, time_, state_, outcome_);
+          cycles_.visit(segment, after, time_, time_error_, state_, outcome_);
       } else if (tau == never) {
         end_with(segment, outcome_);
       }

@@ -49,7 +49,7 @@ int rounds_until_cycle(double offset, double q) {
     carried.flow.position.value = 1e-3;  // it moves
     carried.mode = {ContactState::stick, ContactState::absent};
     const pd::Mode after{ContactState::slip_backward, ContactState::absent};
-    cycles.visit(carried, after, carried.end, {1e-3 * (1 + offset), 0.1, 0, 1e-3, 0}, outcome);
+    cycles.visit(carried, after, carried.end, 0, {1e-3 * (1 + offset), 0.1, 0, 1e-3, 0}, outcome);
     if (!outcome.cycles()) continue;
     expect(check::near(outcome.period, 0.5 * std::round(outcome.period / 0.5), 1e-12),
            "the period of a cycle is a whole number of rounds");
