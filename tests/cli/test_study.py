@@ -111,14 +111,14 @@ def test_sensitivity_of_the_numbers_asked_for() -> None:
 
 def test_a_number_that_is_none() -> None:
     said = refused("sensitivity", "study.toml", "--number", "swinge")
-    assert said == '--number: unknown number "swinge"; did you mean swing?'
+    assert said == "--number: unknown number swinge; did you mean swing?"
     for flag in ("status", "ending", "events"):
         assert refused("sensitivity", "study.toml", "--number", flag).startswith(
-            f'--number: unknown number "{flag}"; '
+            f"--number: unknown number {flag}; "
         )
     paged = EXAMPLES / "tactile-reader-study.toml"
     said = refused("sensitivity", paged, "--number", "settling_time")
-    assert said.startswith('--number: unknown number "settling_time"; ')
+    assert said.startswith("--number: unknown number settling_time; ")
 
 
 # ---- the device of a study set otherwise ---------------------------------------------------------
@@ -145,7 +145,7 @@ def test_a_study_sets_values_of_its_device() -> None:
         ("[set]\nmas = 1", "study.toml: set: unknown key mas; did you mean drive.mass?"),
         ("[set]\nmass = 1", "study.toml: set: drive.mass must be a number with its unit"),
         ('[set]\nmass = "-1 g"', "study.toml: set: drive.mass must be finite and greater than 0"),
-        ('[set]\nkinetic = "1 N"', "study.toml: set: give the key in full, plate.kinetic or fi"),
+        ('[set]\nkinetic = "1 N"', "study.toml: set: kinetic may be plate.kinetic or finger."),
     ],
 )
 def test_a_bad_value_in_set_names_its_place(text: str, said: str) -> None:

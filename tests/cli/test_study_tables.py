@@ -15,8 +15,9 @@ from pindrive.cli.study_tables import (
     percent,
     robustness_report,
 )
+from pindrive.quantities.names import label
 from pindrive.study.design import Plan
-from pindrive.study.outputs import NUMBERS, label
+from pindrive.study.outputs import NUMBERS
 from pindrive.study.robustness import Robustness, robustness
 from pindrive.study.sensitivity import Influence, sobol
 from pindrive.study.slices import elasticity

@@ -285,8 +285,7 @@ def test_where_a_conflict_comes_from(write: Write) -> None:
         ('plate_load=[["0 ms", 1]]\nx = 3', "--set plate_load: motion.plate_load is not valid"),
         ("plate_load=[[1, 2]]", "--set plate_load: motion.plate_load[0] time must be a number"),
         ('mass=["1 g"]', "--set mass: drive.mass must be a number with its unit"),
-        ("stiffness=1 N/m", "--set stiffness: give the key in full, drive.stiffness or finger.st"),
-        ("curve=3", "--set curve: give the key in full, plate.curve or finger.curve"),
+        ("curve=3", "--set curve: curve may be plate.curve or finger.curve; give it in full"),
     ],
 )
 def test_a_bad_override_says_so(write: Write, override: str, problem: str) -> None:

@@ -163,7 +163,8 @@ MISTAKES = {
         "and turns"
     ),
     "[magnet]\nturns = 3": "magnet.turns must be given with pole_area (area of one of its two",
-    '[magnet]\nforce = "1 N"': "unknown key magnet.force; did you mean magnet.hold_force?",
+    '[magnet]\nforce = "1 N"': "unknown key magnet.force; did you mean magnet.hold_force or "
+    "motion.force?",
     "[control]\nthreshold = 1.5": "control.threshold must be finite and at least 0 and at most 1",
     "[control]\nthreshold = 0.01": (
         "control.hysteresis must be at most 0.02 about a threshold of 0.01, got 0.1"

@@ -36,8 +36,8 @@ MUTANTS = (
     Mutant(
         "a cycle's period is a thousandth too long",
         "recurrence.hpp",
-        "outcome.period = now.time - begin.time;",
-        "outcome.period = (now.time - begin.time) * T(1.001);",
+        "outcome.period = (now.time - begin.time) +",
+        "outcome.period = (now.time - begin.time) * T(1.001) +",
     ),
     Mutant(
         "a motion is steady before it repeats",

@@ -114,7 +114,10 @@ def test_text_with_a_unit_is_the_number_in_si() -> None:
             lambda: simulate_batch(replace(DRIVE, plate=CURVED), Release(0.1)),
             "plate must be without a friction curve; `simulate` follows one, got 2 rows",
         ),
-        (lambda: simulate_batch(DRIVE, Release(0.1), masss=[1.0]), "varied must be of mass, "),
+        (
+            lambda: simulate_batch(DRIVE, Release(0.1), masss=[1.0]),
+            "unknown argument masss; did you mean mass?",
+        ),
         (
             lambda: simulate_batch(DRIVE, Release(0.1), mass=["10 mm"]),
             "mass must be in kg or a unit",

@@ -38,7 +38,7 @@ def test_the_catalogue_that_stands_in_a_comment_is_right_too() -> None:
 def test_a_wish_for_a_whole_device() -> None:
     assert run("init", "wish.toml", "--wish", "--device").exit_code == 0
     wish = read_wish("wish.toml")
-    assert wish.plan.page and [goal.text() for goal in wish.goals] == ["largest distinct_speed"]
+    assert wish.plan.page and [goal.text() for goal in wish.goals] == ["maximise distinct_speed"]
 
 
 def test_a_wish_replaces_only_a_wish_and_a_study_is_none() -> None:

@@ -42,4 +42,4 @@ def test_the_front_and_the_maps_are_drawn_with_the_design_on_them(found: Design)
         assert axes.get_title(loc="left") == f"demands met in {100 * drawn.met.mean():.3g} %"
     assert maps[0].get_xlabel() == "mass $m$ (g)" and "mN" in maps[0].get_ylabel()
     title = figure.get_suptitle()
-    assert f"least settling time {1e3 * found.goals[0].value:.2f} ms" in title
+    assert f"minimise settling time: {1e3 * found.goals[0].value:.2f} ms" in title

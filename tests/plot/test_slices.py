@@ -387,10 +387,10 @@ REFUSED = {
     "grid.toml -o map.png": "grid.toml: cannot be read: ",
     "alien.nc -o map.png": "alien.nc: is no study; `pindrive sweep` writes one",
     "one.nc -o map.png": "one.nc: holds a single point, there is nothing to draw over",
-    "grid.nc -o map.png --x mass": "--x mass: grid.nc does not vary it; it varies mouse_velocity,",
+    "grid.nc -o map.png --x mass": "--x mass: grid.nc does not vary it; there are mouse_velocity,",
     "grid.nc -o map.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "
     "stiffness?",
-    "grid.nc -o map.png --number heat": '--number: unknown number "heat"',
+    "grid.nc -o map.png --number heat": "--number: unknown number heat; ",
     "grid.nc -o map.png --number peak_stretch": "--number peak_stretch: grid.nc does not hold it",
     "grid.nc -o map.png --at mass": '--at "mass": must be key=value',
     "grid.nc -o map.png --at plate.kinetic=5": "--at plate.kinetic: must be a number with its unit",

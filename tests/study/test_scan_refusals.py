@@ -56,10 +56,12 @@ WRONG = {
     "mean control.latency?",
     ('[axes]\ncontrol.latency = ["1 mm"]\n', GRATING): "axes.control.latency[0] must be in s or a "
     'unit alike, like "5 ms", got "1 mm"',
-    ('outputs = ["settling_time"]\n' + AXES, GRATING): 'outputs: unknown number "settling_time"; '
-    "did you mean smear_time?",
-    (AXES + '[specification]\nswing = "<= 1 mm"\n', GRATING): "specification: unknown number "
-    '"swing"',
+    ('outputs = ["settling_time"]\n' + AXES, GRATING): "outputs: unknown number settling_time; "
+    "did you mean median_smear_time or worst_smear_time?",
+    (
+        AXES + '[specification]\nswing = "<= 1 mm"\n',
+        GRATING,
+    ): "specification: unknown number swing; ",
     ("[axes]\nmagnet.turns = [100, 200]\n", GRATING): "axes: magnet.turns must be given with "
     "pole_area (area of one of its two poles), gap (gap between each pole and the steel: paint, "
     "roughness), wire_diameter (diameter of the copper in its wire), turn_length (mean length of a "

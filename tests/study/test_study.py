@@ -181,8 +181,8 @@ def test_draws_that_cannot_exist_are_said_in_the_status(mouse: DeviceFile) -> No
             "Study: axes.drive.mass[1] must be finite and greater than 0 kg, got -0.01 kg",
         ),
         ({"axes": {"mass": ["1 s"]}}, "Study: axes.drive.mass[0] must be in kg or a unit alike"),
-        ({"axes": {"stiffness": [1.0]}}, "Study: axes: give the key in full, drive.stiffness or"),
-        ({"axes": {"mass": [0.01]}, "outputs": ["swin"]}, 'Study: outputs: unknown number "swin"'),
+        ({"axes": {"kinetic": [1.0]}}, "Study: axes: kinetic may be plate.kinetic or finger.kin"),
+        ({"axes": {"mass": [0.01]}, "outputs": ["swin"]}, "Study: outputs: unknown number swin; "),
         ({"axes": [1.0]}, "axes must be a mapping"),
         ({"axes": {"hand_speed": [0.1]}}, "Study: axes: scan.hand_speed acts in a scan"),
         (

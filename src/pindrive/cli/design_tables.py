@@ -12,8 +12,8 @@ from pindrive.cli.tables import new_table, whole_lines
 from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.optimisation.catalogue import short_keys
 from pindrive.optimisation.results import shown
+from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
-from pindrive.study.outputs import label
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

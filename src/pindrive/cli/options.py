@@ -90,9 +90,9 @@ def measures(text: str, name: str, example: str, option: str) -> list[float]:
 
 def measure(text: str, name: str, example: str, option: str) -> float:
     """One value of the quantity called `name`, as an option gives it, in SI and within bounds."""
-    from pindrive.quantities.refusal import refusal
+    from pindrive.quantities.refusal import quoted, refusal
     from pindrive.quantities.table import QUANTITIES, check
-    from pindrive.quantities.units import UnitError, quoted, to_si
+    from pindrive.quantities.units import UnitError, to_si
 
     label = name.rpartition(".")[2]
     try:

@@ -12,14 +12,15 @@ import typer
 from rich.console import Group
 
 from pindrive.cli.tables import new_table, whole_lines
+from pindrive.files.keys import NAMES
 from pindrive.files.keys import NUMBERS as KEYS
-from pindrive.files.keys import keys_meant
 from pindrive.lazy import h5py
+from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import base_value
 from pindrive.study.evaluate import why
-from pindrive.study.outputs import NUMBERS, label, points_that_meet
+from pindrive.study.outputs import NUMBERS, points_that_meet
 from pindrive.study.runner import human_bytes
 from pindrive.study.slices import elasticity
 from pindrive.study.validation import coefficient_words
@@ -286,7 +287,7 @@ def _draws(plan: Plan, found: Robustness) -> list[str]:
 def _set_besides(plan: Plan, case: WorstCase) -> Iterator[tuple[str, str]]:
     """What the study sets of its device and the case leaves, as the command line takes it."""
     for setting in plan.device.settings:
-        (key,) = keys_meant(setting.key)
+        (key,) = NAMES.matches(setting.key)
         if key not in case.keys:
             value = setting.value
             yield key, value if isinstance(value, str) else json.dumps(value)

@@ -25,9 +25,8 @@ import numpy as np
 
 from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2font, matplotlib
 from pindrive.quantities import budgets
-from pindrive.quantities.refusal import check_whole, refusal
+from pindrive.quantities.refusal import check_whole, quoted, refusal
 from pindrive.quantities.table import check, default
-from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -29,10 +29,9 @@ from pindrive.device.hand import HandPath
 from pindrive.lazy import signal
 from pindrive.quantities import budgets
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import QUANTITIES, check, default
-from pindrive.quantities.units import quoted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -23,12 +23,12 @@ from pindrive.files.keys import (
     AROUND,
     DRIVE,
     KEYS,
+    NAMES,
     NUMBERS,
     STUDY_KEYS,
     TABLES,
-    keys_meant,
-    nearest,
-    not_known,
+    names_in_file,
+    unknown_in_file,
     written,
 )
 from pindrive.files.recording import files_named, is_file, recording_words, with_files_read
@@ -49,16 +49,15 @@ from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Quantity, Rows, counted
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
-from pindrive.quantities.units import quoted
 
 
 class Setting(NamedTuple):
     """A value that is set otherwise than in a device file."""
 
     key: str
-    """In full, or its last part where that is unique."""
+    """As it was written: plate.kinetic, plate_kinetic, mass."""
     value: object
     """As TOML has it."""
     place: str
@@ -205,8 +204,9 @@ def load_device(
     Args:
         path: a TOML file; `pindrive init FILE` writes one.
         overrides: "key=value" each, or a mapping of keys to values, in which a number is SI and
-            text has a unit. A key is given in full (plate.kinetic=30 mN) or by its last part where
-            that is unique (mass=12 g), rows as TOML has them (plate_load=[["0 ms", 1], ...]) or a
+            text has a unit. A key is written as in device files (plate.kinetic=30 mN), as in Python
+            (plate_kinetic=30 mN) or by the part after the dot where no other key has it
+            (latency=5 ms), rows as TOML has them (plate_load=[["0 ms", 1], ...]) or a
             CSV of them (mouse_velocity=speed.csv); a path is relative to the current folder.
             Setting damping replaces damping_ratio, and vice versa. What `Quantity.follows` ties to
             a value that is set keeps its ratio to it unless it is set too: static friction and the
@@ -256,8 +256,8 @@ def device_of(
 
     whole = whole or any(tables[name] for name in AROUND)
     unknown = _unknown_keys(tables)
-    meant = {nearest(key) for key in unknown}
-    problems += [f"{file}: {not_known(key)}" for key in unknown]
+    meant = {name for key in unknown for name in names_in_file(key).nearest(key)}
+    problems += [f"{file}: {unknown_in_file(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
     problems += _text_problems(tables["device"], place)
     hand = whole and "mouse_velocity" not in tables["motion"]
@@ -374,7 +374,7 @@ def settings_of(
         if not equals or not given:
             problems.append(f"--set {quoted(override)}: must be key=value")
             continue
-        keys = keys_meant(given)
+        keys = NAMES.matches(given)
         if len(keys) == 1 and is_file(keys[0], text):
             value = str(Path(text).absolute())
         elif len(keys) == 1 and keys[0] in NUMBERS and NUMBERS[keys[0]].rows and text[:1] == "[":
@@ -389,7 +389,7 @@ def settings_of(
 
 def _setting(given: str, value: object) -> Setting:
     """A value from Python: a number is SI."""
-    keys = keys_meant(given)
+    keys = NAMES.matches(given)
     if len(keys) == 1 and keys[0] in NUMBERS and isinstance(value, Real):
         value = written(keys[0], float(value))
     elif len(keys) == 1 and is_file(keys[0], value):
@@ -410,15 +410,14 @@ def _set(tables: dict[str, Any], settings: Iterable[Setting]) -> tuple[dict[str,
     places: dict[str, str] = {}
     problems: list[str] = []
     for given, value, place in settings:
-        keys = keys_meant(given)
-        if not keys:
-            problems.append(f"{place}: {not_known(given, tables=False)}")
-        elif len(keys) > 1:
-            problems.append(f"{place}: give the key in full, {' or '.join(keys)}")
-        else:
-            table, _, name = keys[0].partition(".")
-            places[keys[0]] = place
-            tables[table][name] = value
+        try:
+            key = NAMES.find(given, place)
+        except ValueError as error:
+            problems.append(str(error))
+            continue
+        table, _, name = key.partition(".")
+        places[key] = place
+        tables[table][name] = value
     for one, other in (("damping", "damping_ratio"), ("damping_ratio", "damping")):
         if f"drive.{one}" in places and f"drive.{other}" not in places:
             tables["drive"].pop(other, None)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
-from difflib import get_close_matches
 from textwrap import wrap
 from typing import Any, Final, cast
 
 from pindrive.motion.friction import COEFFICIENT_OF, PRESSED_BY
 from pindrive.quantities.device import READER
 from pindrive.quantities.drive import COLUMNS, INPUTS
+from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import DEVICE_INPUTS, QUANTITIES, check
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.units import UnitError, to_si
 
 Tables = Mapping[str, Any]
 """The tables of a device file as TOML has them: text with units."""
@@ -38,39 +37,26 @@ ALONE: Final = ("device", "drive", "plate", "finger", "motion")
 TABLES: Final = (*ALONE, *AROUND)
 
 
-def keys_meant(given: str) -> list[str]:
-    """The keys that may be meant by one in full, or by its last part."""
-    return [key for key in KEYS if given in (key, key.partition(".")[2])]
+def _spellings(key: str) -> tuple[str, ...]:
+    return (NUMBERS[key].variable,) if key in NUMBERS else ()
 
 
-def nearest(key: str, *, tables: bool = True) -> str | None:
-    """The known table or key most like `key`; a known name in the wrong table finds its table."""
-    names = {known.partition(".")[2]: known for known in reversed(KEYS)}  # the drive's first
-    if tables and "." not in key:
-        names |= {table: table for table in TABLES}
-    table, _, name = key.rpartition(".")
-    here = [known for known in names if f"{table}.{known}" in KEYS]
-    near = (
-        get_close_matches(key, KEYS, 1, cutoff=0.8)
-        or get_close_matches(name, here, 1)
-        or get_close_matches(name, names, 1, cutoff=0.7)
-    )
-    return names.get(near[0], near[0]) if near else None
+_LISTED: Final = "docs/reference/device-file.md"
+NAMES: Final = Names("key", {key: _spellings(key) for key in KEYS}, listed=_LISTED)
+"""The keys as a user may write them: plate.kinetic, plate_kinetic, mass."""
+_WITH_TABLES: Final = Names("key", {n: _spellings(n) for n in (*TABLES, *KEYS)}, listed=_LISTED)
 
 
-def not_known(key: str, *, tables: bool = True) -> str:
-    """What to say of an unknown key; without `tables` where only a key can stand."""
+def names_in_file(key: str) -> Names:
+    """What may stand in a device file where an unknown key does: tables too at the top."""
+    return NAMES if "." in key else _WITH_TABLES
+
+
+def unknown_in_file(key: str) -> str:
+    """What to say of an unknown key of a device file."""
     if key == "plate.stiffness":
         return f"{key} cannot be given, the plate is rigid; skin gives way by finger.stiffness"
-    near = nearest(key, tables=tables) if tables or key not in TABLES else None
-    said = key if re.fullmatch(r"[\w.-]{1,60}", key) else quoted(key)
-    if near:
-        return f"unknown key {said}; did you mean {near}?"
-    table = key.partition(".")[0]
-    known = [known for known in KEYS if known.startswith(f"{table}.")] or (
-        TABLES if tables else KEYS
-    )
-    return f"unknown key {said}; there are {', '.join(known)}"
+    return names_in_file(key).unknown(key)
 
 
 def number(

@@ -11,10 +11,10 @@ from pindrive.files.keys import NUMBERS, Tables, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import Quantity, Rows, counted
+from pindrive.quantities.refusal import quoted
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.table import QUANTITIES, default, duration
-from pindrive.quantities.units import quoted
 
 SUFFIX: Final = ".csv"
 OVER_TIME: Final = ("profile", "steps")

@@ -49,10 +49,9 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import CONTINUOUS, INPUTS, Release, initial
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import Quantity, Rows
-from pindrive.quantities.refusal import Refusal, refusal
+from pindrive.quantities.refusal import Refusal, quoted, refusal
 from pindrive.quantities.rows import check_increasing, check_slopes, check_times
 from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.units import quoted
 
 _GRID: Final = ("columns", "rows", "pitch")
 

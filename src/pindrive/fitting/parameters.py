@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isinf, isnan
+from math import inf, isinf, isnan, sqrt
 from typing import Any, Final
 
 import numpy as np
@@ -21,13 +21,14 @@ from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import Release, core_numbers
 from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.names import Names
 from pindrive.quantities.quantity import DISPLAY, Bounds, Quantity, counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import CHANNELS
 from pindrive.quantities.table import QUANTITIES, check
 
 DRIVE: Final = (
-    *("mass", "stiffness", "damping", "plate.kinetic", "plate.static"),
+    *("mass", "stiffness", "damping", "damping_ratio", "plate.kinetic", "plate.static"),
     *("finger.kinetic", "finger.static", "finger.stiffness"),
 )
 """Parameters of the drive, which all recordings share."""
@@ -35,6 +36,12 @@ START: Final = ("displacement", "velocity", "skin_stretch", "mouse_velocity", "p
 """Parameters of each release."""
 SENSOR: Final = ("time_offset", *(f"{channel}_offset" for channel in CHANNELS))
 """Parameters of each recording: its time of the release, and what its sensors add."""
+_NAMES: Final = Names(
+    "parameter",
+    {name: (QUANTITIES[name].key, QUANTITIES[name].variable) for name in (*DRIVE, *START)}
+    | dict.fromkeys(SENSOR, ()),
+    listed="docs/fitting.md",
+)
 ROW: Final = re.compile(
     r"(plate_curve|finger_curve|mouse_velocity|plate_load)\[(\d+)\]\.(speed|force|time|value)"
 )
@@ -104,6 +111,8 @@ def parameters(
     for i, key in enumerate(keys):
         if key in keys[:i]:
             raise ValueError(refusal("free", "names that differ", f"{key} twice"))
+    if {"damping", "damping_ratio"} <= {*keys}:
+        raise ValueError(refusal("free", "damping or damping_ratio", "both"))
     given = {_key(name): ends for name, ends in bounds.items()}
     for key in given:
         if key not in keys:
@@ -120,6 +129,8 @@ def parameters(
 
 def key_of(name: str) -> str:
     """The key of a device file in which a parameter stands."""
+    if name == "damping_ratio":  # it is written as the damping
+        return QUANTITIES["damping"].key
     match = ROW.fullmatch(name)
     return QUANTITIES[_TABLES[match[1]] if match else name].key
 
@@ -127,10 +138,7 @@ def key_of(name: str) -> str:
 def _key(given: str) -> str:
     """The name of a parameter: a key of a device file, with its section or without."""
     name = str(given).strip().removeprefix("motion.").removeprefix("drive.")
-    if name in DRIVE or name in START or name in SENSOR or ROW.fullmatch(name):
-        return name
-    known = f"one of {', '.join((*DRIVE, *START, *SENSOR))}, or a row like finger_curve[1].force"
-    raise ValueError(refusal("free", known, repr(given)))
+    return name if ROW.fullmatch(name) else _NAMES.find(name, "free")
 
 
 def _quantity(key: str) -> Quantity | None:
@@ -201,6 +209,9 @@ def _start(key: str, numbers: CoreNumbers, quantity: Quantity, release: Release)
         start = QUANTITIES["finger.stiffness"].example
         assert start
         return start
+    if key == "damping_ratio":
+        mass, stiffness, damping = numbers[:3]
+        return damping / (2.0 * sqrt(mass) * sqrt(stiffness))
     found = entry(numbers, PLACES[key])
     if isnan(found):
         raise ValueError(refusal("free", "one that the release was given", key))
@@ -362,6 +373,8 @@ def _assembled(values: Mapping[str, Any], base: Any, carried: bool, duration: fl
     mass = values.get("mass", mass)
     stiffness = values.get("stiffness", stiffness)
     damping = values.get("damping", damping)
+    if "damping_ratio" in values:
+        damping = 2.0 * values["damping_ratio"] * np.sqrt(mass) * np.sqrt(stiffness)
     contacts = []
     for name, contact in (("plate", plate), ("finger", finger)):
         touched = any(key.startswith((f"{name}.", f"{name}_curve")) for key in values)

@@ -13,10 +13,10 @@ import numpy as np
 from pindrive.motion.profile import Profile
 from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.quantity import brief, counted
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.results import CHANNELS, SERIES
 from pindrive.quantities.table import QUANTITIES, check
-from pindrive.quantities.units import quoted, to_si
+from pindrive.quantities.units import to_si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -15,8 +15,9 @@ from pindrive.motion.profile import Profile
 from pindrive.motion.release import check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
+from pindrive.quantities.names import Names, number_names
 from pindrive.quantities.quantity import POSITIVE_OR_RIGID, Bounds
-from pindrive.quantities.refusal import hint, refusal
+from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, FINAL, TRANSIENT
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES, check, warn_of
@@ -65,6 +66,11 @@ _TAKEN: Final = (
         for name in ("damping_ratio", *(COEFFICIENT_OF[n] for n in _FORCES), *_PRESSING)
     }
 )
+_ARGUMENT_NAMES: Final = Names(
+    "argument",
+    {name: (quantity.key,) for name, quantity in _TAKEN.items()},
+    listed="docs/reference/python.md",
+)
 # What an argument is where it is left out: another one, infinite, or the usual value.
 _SAME_AS: Final = {
     "plate_static": "plate_kinetic",
@@ -107,6 +113,11 @@ _USUAL: Final = {
 _LEDGER: Final = {q.variable: q.name for q in ENERGY}
 _NUMBERS: Final = _USUAL | _LEDGER | {q.variable: q.name for q in FINAL}
 _OTHERS: Final = ("ending", "events", _SETTLED)
+_OUTPUT_NAMES: Final = number_names(
+    {name: QUANTITIES[full] for name, full in _NUMBERS.items()}
+    | {_SETTLED: QUANTITIES["transient.settled"]}
+    | dict.fromkeys(("ending", "events", "status"))
+)
 
 
 def simulate_batch(
@@ -141,8 +152,9 @@ def simulate_batch(
             `mouse_velocity`, `displacement`, `velocity`, `plate_load`; of the end stops `travel`,
             `stop_stiffness` and `stop_damping`; and `duration` (infinite:
             long enough to see each ending) and `settling_band`, as for `simulate`, which has their
-            ranges. Static friction that is None in a contact is the kinetic one, and a velocity
-            that is None the plate's, at every point.
+            ranges. Keys of device files are names too: `**{"plate.kinetic": 0.02}`. Static
+            friction that is None in a contact is the kinetic one, and a velocity that is None the
+            plate's, at every point.
 
     Returns:
         Variables in the shape that the varied arguments have together, with unit and meaning in
@@ -163,9 +175,7 @@ def simulate_batch(
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    unknown = varied.keys() - _TAKEN.keys()
-    if unknown:
-        raise ValueError(refusal("varied", f"of {', '.join(_TAKEN)}", min(unknown)))
+    varied = _named(varied)
     dataset, extremes = _followed(drive, release, varied, energy, outputs, threads)
     for name, argument in (_constants(drive, release, varied) | varied).items():
         if argument is not None:
@@ -233,6 +243,21 @@ def _followed(
     }
     dataset = xr.Dataset(data, coordinates, {"source": f"pindrive {__version__}"})
     return dataset, dict(zip(_ARGUMENTS, table["extremes"], strict=True))
+
+
+def _named(varied: Mapping[str, Broadcastable | None]) -> dict[str, Broadcastable | None]:
+    """The varied arguments by their own names.
+
+    Raises:
+        ValueError: one is unknown or given twice.
+    """
+    found: dict[str, Broadcastable | None] = {}
+    for given, value in varied.items():
+        name = _ARGUMENT_NAMES.find(given, "")
+        if name in found:
+            raise ValueError(f"{name} is given twice, once as {given}")
+        found[name] = value
+    return found
 
 
 def _constants(
@@ -351,14 +376,10 @@ def _wanted(outputs: Sequence[str] | None, energy: bool) -> list[str]:
     """The variables to return; `status` is always one."""
     if outputs is None:
         return [*_USUAL, *(_LEDGER if energy else ()), "status", *_OTHERS]
-    known = (*_NUMBERS, *_OTHERS, "status")
     if isinstance(outputs, str):
         raise ValueError(refusal("outputs", "a list of names", repr(outputs)))
-    for name in outputs:
-        if name not in known:
-            told = hint(str(name), known, f"there are {', '.join(known)}")
-            raise ValueError(f"outputs: unknown variable {name!r}; {told}")
-    return [*dict.fromkeys([*outputs, *(_LEDGER if energy else ()), "status"])]
+    found = [_OUTPUT_NAMES.find(name, "outputs") for name in outputs]
+    return [*dict.fromkeys([*found, *(_LEDGER if energy else ()), "status"])]
 
 
 # ---- shapes --------------------------------------------------------------------------------------

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final, overload
 
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.part import Part
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_slopes, check_times
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.units import UnitError, to_si
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from pindrive.files.keys import NUMBERS, keys_meant
+from pindrive.files.keys import NAMES, NUMBERS
 from pindrive.quantities.csv_table import CsvTable
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.units import quoted
 from pindrive.study.axes import sweepable
 
 if TYPE_CHECKING:
@@ -113,5 +112,6 @@ def short_keys(keys: tuple[str, ...]) -> str:
     """Keys as a person writes them, apart by commas."""
     tails = [key.partition(".")[2] for key in keys]
     return ", ".join(
-        tail if len(keys_meant(tail)) == 1 else key for key, tail in zip(keys, tails, strict=True)
+        tail if len(NAMES.matches(tail)) == 1 else key
+        for key, tail in zip(keys, tails, strict=True)
     )

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.optimisation.catalogue import Catalogue
+from pindrive.quantities.names import label
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
-from pindrive.study.outputs import Demand, label
+from pindrive.study.outputs import Demand
 
 Array = NDArray[np.float64]
 
@@ -45,8 +46,8 @@ class Goal:
         return np.where(np.isnan(values), np.inf, -values if self.maximise else values)
 
     def text(self) -> str:
-        """For display: "least settling_time"."""
-        return f"{'largest' if self.maximise else 'least'} {label(self.name)}"
+        """For display: "minimise settling_time"."""
+        return f"{'maximise' if self.maximise else 'minimise'} {label(self.name)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,10 +16,11 @@ from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import variable
 from pindrive.lazy import xr
 from pindrive.optimisation.goals import Goal, Variable, Wish
+from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
-from pindrive.study.outputs import NUMBERS, Demand, attributes, label
+from pindrive.study.outputs import NUMBERS, Demand, attributes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

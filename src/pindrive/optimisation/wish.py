@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from itertools import combinations
 from os import PathLike
 from pathlib import Path
@@ -19,12 +18,12 @@ from numpy.typing import NDArray
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import ConfigError, DeviceFile, read_tables
-from pindrive.files.keys import STUDY_KEYS, TABLES, keys_meant, written
+from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, written
 from pindrive.optimisation.catalogue import Catalogue, read_catalogue
 from pindrive.optimisation.goals import PRICE, SPEED, YIELD, Goal, Variable, Wish
 from pindrive.quantities import budgets
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.units import quoted
+from pindrive.quantities.names import Names, label
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.study.axes import as_read, written_axes
 from pindrive.study.design import COUNTS, Dimension, Plan, read_page
 from pindrive.study.distributions import Distribution
@@ -36,7 +35,6 @@ from pindrive.study.outputs import (
     demands,
     is_measured,
     known_output,
-    label,
 )
 from pindrive.study.spec import device_in, plan_of
 
@@ -109,15 +107,14 @@ def wish_of(device: DeviceFile, tables: Mapping[str, Any]) -> Wish:
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> Iterable[str]:
     known = _KEYS if "base" in tables else (*_KEYS, *TABLES)
+    names = Names("key", dict.fromkeys(known, ()), listed="docs/reference/wish-file.md")
     for key in tables:
         if key in known:
             continue
         if key in TABLES:
             yield f"{file}: give base or the table {key}, not both"
             continue
-        near = get_close_matches(key, known, 1)
-        said = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
-        yield f"{file}: unknown key {quoted(key)}; {said}"
+        yield f"{file}: {names.unknown(key)}"
 
 
 def _wish(
@@ -191,7 +188,7 @@ def _among(scans: bool) -> tuple[str, ...]:
 
 def _keys(table: Mapping[str, Any]) -> set[str]:
     """The keys that a table names; what is unknown or ambiguous is said where it is read."""
-    found = (keys_meant(given) for given, _ in written_axes(table))
+    found = (NAMES.matches(given) for given, _ in written_axes(table))
     return {keys[0] for keys in found if len(keys) == 1}
 
 

@@ -73,7 +73,9 @@ def _outcome(found: Design) -> str:
     if not found.feasible:
         return f"no design meets this; {found.closest.replace('_', ' ')}"
     return ", ".join(
-        f"{reached.goal.text().replace('_', ' ')} {QUANTITY[reached.goal.name].text(reached.value)}"
+        f"{reached.goal.text()}: {QUANTITY[reached.goal.name].text(reached.value)}".replace(
+            "_", " "
+        )
         for reached in found.goals
     )
 

@@ -12,8 +12,8 @@ from typing import Final
 
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import Quantity, heading
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.units import UnitError, expected, quoted, to_si
+from pindrive.quantities.refusal import quoted, refusal
+from pindrive.quantities.units import UnitError, expected, to_si
 
 _HEADING: Final = re.compile(r"\s*(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*")
 

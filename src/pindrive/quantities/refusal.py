@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from difflib import get_close_matches
+import json
 from operator import index
 from typing import SupportsIndex, cast
 
@@ -31,15 +30,15 @@ class Refusal(str):
         return Refusal.of(label, said, where)
 
 
+def quoted(value: object) -> str:
+    """`value` as one short piece of a message: text in quotes, all on one line."""
+    text = json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 def refusal(label: str, required: str, given: object, where: str = "") -> Refusal:
     """The one wording of a refused value: place, quantity, what it must be, what it was."""
     return Refusal.of(label, f"{label} must be {required}, got {given}", where)
-
-
-def hint(given: str, known: Iterable[str], otherwise: str) -> str:
-    """What an unknown name may stand for, "did you mean mass?"; or else `otherwise`."""
-    near = get_close_matches(given, [*known], 1)
-    return f"did you mean {near[0]}?" if near else otherwise
 
 
 def told_by(error: Exception) -> Refusal | str:

@@ -6,12 +6,12 @@ hundred times as long to build. Conversion is decimal, so that "22 mN" and 0.022
 
 from __future__ import annotations
 
-import json
 import re
 from decimal import Decimal
 from functools import cache
 
 from pindrive.lazy import pint
+from pindrive.quantities.refusal import quoted
 
 DEFINITIONS = """
 kilo- = 1e3 = k-
@@ -99,12 +99,6 @@ def expected(unit: str, written: str, otherwise: str = "") -> str:
     except Exception:  # pint lets through whatever goes wrong in the parts of its parser
         return f"{kind} ({quoted(written)} is not a known unit)"
     return kind
-
-
-def quoted(value: object) -> str:
-    """`value` as one short piece of a message: text in quotes, all on one line."""
-    text = json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 @cache

@@ -8,10 +8,10 @@ from math import inf
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from pindrive.files.keys import DRIVE, NUMBERS, TABLES, has_part, keys_meant, not_known, number
+from pindrive.files.keys import DRIVE, NAMES, NUMBERS, TABLES, has_part, number
 from pindrive.quantities import budgets
-from pindrive.quantities.refusal import refusal
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.refusal import quoted, refusal
+from pindrive.quantities.units import UnitError, to_si
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
 
 if TYPE_CHECKING:
@@ -38,21 +38,17 @@ def sweepable(given: str, place: str, scans: bool) -> str:
     Raises:
         ValueError: it is unknown, may mean two, is no number or has no part.
     """
-    keys = keys_meant(given)
-    if not keys:
-        raise ValueError(f"{place}: {not_known(given, tables=False)}")
-    if len(keys) > 1:
-        raise ValueError(f"{place}: give the key in full, {' or '.join(keys)}")
-    if keys[0] not in NUMBERS or not NUMBERS[keys[0]].may_be_constant:
-        raise ValueError(f"{place}: {keys[0]} is no single number, it cannot be varied")
-    if not has_part(keys[0], scans):
+    key = NAMES.find(given, place)
+    if key not in NUMBERS or not NUMBERS[key].may_be_constant:
+        raise ValueError(f"{place}: {key} is no single number, it cannot be varied")
+    if not has_part(key, scans):
         why = (
             "has no part in a scan, in which the hand moves the mouse; leave out [page] to vary it"
-            if keys[0] in DRIVE
+            if key in DRIVE
             else 'acts in a scan; say what is on the page, as with grating = ["4 mm"] in [page]'
         )
-        raise ValueError(f"{place}: {keys[0]} {why}")
-    return keys[0]
+        raise ValueError(f"{place}: {key} {why}")
+    return key
 
 
 class AxisReader:

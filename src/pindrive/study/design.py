@@ -16,9 +16,8 @@ from pindrive.device.page_description import Page, recorded
 from pindrive.device.reading import Reading
 from pindrive.files.device import Setting, device_of
 from pindrive.files.keys import has_part, number, written
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.units import quoted
 from pindrive.study.distributions import (
     Axis,
     Distribution,

@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, replace
+from functools import cache
 from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pindrive.lazy import h5py, stats
+from pindrive.quantities.names import Names, label, number_names
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.refusal import hint, refusal
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.results import (
     BAD_WHEN_SMALL,
     DESIGNED,
@@ -25,7 +27,7 @@ from pindrive.quantities.results import (
 )
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.units import UnitError, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -109,8 +111,8 @@ def usual_outputs(among: Sequence[str], *, rigid: bool, coil: bool) -> tuple[str
     return tuple(name for name in among if name not in missing)
 
 
-def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> str:
-    """The variable that a name means: its own, the table's, or the last part where unique.
+def known_output(given: object, place: str, among: tuple[str, ...] = OUTPUTS) -> str:
+    """The variable that a name means: settling_time, transient.settling_time.
 
     The last part alone of a median and a worst value is the median.
 
@@ -119,19 +121,12 @@ def known_output(given: object, place: str, among: Sequence[str] = OUTPUTS) -> s
     """
     if not isinstance(given, str):
         raise ValueError(refusal("an output", "the name of a number", quoted(given), place))
-    name = given.replace(".", "_")
-    shorts = {full: full.partition("_")[2] for full in among if full in NUMBERS}
-    found = [full for full in among if name in (full, shorts.get(full))]
-    if found:
-        return found[0]
-    ends = [full for full in among if full.endswith(f"_{name}")]
-    if len(ends) == 1:
-        return ends[0]
-    if ends:
-        raise ValueError(f"{place}: {quoted(given)} may be {' or '.join(ends)}; give it in full")
-    names = {short: short for short in shorts.values()} | {full: full for full in among}
-    told = hint(name, names, f"there are {', '.join(map(label, among))}")
-    raise ValueError(f"{place}: unknown number {quoted(given)}; {told}")
+    return _names(among).find(given, place)
+
+
+@cache
+def _names(among: tuple[str, ...]) -> Names:
+    return number_names({name: NUMBERS.get(name) for name in among})
 
 
 def dtype(name: str) -> np.dtype[Any]:
@@ -159,12 +154,6 @@ def attributes(name: str) -> dict[str, Any]:
 def missing(name: str) -> int | None:
     """The value that stands for none."""
     return -1 if name in _COUNTS else None
-
-
-def label(name: str) -> str:
-    """A number as a table names it: "settling_time", "shown"; an ending's, a median in full."""
-    head, _, tail = name.partition("_")
-    return tail if head in ("transient", "judged", "design") else name
 
 
 def measured(name: str) -> Quantity:
@@ -216,7 +205,7 @@ def from_attribute(text: str) -> tuple[Demand, ...]:
 
 
 def demands(
-    table: Any, file: str, problems: list[str], among: Sequence[str] = OUTPUTS
+    table: Any, file: str, problems: list[str], among: tuple[str, ...] = OUTPUTS
 ) -> tuple[Demand, ...]:
     """The demands of a [specification] on outputs; what is wrong is appended to `problems`."""
     found = []

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from pindrive.files.keys import NUMBERS as KEYS
-from pindrive.files.keys import WHOLE, keys_meant, variable
+from pindrive.files.keys import WHOLE, variable
 from pindrive.lazy import xr
-from pindrive.quantities.refusal import hint
+from pindrive.quantities.names import Names, label
+from pindrive.quantities.refusal import quoted
 from pindrive.quantities.table import short
-from pindrive.quantities.units import UnitError, quoted, to_si
+from pindrive.quantities.units import UnitError, to_si
 from pindrive.study.distributions import Linked
 from pindrive.study.outputs import (
     MEASURED,
@@ -25,7 +26,6 @@ from pindrive.study.outputs import (
     SCAN_OUTPUTS,
     from_attribute,
     known_output,
-    label,
 )
 
 if TYPE_CHECKING:
@@ -215,11 +215,11 @@ class View:
         Raises:
             ValueError: it is unknown, or was not varied.
         """
-        names = [variable(key) for key in keys_meant(given) if key in KEYS]
-        names = [name for name in (*names, given.replace(".", "_")) if name in self.keys]
-        if names:
-            return names[0]
-        told = hint(given.replace(".", "_"), self.keys, f"it varies {', '.join(self.keys)}")
+        names = Names("key", {name: (QUANTITY[name].key,) for name in self.keys})
+        found = names.matches(given)
+        if len(found) == 1:
+            return found[0]
+        told = names.suggestion(given)
         raise ValueError(f"{option} {given}: {self.path} does not vary it; {told}")
 
     def number(self, given: str) -> str:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import ConfigError, Setting, device_of, read_tables, settings_of
-from pindrive.files.keys import STUDY_KEYS, TABLES, keys_meant, variable
+from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, variable
 from pindrive.files.recording import is_file
 from pindrive.quantities import budgets
-from pindrive.quantities.refusal import hint, refusal
-from pindrive.quantities.units import quoted
+from pindrive.quantities.names import Names
+from pindrive.quantities.refusal import quoted, refusal
 from pindrive.study.axes import AxisReader, sweepable, written_axes
 from pindrive.study.design import CHUNK, SCANS, Dimension, Plan, StudyPage, read_page
 from pindrive.study.distributions import (
@@ -148,6 +148,7 @@ def _too_much(plan: Plan) -> Iterator[str]:
 
 def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
     known = _OWN if "base" in tables else (*_OWN, *TABLES)
+    names = Names("key", dict.fromkeys(known, ()), listed="docs/reference/study-file.md")
     problems = []
     for key in tables:
         if key in known:
@@ -155,8 +156,7 @@ def _unknown(tables: Mapping[str, Any], file: Path) -> list[str]:
         if key in TABLES:
             problems.append(f"{file}: give base or the table {key}, not both")
             continue
-        said = hint(key, known, f"there are {', '.join(known)}")
-        problems.append(f"{file}: unknown key {quoted(key)}; {said}")
+        problems.append(f"{file}: {names.unknown(key)}")
     return problems
 
 
@@ -214,7 +214,7 @@ def _settings(tables: Mapping[str, Any], file: Path) -> list[Setting]:
         raise ConfigError([refusal("set", "a table, [set]", quoted(given), str(file))])
     settings = []
     for key, value in written_axes(given):
-        keys = keys_meant(key)
+        keys = NAMES.matches(key)
         if len(keys) == 1 and is_file(keys[0], value):
             value = str((file.parent / value).absolute())
         settings.append(Setting(key, value, f"{file}: set"))
