@@ -28,9 +28,15 @@ NOT_IMPORTED = -2
 OPTIONS = ("-x", "-q", "-n", "0", "--no-header", "--tb=no", "-p", "no:cacheprovider")
 
 
+def without_editable() -> list[Any]:
+    """The finders of modules but that of an editable installation, which goes before all paths."""
+    return [one for one in sys.meta_path if not type(one).__module__.startswith("_editable_")]
+
+
 def work(job: dict[str, Any]) -> NoReturn:
     """Runs the tests in this process, which ends with them."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    sys.meta_path = without_editable()
     sys.path.insert(0, job["path"])
     os.environ["PYTHONPATH"] = job["path"]  # of what the tests start
     status = NOT_IMPORTED

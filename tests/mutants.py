@@ -119,13 +119,14 @@ class Runner:
         if not hasattr(os, "fork"):
             raise SystemExit("mutants are run in forks of a process, which this system lacks")
         self._folder, self._whole = folder, folder / "whole"
-        installed = self._place(os.environ)
+        installed = self._place(os.environ, without_editable=False)
         shutil.copytree(installed, self._whole / "pindrive")
         for file in SOURCE.rglob("*.py"):
             target = self._whole / "pindrive" / file.relative_to(SOURCE)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(file, target)
-        copied = self._place(os.environ | {"PYTHONPATH": str(self._whole)})
+        environment = os.environ | {"PYTHONPATH": str(self._whole)}
+        copied = self._place(environment, without_editable=True)
         if copied != self._whole / "pindrive":
             raise SystemExit(f"the copy of the package is not what is imported: {copied}")
         subprocess.run([python(), "-m", "compileall", "-q", str(self._whole)], check=False)
@@ -145,10 +146,15 @@ class Runner:
         for server in self._servers:
             self._idle.put(server)
 
-    def _place(self, environment: Mapping[str, str]) -> Path:
-        """Where the package is that is imported."""
+    def _place(self, environment: Mapping[str, str], *, without_editable: bool) -> Path:
+        """Where the package is that is imported, perhaps past an editable installation."""
+        tests = str(Path(forked.__file__).parent)
+        script = f"import sys; sys.path.append({tests!r}); import forked; "
+        if without_editable:
+            script += "sys.meta_path = forked.without_editable(); "
+        script += "import pindrive; print(pindrive.__path__[0])"
         done = subprocess.run(
-            [python(), "-c", "import pindrive; print(pindrive.__path__[0])"],
+            [python(), "-c", script],
             env=environment,
             cwd=self._folder,
             capture_output=True,

@@ -36,7 +36,8 @@ class Study(Plan):
             the dot where no other key has it ("latency"). A value is a sequence of values, or a
             mapping with one way to choose them: `lin` or `log` with two ends and `count`; `uniform`
             or `loguniform` with two ends; `normal` with mean and deviation; `lognormal` with median
-            and factor; `times` and `of`, a multiple of another key. A number is SI, text has a unit.
+            and factor; `times` and `of`, a multiple of another key. A number is SI, text has a
+            unit.
         outputs: the numbers to keep, as "settling_time"; the usual ones unless given.
         page: what is scanned at every point, a `Page` or text; None: every point is a release.
         sample: how sampled axes are drawn: `count`, `method` ("random" or "sobol"), `seed`.
