@@ -1,9 +1,8 @@
-"""Imports at first use: the one place where this package postpones an import.
+"""Imports at first use, of libraries and of public names.
 
 Libraries that take long to load are names of this module, and are loaded when one of their own
-names is first used. A package exports its public names by `attach`; a result reaches what is
-built on it, such as its figure, by `call`, whose target is text: the graph of the import statements
-then has no circle. The package lazy_loader does the first two, but its modules have no types.
+names is first used. A package exports its public names by `attach`. The package lazy_loader does
+both, but its modules have no types.
 
 The libraries of the extra "complete" need not be installed: what needs none of them works without.
 """
@@ -11,7 +10,7 @@ The libraries of the extra "complete" need not be installed: what needs none of 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 __all__ = [
     "COMPLETE",
@@ -21,7 +20,6 @@ __all__ = [
     "ImageOps",
     "NotebookHtml",
     "attach",
-    "call",
     "features",
     "ft2font",
     "h5netcdf",
@@ -29,6 +27,7 @@ __all__ = [
     "linalg",
     "matplotlib",
     "missing",
+    "mpl_figure",
     "optimize",
     "pint",
     "qmc",
@@ -52,6 +51,7 @@ if TYPE_CHECKING:
     import rich.console as rich_console
     import rich.progress as rich_progress
     import xarray as xr
+    from matplotlib import figure as mpl_figure
     from matplotlib import ft2font
     from PIL import Image, ImageDraw, ImageFont, ImageOps, features
     from scipy import linalg, optimize, signal, special, stats
@@ -70,6 +70,7 @@ else:
     h5netcdf = _Module("h5netcdf")
     h5py = _Module("h5py")
     matplotlib = _Module("matplotlib")
+    mpl_figure = _Module("matplotlib.figure")
     pint = _Module("pint")
     xr = _Module("xarray")
     ft2font = _Module("matplotlib.ft2font")
@@ -159,16 +160,12 @@ def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str
     return get, lambda: sorted(module.__all__)
 
 
-def call(target: str, *arguments: Any) -> Any:
-    """The result of a function or class that is named as "module:name"."""
-    module, _, name = target.partition(":")
-    return getattr(_loaded(module), name)(*arguments)
-
-
 class NotebookHtml:
     """A result that a notebook shows as a table with units and a small picture."""
 
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        return str(call("pindrive.plot.notebook:html", self))
+        from pindrive.plot.notebook import html
+
+        return html(self)

@@ -10,14 +10,12 @@ the inductance with the open gap over that with the closed one.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, log1p, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from pindrive.quantities.refusal import refusal
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import MISSING, fields
 from math import pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from pindrive.device.heating import Heat
 from pindrive.quantities.electromagnet import COIL as ROWS
 from pindrive.quantities.electromagnet import MADE, MAGNET
-from pindrive.quantities.part import Part, checked_by
+from pindrive.quantities.part import Number, OptionalNumber, Part, checked_by
 from pindrive.quantities.refusal import refusal
-
-if TYPE_CHECKING:
-    from pindrive.quantities.part import Number, OptionalNumber
 
 TABLE: Final = Part(MAGNET + ROWS + MADE)
 """What a magnet is described by."""

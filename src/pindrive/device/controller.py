@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.device.current import Commands
 from pindrive.quantities import budgets
+from pindrive.quantities.part import Number
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import checked, default
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pindrive.quantities.part import Number
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,19 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, exp, floor, inf, log, log1p
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from pindrive.device.closing import Closing
+from pindrive.device.heating import Heat
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.device.closing import Closing
-    from pindrive.device.heating import Heat
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,16 @@ from dataclasses import asdict
 from io import BytesIO
 from math import degrees, nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from pindrive.device.coil import Coil
 from pindrive.device.geometry import doubts
+from pindrive.device.hand import HandPath
 from pindrive.device.page import AT_ONCE
+from pindrive.device.scanning import PinScan, Scan
 from pindrive.device.trajectory import peak_displacement
 from pindrive.lazy import xr
 from pindrive.motion.dataset import columns
@@ -19,13 +23,6 @@ from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.device.coil import Coil
-    from pindrive.device.hand import HandPath
-    from pindrive.device.scanning import PinScan, Scan
 
 EACH: Final = 1e-3
 """Between two samples unless their times are given, s."""

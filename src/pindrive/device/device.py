@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import cos
-from typing import TYPE_CHECKING, overload
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.device.controller import ControlBlock
 from pindrive.device.electromagnet import Electromagnet, check_holds
-from pindrive.device.pin_array import PinArray
+from pindrive.device.pin_array import Neighbours, PinArray
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Drive
+from pindrive.quantities.part import Number
 from pindrive.quantities.table import checked, default
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from pindrive.device.pin_array import Neighbours
-    from pindrive.quantities.part import Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,28 +9,28 @@ h²/8 max|P''| <= deviation make a piecewise-linear pull that is never further f
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from math import exp, inf, log, sqrt
-from typing import TYPE_CHECKING, Final, overload
+from typing import Final, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from pindrive.device.closing import CLOSED, closing_at
+from pindrive.device.closing import CLOSED, Closing, closing_at
 from pindrive.device.coil import COIL, COIL_NEEDS, TABLE, Coil, check_poles, default
-from pindrive.device.current import CoilState, Current, Pulses, VoltageSteps, current_after
+from pindrive.device.current import (
+    CoilState,
+    Commands,
+    Current,
+    Pulses,
+    VoltageSteps,
+    current_after,
+)
+from pindrive.motion.drive import Contact
 from pindrive.quantities import budgets
-from pindrive.quantities.part import checked_by
+from pindrive.quantities.part import Number, OptionalNumber, checked_by
 from pindrive.quantities.refusal import refusal
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.device.closing import Closing
-    from pindrive.device.current import Commands
-    from pindrive.motion.drive import Contact
-    from pindrive.quantities.part import Number, OptionalNumber
 
 AT_ONCE: Final = 0.01
 """How soon after a switching the pull is exact: when it can have changed by no more than twice this

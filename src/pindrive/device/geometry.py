@@ -18,25 +18,20 @@ are cut into pieces until there are none: no smaller gap is missed by more than 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import hypot, inf, nan, pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pindrive.device.device import Device
+from pindrive.device.pin_array import Neighbours
+from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from pindrive.device.device import Device
-    from pindrive.device.pin_array import Neighbours
-    from pindrive.motion.motion import Motion
-
 
 IRON: Final = 7870.0
 COPPER: Final = 8960.0

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, cos, hypot, sin, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.motion.profile import Profile
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import check, default
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 PEAK: Final = 1.875
 """Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""

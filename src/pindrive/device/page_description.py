@@ -6,18 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from pindrive.device.page import in_words
+from pindrive.device.hand import HandPath
+from pindrive.device.page import Scene, in_words
+from pindrive.device.pin_array import PinArray
+from pindrive.device.reading import Reading
 from pindrive.device.recording import read_csv
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check
-
-if TYPE_CHECKING:
-    from pindrive.device.hand import HandPath
-    from pindrive.device.page import Scene
-    from pindrive.device.pin_array import PinArray
-    from pindrive.device.reading import Reading
 
 
 def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:

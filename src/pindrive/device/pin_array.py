@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import cos, sin, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check, default
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from numpy.typing import NDArray
-
-    Places = tuple[tuple[float, float], ...]
-    Place = tuple[float | str, float | str]
-    Row = list[tuple[float, int]]
+Places = tuple[tuple[float, float], ...]
+Place = tuple[float | str, float | str]
+Row = list[tuple[float, int]]
 
 
 @dataclass(frozen=True, slots=True)

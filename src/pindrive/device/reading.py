@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from os import PathLike
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from pindrive.device.hand import HandPath, lines
 from pindrive.device.page import Scene
+from pindrive.device.pin_array import PinArray
 from pindrive.quantities import budgets
+from pindrive.quantities.part import Number, OptionalNumber
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import checked, default
-
-if TYPE_CHECKING:
-    from pindrive.device.pin_array import PinArray
-    from pindrive.quantities.part import Number, OptionalNumber
 
 RUN_IN: Final = 0.005
 """White before and after the text of a line, beyond the array's width, m."""

@@ -20,9 +20,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
 from os import PathLike
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.device.hand import RECORDED as EXAMPLE
 from pindrive.device.hand import HandPath
@@ -32,9 +33,6 @@ from pindrive.quantities.csv_table import CsvTable
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import QUANTITIES, check, default
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 COUNTS: Final = ("count", "counts")
 """How a header calls the steps of a mouse."""

@@ -12,9 +12,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Protocol
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import lazy
 from pindrive.device.controller import Decision
@@ -28,7 +30,7 @@ from pindrive.device.pin_array import Neighbours
 from pindrive.device.reading import Reading
 from pindrive.device.touch import finger_load, held_stretch
 from pindrive.device.trajectory import Way, check_vibration, peak_displacement
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
@@ -41,13 +43,6 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import check, default
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
 
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
@@ -256,9 +251,11 @@ class Scan(lazy.NotebookHtml):
             A `pindrive.evaluation.Judgement`: lines shown and missed, their lag and smear.
         """
         chosen = self.criteria if criteria is None else criteria
-        return lazy.call("pindrive.evaluation.perception:judge", self, chosen)
+        from pindrive.evaluation.perception import judge
 
-    def plot(self, pin: int | None = None) -> Figure:
+        return judge(self, chosen)
+
+    def plot(self, pin: int | None = None) -> mpl_figure.Figure:
         """What the device read and what the pins did, as a figure that a notebook shows.
 
         Args:
@@ -272,8 +269,9 @@ class Scan(lazy.NotebookHtml):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What is doubtful about it, in words with numbers."""
-        found: tuple[str, ...] = lazy.call("pindrive.device.dataset:scan_warnings", self)
-        return found
+        from pindrive.device.dataset import scan_warnings
+
+        return scan_warnings(self)
 
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:
@@ -355,8 +353,9 @@ class Scan(lazy.NotebookHtml):
         Raises:
             ValueError: as for `Motion.to_csv`; the samples of all pins count together.
         """
-        made: Path = lazy.call("pindrive.files.export:scan_to_csv", self, path, rate)
-        return made
+        from pindrive.files.export import scan_to_csv
+
+        return scan_to_csv(self, path, rate)
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All pins over time, their events and commands, the hand and the scene, with units.
@@ -364,8 +363,9 @@ class Scan(lazy.NotebookHtml):
         Args:
             times: s, shape (n,), on the path's clock; each millisecond and the end unless given.
         """
-        made: xr.Dataset = lazy.call("pindrive.device.dataset:dataset", self, times)
-        return made
+        from pindrive.device.dataset import dataset
+
+        return dataset(self, times)
 
 
 def scan(

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import copysign, inf
-from typing import TYPE_CHECKING
 
-from pindrive.motion.drive import Drive, check_presses
+from pindrive.motion.drive import Contact, Drive, check_presses
 from pindrive.motion.profile import Profile
 from pindrive.motion.release import initial, input_of
-
-if TYPE_CHECKING:
-    from pindrive.motion.drive import Contact
 
 
 def finger_load(drive: Drive, touch: float | str | Profile | None, begin: float) -> float | Profile:

@@ -7,24 +7,20 @@ between samples: there are none.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan, pi, sqrt
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from pindrive.device.hand import HandPath
+from pindrive.motion.drive import Drive
+from pindrive.motion.motion import Motion
 from pindrive.quantities import budgets
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.device.hand import HandPath
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.motion import Motion
-    from pindrive.quantities.status import Side
+from pindrive.quantities.status import Side
 
 PIECES: Final = 64
 """Into so many pieces together, at least two each, brackets are cut at once: a call of what is

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import cos, sin
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pindrive.device.page import AT_ONCE, FINER
+from pindrive.device.device import Device
+from pindrive.device.hand import HandPath
+from pindrive.device.page import AT_ONCE, FINER, Scene
 from pindrive.device.trajectory import Way, roots
 from pindrive.quantities import budgets
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from numpy.typing import NDArray
-
-    from pindrive.device.device import Device
-    from pindrive.device.hand import HandPath
-    from pindrive.device.page import Scene
-
 
 GRAZED: Final = 0.5
 """What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""

@@ -28,16 +28,19 @@ plate passes under the mouse while the line is read.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isnan, nan, pi
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
 from pindrive._core import settling_band
 from pindrive.device.device import Criteria
+from pindrive.device.scanning import PinScan, Scan
 from pindrive.device.touch import spans
 from pindrive.device.trajectory import Course, Signal, Way
 from pindrive.evaluation.line_crossings import (
@@ -52,20 +55,12 @@ from pindrive.evaluation.line_crossings import (
     printed,
     turnings,
 )
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.profile import Profile
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import PinScan, Scan
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -90,10 +85,11 @@ class Judgement(lazy.NotebookHtml):
         """That of the scan."""
         return self.scan.status
 
-    def plot(self, pin: int | None = None) -> Figure:
+    def plot(self, pin: int | None = None) -> mpl_figure.Figure:
         """The scan and one pin of it, from 0, as `Scan.plot` draws them."""
-        figure: Figure = lazy.call("pindrive.plot.scan:plot_scan", self, pin)
-        return figure
+        from pindrive.plot.scan import plot_scan
+
+        return plot_scan(self, pin)
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Each line under each pin, by the names of datasets and files; arrays of shape (n,), SI.

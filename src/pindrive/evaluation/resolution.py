@@ -24,9 +24,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import copysign, cos, inf, isnan, nan, pi, sin
-from typing import TYPE_CHECKING, Final, overload
+from typing import Final, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
 from pindrive.device.device import Criteria, Device
@@ -37,16 +38,12 @@ from pindrive.device.scanning import PinState, Progress, scan
 from pindrive.device.trajectory import Way, brackets, check_vibration
 from pindrive.evaluation.line_crossings import Line, Printed
 from pindrive.evaluation.perception import JudgedPin
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.drive import Drive
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, check, default
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
 PHASES: Final = 4
 TRIED: Final = 32
@@ -150,12 +147,11 @@ class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
         """`incomplete` where lines are distinct at no speed."""
         return Status.incomplete if any(isnan(one.speed) for one in self.limits) else Status.ok
 
-    def plot(self, device: str = "") -> Figure:
+    def plot(self, device: str = "") -> mpl_figure.Figure:
         """The speeds over the pitch; `device` is a name for the title."""
-        figure: Figure = lazy.call(
-            "pindrive.plot.resolution:plot_speeds", self.limits, self.part, self.criteria, device
-        )
-        return figure
+        from pindrive.plot.resolution import plot_speeds
+
+        return plot_speeds(self.limits, self.part, self.criteria, device)
 
     def to_dataset(self) -> xr.Dataset:
         """The speeds and the width of the lines over `speed_pitch`, with units."""

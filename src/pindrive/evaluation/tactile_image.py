@@ -8,18 +8,15 @@ The way back to the next line is not painted, nor is what passes under a finger 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pindrive.device.scanning import Scan
 from pindrive.device.touch import spans
 from pindrive.device.trajectory import Way
 from pindrive.quantities import budgets
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import Scan
 
 CELLS: Final = 1400
 """Cells across the longer side of the page at most."""

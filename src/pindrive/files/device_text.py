@@ -5,16 +5,13 @@ from __future__ import annotations
 import json
 import os
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from pindrive.files.device import DeviceFile
 from pindrive.files.recording import files_named
 from pindrive.motion.friction import COEFFICIENTS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from pindrive.files.device import DeviceFile
 
 
 def device_text(

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from io import BytesIO
 from math import isfinite, isnan
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pindrive.device.scanning import PinScan, Scan
+from pindrive.files.device import DeviceFile
 from pindrive.files.output import (
     EVENT_HEADINGS,
     EVENTS_CSV,
@@ -28,21 +33,12 @@ from pindrive.files.output import (
     writing,
 )
 from pindrive.motion.dataset import columns
+from pindrive.motion.motion import Motion
+from pindrive.motion.results import Event
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.results import EDGES, LINE, SERIES
 from pindrive.quantities.table import QUANTITIES, check
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-    from os import PathLike
-
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import PinScan, Scan
-    from pindrive.files.device import DeviceFile
-    from pindrive.motion.motion import Motion
-    from pindrive.motion.results import Event
 
 AT_ONCE: Final = 1 << 16
 """Rows that are made into text together: more take memory and save no time."""
@@ -53,7 +49,7 @@ def events_path(path: Path) -> Path:
     return path.with_name(f"{path.stem}-events{path.suffix}")
 
 
-def even_times(begin: float, end: float, rate: float, curves: int = 1) -> NDArray[np.float64]:
+def even_times(begin: float, end: float, rate: float | str, curves: int = 1) -> NDArray[np.float64]:
     """The times begin + i / rate up to the end, s.
 
     Args:
@@ -65,14 +61,14 @@ def even_times(begin: float, end: float, rate: float, curves: int = 1) -> NDArra
     Raises:
         ValueError: there would be more samples than `pindrive.quantities.budgets` allow.
     """
-    rate = check("rate", rate)
-    count = (end - begin) * rate + 1.0
-    budgets.MOTION_SAMPLES.check(curves * count, f"{end - begin:g} s at {rate:g} Hz")
+    per_second = check("rate", rate)
+    count = (end - begin) * per_second + 1.0
+    budgets.MOTION_SAMPLES.check(curves * count, f"{end - begin:g} s at {per_second:g} Hz")
     # A count that is whole but for rounding is whole.
-    return begin + np.arange(int(count * (1.0 + 1e-15))) / rate
+    return begin + np.arange(int(count * (1.0 + 1e-15))) / per_second
 
 
-def to_csv(motion: Motion, path: str | PathLike[str], rate: float) -> Path:
+def to_csv(motion: Motion, path: str | PathLike[str], rate: float | str) -> Path:
     """What `Motion.to_csv` does; the path of the events."""
     times = even_times(0.0, motion.duration, rate)
     return _with_events(
@@ -94,7 +90,7 @@ def write_events(motion: Motion, path: Path) -> None:
     _write_table(path, EVENT_HEADINGS, map(_event_row, motion.events))
 
 
-def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float) -> Path:
+def scan_to_csv(scan: Scan, path: str | PathLike[str], rate: float | str) -> Path:
     """What `Scan.to_csv` does; the path of the events."""
     times = even_times(scan.path.begin, scan.path.end, rate, len(scan.pins))
     return _with_events(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -12,8 +12,7 @@ from pindrive.fitting.results import Fit, ModelComparison
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.profile import Profile
 
-if TYPE_CHECKING:
-    pass
+pass
 
 __all__ = ["compare_models"]
 

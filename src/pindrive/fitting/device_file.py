@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+from pindrive.files.device import DeviceFile
 from pindrive.files.device_text import device_text
 from pindrive.files.keys import written
 from pindrive.files.schema import written_rows
 from pindrive.fitting.parameters import SENSOR, key_of
-from pindrive.fitting.results import Estimate
+from pindrive.fitting.results import Estimate, Fit
 from pindrive.motion.profile import Profile
 from pindrive.quantities.quantity import significant
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from pindrive.files.device import DeviceFile
-    from pindrive.fitting.results import Fit
 
 
 def fitted_file(device: DeviceFile, found: Fit, target: Path) -> str:

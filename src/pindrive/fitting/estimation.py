@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.fitting.identifiability import Identifiability, rank, untouched
 from pindrive.fitting.least_squares import Optimum, Problem
@@ -18,16 +19,12 @@ from pindrive.fitting.residuals import first_noise, tested
 from pindrive.fitting.results import Estimate, Fit
 from pindrive.fitting.search import polished, search
 from pindrive.lazy import stats
+from pindrive.motion.drive import Drive
 from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.study.workers import Cluster, Here, crew
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pindrive.motion.drive import Drive
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = ["fit"]
 

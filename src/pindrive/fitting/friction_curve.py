@@ -5,22 +5,19 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from math import log, pi, sqrt
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import lazy
-from pindrive.lazy import optimize, xr
+from pindrive.lazy import mpl_figure, optimize, xr
 from pindrive.motion.drive import Contact
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.quantities.status import Status
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = ["FrictionCurve", "fit_friction"]
 
@@ -83,10 +80,11 @@ class FrictionCurve(lazy.NotebookHtml):
         """A contact with this friction, and static friction (N; None: the force at rest)."""
         return Contact(static=static, curve=self.rows)
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """Measured forces, the curve and its rows over speed, and AICc over their number."""
-        figure: Figure = lazy.call("pindrive.plot.fit:plot_friction_curve", self)
-        return figure
+        from pindrive.plot.fit import plot_friction_curve
+
+        return plot_friction_curve(self)
 
     def to_dataset(self) -> xr.Dataset:
         """Rows over `row`, AICc over `row_count`, and the data over `sample`, SI."""

@@ -9,21 +9,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import _core
 from pindrive.fitting.parameters import Assembly, Parameter
 from pindrive.fitting.recording import Recording
+from pindrive.motion.drive import Drive
+from pindrive.motion.release import Release
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

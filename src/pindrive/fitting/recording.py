@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.motion.profile import Profile
 from pindrive.quantities.csv_table import CsvTable
@@ -17,9 +18,6 @@ from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.results import CHANNELS, SERIES
 from pindrive.quantities.table import QUANTITIES, check
 from pindrive.quantities.units import to_si
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Recording", "read_recording"]
 

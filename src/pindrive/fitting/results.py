@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, isfinite, log, pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
 from pindrive.fitting.identifiability import Identifiability
@@ -17,21 +18,16 @@ from pindrive.fitting.parameters import Parameter
 from pindrive.fitting.profiles import Profile
 from pindrive.fitting.recording import Recording
 from pindrive.fitting.residuals import Residuals
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
+from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
+from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.results import CHANNELS
 from pindrive.quantities.status import Status
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = ["Estimate", "Fit", "ModelComparison"]
 
@@ -222,10 +218,11 @@ class Fit(lazy.NotebookHtml):
 
     # ---- for other programs ----------------------------------------------------------------------
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """Recordings and fit, residuals, and the profiles, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.fit:plot_fit", self)
-        return figure
+        from pindrive.plot.fit import plot_fit
+
+        return plot_fit(self)
 
     def to_dataset(self) -> xr.Dataset:
         """All of it as data.
@@ -329,10 +326,11 @@ class ModelComparison(lazy.NotebookHtml):
         complete = not self.refused and all(found.converged for found in self.fits.values())
         return Status.ok if complete else Status.incomplete
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The residuals of each law over time, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.fit:plot_comparison", self)
-        return figure
+        from pindrive.plot.fit import plot_comparison
+
+        return plot_comparison(self)
 
     def to_dataset(self) -> xr.Dataset:
         """AICc, its excess over the best, weights and the count of parameters over `law`."""

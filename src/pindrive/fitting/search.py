@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.fitting.least_squares import BETTER, Optimum, Problem
 from pindrive.fitting.model import Model
@@ -15,12 +17,7 @@ from pindrive.motion.batch import simulate_batch
 from pindrive.motion.core_numbers import PLACES, ROWS, entry
 from pindrive.quantities.table import ImplausibleValueWarning
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 BATCHED: Final = 16384
 """Candidates of plain releases, which `simulate_batch` follows."""

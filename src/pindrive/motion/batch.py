@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core
 from pindrive.lazy import xr
-from pindrive.motion.drive import check_one_kind, check_stops
+from pindrive.motion.drive import Drive, check_one_kind, check_stops
 from pindrive.motion.friction import COEFFICIENT_OF, COEFFICIENTS, PRESSED_BY, friction_force
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import check_fits
+from pindrive.motion.release import Release, check_fits
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.drive import OR_INFINITE
 from pindrive.quantities.names import Names, number_names
@@ -23,13 +25,6 @@ from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES, check, warn_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-
     Broadcastable = ArrayLike | xr.DataArray
 
 __all__ = ["simulate_batch"]
@@ -127,7 +122,7 @@ def simulate_batch(
     energy: bool = False,
     outputs: Sequence[str] | None = None,
     threads: int | None = None,
-    **varied: Broadcastable | None,
+    **varied: ArrayLike | xr.DataArray | None,
 ) -> xr.Dataset:
     """Follow many pins from their release, each exactly as `simulate` does, and keep the numbers.
 

@@ -6,12 +6,10 @@ Where friction is given as a force and the weight changes, the coefficient does.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from pindrive.motion.drive import Drive
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from pindrive.motion.drive import Drive
 
 KINETIC: Final = (0.15, 0.30)
 """Steel on steel, handbook tables."""

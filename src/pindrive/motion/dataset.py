@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.lazy import xr
+from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import outcome_attributes
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pindrive.motion.motion import Motion
 
 
 def columns(motion: Motion, t: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, Any, Final, overload
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
+from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY
 from pindrive.motion.profile import Profile
-from pindrive.motion.release import INPUTS, core_numbers
+from pindrive.motion.release import INPUTS, Release, core_numbers
 from pindrive.motion.results import (
     Afterwards,
     Certificate,
@@ -34,24 +38,13 @@ from pindrive.motion.results import (
     part,
     segments_of,
 )
+from pindrive.motion.sensitivity import Sensitivity
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import ENDING, ENERGY, TRANSIENT
 from pindrive.quantities.status import End, Side, Status
 from pindrive.quantities.table import check, default
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from os import PathLike
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.release import Release
-    from pindrive.motion.sensitivity import Sensitivity
 
 __all__ = ["Crossings", "Event", "Extrema", "Motion", "Segment"]
 
@@ -353,14 +346,15 @@ class Motion(lazy.NotebookHtml):
         """The worst residual of each law over [0, duration], computed without the solver."""
         return Certificate(**self._core.certificate(self.duration))
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The motion over time and in the phase plane, as a figure that a notebook shows.
 
         Returns:
             A figure of 180 mm by 125 or, with skin, 150 mm; `figure.savefig(FILE)` writes it.
         """
-        figure: Figure = lazy.call("pindrive.plot.motion:plot_motion", self)
-        return figure
+        from pindrive.plot.motion import plot_motion
+
+        return plot_motion(self)
 
     # ---- for other programs ----------------------------------------------------------------------
 
@@ -388,8 +382,9 @@ class Motion(lazy.NotebookHtml):
         t = self.sample_times() if times is None else np.atleast_1d(_times(times))
         if t.ndim != 1:
             raise ValueError(refusal("times", "of one dimension", f"{t.ndim}"))
-        made: xr.Dataset = lazy.call("pindrive.motion.dataset:dataset", self, t)
-        return made
+        from pindrive.motion.dataset import dataset
+
+        return dataset(self, t)
 
     def to_csv(self, path: str | PathLike[str], rate: float | str = default("rate")) -> Path:
         """Write the motion at even times as CSV, and its events to a file of their own.
@@ -406,8 +401,9 @@ class Motion(lazy.NotebookHtml):
             ValueError: a rate out of its range; more than 10 000 000 samples; a file that is there
                 and holds something else, or one that cannot be written.
         """
-        made: Path = lazy.call("pindrive.files.export:to_csv", self, path, rate)
-        return made
+        from pindrive.files.export import to_csv
+
+        return to_csv(self, path, rate)
 
     def inputs(self) -> dict[str, float | tuple[tuple[float, float], ...]]:
         """What was simulated, SI, by the names of the table of quantities.

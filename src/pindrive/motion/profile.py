@@ -8,18 +8,16 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import isnan
-from typing import TYPE_CHECKING, Any, Final, overload
+from typing import Any, Final, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.quantities.drive import INPUTS, PARTS
 from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.units import UnitError, to_si
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
-
 
 _TABLE: Final = Part((*INPUTS, *PARTS))
 

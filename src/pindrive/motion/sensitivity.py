@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, isfinite, nan
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive import _core, lazy
-from pindrive.lazy import xr
-from pindrive.motion.core_numbers import PLACES, ROWS, entry
+from pindrive.lazy import mpl_figure, xr
+from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Rows, entry
+from pindrive.motion.drive import Drive
 from pindrive.motion.friction import COEFFICIENTS, PRESSED_BY, normal_force
 from pindrive.quantities.drive import COLUMNS
 from pindrive.quantities.quantity import counted
@@ -20,15 +23,6 @@ from pindrive.quantities.refusal import refusal
 from pindrive.quantities.results import SERIES
 from pindrive.quantities.status import Side, Status
 from pindrive.quantities.table import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.motion.core_numbers import CoreNumbers, Rows
-    from pindrive.motion.drive import Drive
 
 __all__ = ["Sensitivity"]
 
@@ -111,10 +105,11 @@ class Sensitivity(lazy.NotebookHtml):
         """How large each parameter is, SI; of one that is zero, how large its like are."""
         return tuple(derivative.size for derivative in self._derivatives)
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """How far a part of each parameter moves the pin, over time, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_motion_sensitivity", self)
-        return figure
+        from pindrive.plot.sensitivity import plot_motion_sensitivity
+
+        return plot_motion_sensitivity(self)
 
     def to_dataset(self, times: ArrayLike | None = None) -> xr.Dataset:
         """All derivatives with their units.

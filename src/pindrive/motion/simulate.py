@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
+from typing import Protocol, cast, runtime_checkable
 
 from pindrive import _core
+from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
 from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release, check_fits
@@ -13,9 +14,6 @@ from pindrive.quantities.drive import INPUTS
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, warn_of
-
-if TYPE_CHECKING:
-    from pindrive.motion.core_numbers import CoreNumbers
 
 _SEEN = {quantity.name: quantity.seen for quantity in INPUTS if quantity.seen}
 _GLANCE = (

@@ -6,11 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import isfinite, nan
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.device.scanning import Progress
+from pindrive.files.device import DeviceFile
 from pindrive.lazy import qmc
 from pindrive.optimisation.around import alternatives, at_ends, maps
 from pindrive.optimisation.effort import Count, Effort, usual_effort
@@ -32,10 +34,6 @@ from pindrive.study.design import device_at
 from pindrive.study.distributions import with_links
 from pindrive.study.outputs import Demand
 from pindrive.study.workers import Cluster, crew
-
-if TYPE_CHECKING:
-    from pindrive.device.scanning import Progress
-    from pindrive.files.device import DeviceFile
 
 __all__ = ["optimise"]
 

@@ -6,15 +6,13 @@ and a nugget for what jumps; all by maximum likelihood, as in Jones, Schonlau an
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.lazy import linalg, optimize
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 Array = NDArray[np.float64]
 LENGTHS: Final = (0.05, 20.0)

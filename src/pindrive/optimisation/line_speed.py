@@ -8,22 +8,18 @@ speeds.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isnan, nan, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from pindrive.device.device import Criteria, Device
 from pindrive.evaluation.resolution import PRECISION, TRIED, check_work, two_lines
 from pindrive.optimisation.goals import Asked
 from pindrive.quantities.table import default
-from pindrive.study.design import device_at
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from pindrive.device.device import Criteria, Device
-    from pindrive.study.design import Plan
+from pindrive.study.design import Plan, device_at
 
 FINE: Final = 1e-2
 """Part of a speed to which it is found, unless it is confirmed."""

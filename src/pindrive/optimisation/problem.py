@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +17,11 @@ from pindrive.optimisation.goals import PRICE, SPEED, Asked, Goal, Variable
 from pindrive.optimisation.scanned import Scanned
 from pindrive.optimisation.search import Population
 from pindrive.quantities.budgets import worker_count
+from pindrive.study.design import Plan
 from pindrive.study.distributions import Linked, with_links
 from pindrive.study.evaluate import evaluate, exist, is_slow
 from pindrive.study.outputs import DESIGN_OUTPUTS, NUMBERS, Demand
-from pindrive.study.workers import standing
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from pindrive.study.design import Plan
-    from pindrive.study.workers import Cluster
+from pindrive.study.workers import Cluster, standing
 
 Array = NDArray[np.float64]
 POINTS: Final = 1 << 18

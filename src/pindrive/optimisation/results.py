@@ -2,37 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive import lazy
+from pindrive.files.device import DeviceFile
 from pindrive.files.device_text import device_text
 from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import variable
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
+from pindrive.motion.motion import Motion
+from pindrive.optimisation.effort import Count
 from pindrive.optimisation.goals import Goal, Variable, Wish
 from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
-from pindrive.study.outputs import NUMBERS, Demand, attributes
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
-
-    from pindrive.files.device import DeviceFile
-    from pindrive.motion.motion import Motion
-    from pindrive.optimisation.effort import Count
-    from pindrive.study.outputs import Share
-
+from pindrive.study.outputs import NUMBERS, Demand, Share, attributes
 
 __all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
 
@@ -231,10 +224,11 @@ class Design(lazy.NotebookHtml):
         found = with_links(plan.device, at, plan.links)
         return follow(plan, {key: float(x) for key, x in found.items()})
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The front, and the maps of the feasible region around the design, as a figure."""
-        figure: Figure = lazy.call("pindrive.plot.design:plot_design", self)
-        return figure
+        from pindrive.plot.design import plot_design
+
+        return plot_design(self)
 
     def to_dataset(self) -> xr.Dataset:
         """All of it as data.

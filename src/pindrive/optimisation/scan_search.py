@@ -8,18 +8,15 @@ optimisation (Jones, Schonlau and Welch 1998) with confidence bounds (Cox and Jo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.lazy import qmc
+from pindrive.optimisation.problem import Problem
 from pindrive.optimisation.search import Population, gained, non_dominated, search
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from pindrive.optimisation.problem import Problem
 
 Array = NDArray[np.float64]
 TRUSTS: Final = (-1.0, 0.0, 1.0, 2.0)

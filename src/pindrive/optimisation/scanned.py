@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.optimisation.kriging import Kriging
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 Array = NDArray[np.float64]
 

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pindrive.files.device import DeviceFile
 from pindrive.optimisation.goals import Variable, Wish
 from pindrive.optimisation.problem import Problem
 from pindrive.optimisation.scanned import Scanned
 from pindrive.study.distributions import Sample, implied_links
 from pindrive.study.outputs import Share
 from pindrive.study.spec import plan_of
-
-if TYPE_CHECKING:
-    from pindrive.files.device import DeviceFile
 
 Array = NDArray[np.float64]
 

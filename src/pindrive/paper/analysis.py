@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.motion.batch import batched
 from pindrive.motion.release import Release
@@ -15,16 +16,13 @@ from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.equations import GOOD
 from pindrive.paper.exhibit import Exhibit, by_case, listed, page, trend
-from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Releases
+from pindrive.paper.formulas import UNIT_DRIVE, UNIT_RELEASE, Array, Releases
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-    from pindrive.paper.formulas import Array
 
 _FACTORS_LABEL: Final = "the paper's damping factors"
 _BOUNDS: Final[dict[str, tuple[Any, str]]] = {

@@ -6,15 +6,10 @@ equation refers to is taken right, so that each answers for its own slip.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from pindrive.paper import formulas
-from pindrive.paper.formulas import Releases
-
-if TYPE_CHECKING:
-    from pindrive.paper.formulas import Array
+from pindrive.paper.formulas import Array, Releases
 
 
 def initial_phase(r: Releases) -> Array:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from pindrive.paper import as_printed, formulas, population
 from pindrive.paper.claims_of_analysis import no_closed_form, of_the_analysis, statements
+from pindrive.paper.equations import Row
 from pindrive.paper.exhibit import at_most, share
-from pindrive.paper.population import TINY, Claim, finger_friction, motion_of, swing
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from pindrive.paper.equations import Row
-    from pindrive.paper.population import Facts
+from pindrive.paper.population import TINY, Claim, Facts, finger_friction, motion_of, swing
 
 # ---- Simulation: the last paragraph --------------------------------------------------------------
 

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
 from pindrive.paper import formulas, population
 from pindrive.paper.exhibit import at_most, share
-from pindrive.paper.population import TINY, Claim
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from pindrive.paper.formulas import Array, Releases
-    from pindrive.paper.population import Facts, Truth
-
+from pindrive.paper.formulas import Array, Releases
+from pindrive.paper.population import TINY, Claim, Facts, Truth
 
 _PLACE = "Mathematical analysis"
 

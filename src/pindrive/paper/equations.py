@@ -6,18 +6,15 @@ What a deviation is a part of stands in its row.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from pindrive.paper import as_printed, formulas
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import at_most, share
-from pindrive.paper.formulas import Releases
-
-if TYPE_CHECKING:
-    from pindrive.paper.formulas import Array
-    from pindrive.paper.population import Facts
+from pindrive.paper.formulas import Array, Releases
+from pindrive.paper.population import Facts
 
 GOOD: Final = 0.01
 """A printed form is good where it is off by no more."""

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
 from math import ceil, log10
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
-from pindrive.lazy import stats
+from pindrive.lazy import stats, xr
 from pindrive.plot.style import STYLE, new_figure
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import xarray as xr
-    from numpy.typing import ArrayLike
 
 WIDTH: Final = 180.0
 """Of every figure, mm."""

@@ -10,12 +10,15 @@ In the docstrings α = -b / 2m, d = x_0 - x_d, and "printed" is what the paper h
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pindrive.device.trajectory import roots
+from pindrive.lazy import xr
 from pindrive.motion.batch import batched
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.release import Release
@@ -23,13 +26,7 @@ from pindrive.quantities.quantity import NON_NEGATIVE
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import xarray as xr
-    from numpy.typing import ArrayLike, NDArray
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = [
     "acceleration",

@@ -6,6 +6,7 @@ numbers, and so every answer is a function of four numbers.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -13,6 +14,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from pindrive.motion.batch import batched
 from pindrive.paper import baseline, formulas
@@ -22,12 +24,9 @@ from pindrive.paper.population import SEED
 from pindrive.plot.contours import MAP, draw_contours, jump_key
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
 POINTS: Final = 121
 BASELINE: Final[dict[str, Any]] = {

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch
+from numpy.typing import NDArray
 
-from pindrive import Profile, simulate
+from pindrive import Motion, Profile, simulate
 from pindrive.paper import baseline
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.exhibit import Exhibit, page
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive import Motion
 
 READINGS: Final = {"ratio": "damping ratio ζ", "viscous": "b in N·s/m"}
 

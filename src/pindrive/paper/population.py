@@ -10,25 +10,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pindrive.lazy import xr
 from pindrive.motion.drive import Contact, Drive
+from pindrive.motion.motion import Motion
 from pindrive.motion.release import Release
 from pindrive.motion.simulate import simulated
 from pindrive.paper import formulas
-from pindrive.paper.formulas import Releases
+from pindrive.paper.formulas import Array, Releases
 
-if TYPE_CHECKING:
-    import xarray as xr
-    from numpy.typing import NDArray
-
-    from pindrive.motion.motion import Motion
-    from pindrive.paper.formulas import Array
-
-    Truth = NDArray[np.bool_]
-
+Truth = NDArray[np.bool_]
 
 SEED = 298
 """The paper's number in its journal."""

@@ -6,10 +6,11 @@ Every number in it is computed from stated seeds, so that it comes out the same 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import Final, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -26,18 +27,10 @@ from pindrive.paper import (
 )
 from pindrive.paper.baseline import FACTORS
 from pindrive.paper.claims import claims
-from pindrive.paper.equations import GOOD
-from pindrive.paper.exhibit import at_most, listed, markdown
+from pindrive.paper.equations import GOOD, Row
+from pindrive.paper.exhibit import Exhibit, at_most, listed, markdown
 from pindrive.paper.page import anchor, page
 from pindrive.paper.population import Claim, Facts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from pindrive.paper.equations import Row
-    from pindrive.paper.exhibit import Exhibit
-    from pindrive.paper.population import Claim
-
 
 T = TypeVar("T")
 

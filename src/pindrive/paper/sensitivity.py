@@ -6,14 +6,18 @@ friction follows its weight.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from pindrive.motion.batch import batched
+from pindrive.motion.drive import Drive
+from pindrive.motion.motion import Motion
 from pindrive.motion.profile import Profile
 from pindrive.motion.simulate import simulated
 from pindrive.paper import baseline
@@ -23,14 +27,8 @@ from pindrive.quantities.quantity import significant
 from pindrive.quantities.table import QUANTITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive.motion.drive import Drive
-    from pindrive.motion.motion import Motion
 
 POINTS: Final = 801
 BASELINE: Final[dict[str, Any]] = {

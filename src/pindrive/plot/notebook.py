@@ -5,7 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from html import escape
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -28,18 +28,8 @@ _STYLE: Final = (
 )
 
 
-class Result(Protocol):
-    """What every result has."""
-
-    def plot(self) -> Figure:
-        """Its figure."""
-
-    def to_dataset(self) -> xr.Dataset:
-        """All of it as data."""
-
-
-def html(result: Result) -> str:
-    """The result as a piece of HTML that needs nothing else.
+def html(result: Any) -> str:
+    """A result, which has `plot` and `to_dataset`, as a piece of HTML that needs nothing else.
 
     The picture; a table for each dimension with few labels, such as the parameters of a fit; a row
     for each number that exists. Folded away: the terms of an energy ledger, and other arrays, with

@@ -5,12 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from difflib import SequenceMatcher
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted
-
-if TYPE_CHECKING:
-    from pindrive.quantities.quantity import Quantity
 
 _NEAR: Final = 0.6
 """Least likeness of a name that is suggested."""

@@ -6,9 +6,8 @@ Only the standard library is imported, so that a command starts fast.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import Field, dataclass, fields
 from typing import (
-    TYPE_CHECKING,
     Any,
     Final,
     SupportsFloat,
@@ -17,26 +16,31 @@ from typing import (
     dataclass_transform,
 )
 
-from pindrive import lazy
 from pindrive.quantities.quantity import Quantity
-from pindrive.quantities.refusal import refusal
+from pindrive.quantities.refusal import quoted, refusal
 
 T = TypeVar("T")
 
-if TYPE_CHECKING:
-    from dataclasses import Field
 
-    class Number:
-        """The type of a `checked` field that takes a number, SI, or text with a unit."""
+class Number:
+    """The type of a `checked` field that takes a number, SI, or text with a unit."""
 
-        def __get__(self, instance: object, owner: object) -> float: ...
-        def __set__(self, instance: object, value: float | str) -> None: ...
+    def __get__(self, instance: object, owner: object) -> float:
+        """The number, SI."""
+        raise NotImplementedError
 
-    class OptionalNumber:
-        """The same, of one that may be None."""
+    def __set__(self, instance: object, value: float | str) -> None:
+        """Takes a number or text."""
 
-        def __get__(self, instance: object, owner: object) -> float | None: ...
-        def __set__(self, instance: object, value: float | str | None) -> None: ...
+
+class OptionalNumber:
+    """The same, of one that may be None."""
+
+    def __get__(self, instance: object, owner: object) -> float | None:
+        """The number, SI, or None."""
+
+    def __set__(self, instance: object, value: float | str | None) -> None:
+        """Takes a number, text or None."""
 
 
 class Part:
@@ -95,10 +99,12 @@ class Part:
             )
             raise ValueError(refusal(label, many, shown, where))
         elif isinstance(value, str):
-            given = lazy.call("pindrive.quantities.units:quoted", value) if given is None else given
+            from pindrive.quantities.units import to_si  # with decimals, which few programs need
+
+            given = quoted(value) if given is None else given
             try:
                 example, unit = quantity.usual, quantity.unit or "1"
-                number = lazy.call("pindrive.quantities.units:to_si", value, unit, example)
+                number = to_si(value, unit, example)
             except ValueError as error:
                 raise ValueError(refusal(label, str(error), given, where)) from None
         else:

@@ -6,12 +6,9 @@ from collections.abc import Callable, Sequence
 from itertools import islice, pairwise
 from math import copysign, inf
 from operator import lt
-from typing import TYPE_CHECKING
 
+from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import refusal
-
-if TYPE_CHECKING:
-    from pindrive.quantities.quantity import Quantity
 
 
 def check_increasing(

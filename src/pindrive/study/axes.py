@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import inf
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 from pindrive.files.keys import DRIVE, NAMES, NUMBERS, TABLES, has_part, number
 from pindrive.quantities import budgets
+from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.units import UnitError, to_si
 from pindrive.study.distributions import KINDS, Axis, Distribution, Even, Kind, Linked, Listed
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from pindrive.quantities.quantity import Quantity
 
 _WAYS: Final = ("lin", "log", "list", *KINDS, "times")
 _BESIDE: Final = {"lin": ("count",), "log": ("count",), "list": (), "times": ("of",)}

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from hashlib import sha256
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pindrive.device.hand import HandPath
+from pindrive.device.page import Scene
 from pindrive.device.page_description import Page, recorded
+from pindrive.device.pin_array import PinArray
 from pindrive.device.reading import Reading
-from pindrive.files.device import Setting, device_of
+from pindrive.files.device import DeviceFile, Setting, device_of
 from pindrive.files.keys import has_part, number, written
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
@@ -27,21 +32,9 @@ from pindrive.study.distributions import (
     as_distribution,
     with_links,
 )
+from pindrive.study.outputs import Demand
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from pindrive.files.device import DeviceFile
-    from pindrive.study.outputs import Demand
-
-    Columns = dict[str, NDArray[np.float64]]
-    from pindrive.device.hand import HandPath
-    from pindrive.device.page import Scene
-    from pindrive.device.pin_array import PinArray
-
+Columns = dict[str, NDArray[np.float64]]
 
 KEYS: Final = ("text", "image", "grating", "font", "path")
 _KEPT: Final = 2

@@ -9,28 +9,23 @@ order, draws what the study says stands there.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, log
-from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from typing import Any, Final, Literal, Protocol
 from zlib import crc32
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.files.keys import DRIVE, friction_parts
 from pindrive.lazy import qmc, special
 from pindrive.motion.friction import COEFFICIENT_OF, friction_force
 from pindrive.quantities.table import QUANTITIES
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Indices = NDArray[np.int64]
-    from collections.abc import Callable, Collection, Mapping
-
-    from numpy.typing import NDArray
-
-    Columns = dict[str, NDArray[np.float64]]
+Indices = NDArray[np.int64]
+Columns = dict[str, NDArray[np.float64]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from math import inf, nan
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pindrive.device.scanning import scan
+from pindrive.device.scanning import Progress, scan
+from pindrive.files.device import DeviceFile
 from pindrive.files.keys import variable
 from pindrive.files.schema import scaled_rows
 from pindrive.motion.batch import batched
@@ -21,19 +24,9 @@ from pindrive.motion.simulate import motion_of, simulated
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.refusal import Refusal, refused_by, told_by
 from pindrive.quantities.status import End, SimulationError, Status
-from pindrive.study.design import device_at
+from pindrive.study.design import Columns, Plan, Ranges, device_at
 from pindrive.study.outputs import MEASURED, SCANNED, variables
 from pindrive.study.workers import standing
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import Progress
-    from pindrive.files.device import DeviceFile
-    from pindrive.study.design import Columns, Plan, Ranges
-
 
 Row = dict[str, Any]
 

@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from pindrive import lazy
 from pindrive.files.keys import variable
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.simulate import motion_of
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.study.design import ranges_of
-from pindrive.study.distributions import base_value, exponents
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.figure import Figure
-
-    from pindrive.study.design import Plan
-    from pindrive.study.distributions import Linked
+from pindrive.study.design import Plan, ranges_of
+from pindrive.study.distributions import Linked, base_value, exponents
 
 _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 """Keys along which the core has no derivatives."""
@@ -56,10 +49,11 @@ class Elasticities(lazy.NotebookHtml):
         """`incomplete` where keys have no derivatives; `gaps` says why."""
         return Status.incomplete if self.gaps else Status.ok
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The elasticities as a table of colours, numbers down and keys across."""
-        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_elasticities", self)
-        return figure
+        from pindrive.plot.sensitivity import plot_elasticities
+
+        return plot_elasticities(self)
 
     def to_dataset(self) -> xr.Dataset:
         """The elasticities as data.

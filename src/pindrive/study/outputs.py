@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.lazy import h5py, stats
 from pindrive.quantities.names import Names, label, number_names
@@ -28,14 +31,6 @@ from pindrive.quantities.results import (
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import UnitError, to_si
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from pindrive.quantities.quantity import Quantity
 
 
 def _median(quantity: Quantity) -> Quantity:

@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
-from pindrive.lazy import optimize, xr
+from pindrive.device.scanning import Progress
+from pindrive.lazy import mpl_figure, optimize, xr
+from pindrive.motion.motion import Motion
 from pindrive.motion.simulate import motion_of
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
-from pindrive.study.design import Ranges, ranges_of
+from pindrive.study.design import Plan, Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
-from pindrive.study.outputs import NUMBERS, Share, attributes
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import Progress
-    from pindrive.motion.motion import Motion
-    from pindrive.study.design import Plan
-    from pindrive.study.outputs import Demand
-
+from pindrive.study.outputs import NUMBERS, Demand, Share, attributes
 
 USUAL_COUNT: Final = 100_000
 USUAL_COUNT_OF_SCANS: Final = 1000
@@ -90,10 +82,11 @@ class Robustness(lazy.NotebookHtml):
         """`incomplete` where draws cannot exist and were left out; `refusals` says why."""
         return Status.incomplete if self.refusals else Status.ok
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """How the watched numbers spread, with the limits, as a figure that a notebook shows."""
-        figure: Figure = lazy.call("pindrive.plot.robustness:plot_robustness", self, self.name)
-        return figure
+        from pindrive.plot.robustness import plot_robustness
+
+        return plot_robustness(self, self.name)
 
     def to_dataset(self) -> xr.Dataset:
         """The watched numbers of every design, and the yield.

@@ -12,11 +12,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pindrive import lazy
+from pindrive.device.scanning import Progress
 from pindrive.files.keys import variable
 from pindrive.files.output import (
     STUDY_NETCDF,
@@ -26,11 +27,12 @@ from pindrive.files.output import (
     check_unread,
     naming,
 )
-from pindrive.lazy import h5py, xr
+from pindrive.lazy import h5py, mpl_figure, xr
 from pindrive.quantities.budgets import worker_count
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
 from pindrive.study import outputs
+from pindrive.study.design import Plan
 from pindrive.study.evaluate import evaluate
 from pindrive.study.store import (
     Journal,
@@ -43,13 +45,6 @@ from pindrive.study.store import (
     lay_out,
 )
 from pindrive.study.workers import DIED, check_installed, cluster_executor, workers
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from pindrive.device.scanning import Progress
-    from pindrive.study.design import Plan
-
 
 Work = Callable[["Plan", list[int]], Iterator[tuple[int, list[Piece]]]]
 """Computes chunks of a plan, and yields each when it is done, in any order."""
@@ -81,14 +76,15 @@ class Sweep(lazy.NotebookHtml):
         """`incomplete` where points are still to be computed, or cannot exist."""
         return Status.ok if self.complete and not self.refused else Status.incomplete
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The settling time, or the part of lines shown, over the first two keys that vary.
 
         Raises:
             ValueError: the sweep is not complete, or holds a single point.
         """
-        figure: Figure = lazy.call("pindrive.plot.slices:plot_sweep", self.path)
-        return figure
+        from pindrive.plot.slices import plot_sweep
+
+        return plot_sweep(self.path)
 
     def to_dataset(self) -> xr.Dataset:
         """The points, as `Study.run` gives them; read from the file when they are needed."""

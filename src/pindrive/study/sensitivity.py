@@ -2,35 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive import lazy
-from pindrive.lazy import qmc, xr
+from pindrive.device.scanning import Progress
+from pindrive.lazy import mpl_figure, qmc, xr
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
-from pindrive.study.design import Ranges, ranges_of
+from pindrive.study.design import Plan, Ranges, ranges_of
+from pindrive.study.distributions import Distribution
 from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
 from pindrive.study.local_sensitivity import Elasticities, elasticities
 from pindrive.study.outputs import LEDGER, MEASURED, SCAN_MEASURED, known_output
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from pindrive.device.scanning import Progress
-    from pindrive.study.design import Plan
-    from pindrive.study.distributions import Distribution
-
-    Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
-    """Numbers at points given by columns (keys, n): arrays of shape (n,)."""
-
+Function = Callable[[NDArray[np.float64]], Mapping[str, NDArray[np.float64]]]
+"""Numbers at points given by columns (keys, n): arrays of shape (n,)."""
 
 RESAMPLES: Final = 500
 FEWEST_ROWS: Final = 128
@@ -197,10 +190,11 @@ class Influence(lazy.NotebookHtml):
         """`incomplete` where points cannot exist and were left out; `refusals` says why."""
         return Status.incomplete if self.refusals else Status.ok
 
-    def plot(self) -> Figure:
+    def plot(self) -> mpl_figure.Figure:
         """The indices as bars, numbers down and keys across, as a figure that a notebook shows."""
-        figure: Figure = lazy.call("pindrive.plot.sensitivity:plot_influence", self, self.name)
-        return figure
+        from pindrive.plot.sensitivity import plot_influence
+
+        return plot_influence(self, self.name)
 
     def to_dataset(self) -> xr.Dataset:
         """The indices with their 95 % confidence intervals.

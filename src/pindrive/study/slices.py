@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Any, Final
+from os import PathLike
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.files.keys import NUMBERS as KEYS
 from pindrive.files.keys import WHOLE, variable
 from pindrive.lazy import xr
 from pindrive.quantities.names import Names, label
+from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted
 from pindrive.quantities.table import short
 from pindrive.quantities.units import UnitError, to_si
-from pindrive.study.distributions import Linked
+from pindrive.study.distributions import Distribution, Linked
 from pindrive.study.outputs import (
     MEASURED,
     NUMBERS,
@@ -27,16 +31,6 @@ from pindrive.study.outputs import (
     from_attribute,
     known_output,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from os import PathLike
-
-    from numpy.typing import NDArray
-
-    from pindrive.quantities.quantity import Quantity
-    from pindrive.study.distributions import Distribution
-
 
 QUANTITY: Final[dict[str, Quantity]] = {variable(key): q for key, q in KEYS.items()} | NUMBERS
 """Inputs and numbers by the names of their variables."""

@@ -5,11 +5,20 @@ Whatever is wrong is found in one pass and said in lines that name file, key, va
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from pindrive.device.page_description import Page
-from pindrive.files.device import ConfigError, Setting, device_of, read_tables, settings_of
+from pindrive.files.device import (
+    ConfigError,
+    DeviceFile,
+    Setting,
+    device_of,
+    read_tables,
+    settings_of,
+)
 from pindrive.files.keys import NAMES, STUDY_KEYS, TABLES, variable
 from pindrive.files.recording import is_file
 from pindrive.quantities import budgets
@@ -27,15 +36,15 @@ from pindrive.study.distributions import (
     base_value,
     implied_links,
 )
-from pindrive.study.outputs import OUTPUTS, SCAN_OUTPUTS, demands, known_output, usual_outputs
+from pindrive.study.outputs import (
+    OUTPUTS,
+    SCAN_OUTPUTS,
+    Demand,
+    demands,
+    known_output,
+    usual_outputs,
+)
 from pindrive.study.validation import conflicts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from os import PathLike
-
-    from pindrive.files.device import DeviceFile
-    from pindrive.study.outputs import Demand
 
 _OWN: Final = ("name", *STUDY_KEYS)
 _SAMPLE: Final = ("method", "count", "seed")

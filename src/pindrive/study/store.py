@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from zlib import crc32
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pindrive.device.coil import COIL
 from pindrive.device.electromagnet import DIRECT
@@ -26,13 +28,7 @@ from pindrive.files.keys import NUMBERS, variable
 from pindrive.files.output import OutputError, naming
 from pindrive.lazy import h5netcdf, h5py
 from pindrive.study import outputs
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from pindrive.study.design import Plan
+from pindrive.study.design import Plan
 
 
 class Piece(NamedTuple):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from pindrive.device.page_description import Page
 from pindrive.files.device import DeviceFile
@@ -19,9 +19,6 @@ from pindrive.study.axes import as_read
 from pindrive.study.design import Plan
 from pindrive.study.runner import Work, on_cluster, on_threads, sweep
 from pindrive.study.spec import plan_of, read_study
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _PLACE: Final = "Study"
 """Where values were written, in messages."""

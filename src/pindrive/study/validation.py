@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator, Mapping
+from typing import Final
 
 import numpy as np
 
 from pindrive.device.electromagnet import check_one_way
 from pindrive.device.pin_array import check_count
+from pindrive.files.device import DeviceFile
 from pindrive.files.keys import NUMBERS
 from pindrive.motion.coefficients import KINETIC, within
 from pindrive.motion.drive import check_one_kind
 from pindrive.motion.friction import COEFFICIENTS, normal_force
 from pindrive.quantities import budgets
 from pindrive.quantities.table import QUANTITIES
-from pindrive.study.design import COUNTS
+from pindrive.study.design import COUNTS, Columns, Plan
 from pindrive.study.distributions import (
     Axis,
     Distribution,
@@ -24,12 +26,6 @@ from pindrive.study.distributions import (
     circle,
     with_links,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from pindrive.files.device import DeviceFile
-    from pindrive.study.design import Columns, Plan
 
 _MOST_COMPARED = 1 << 20
 """Points of one dimension that are compared one by one."""
