@@ -256,7 +256,7 @@ def device_of(
 
     whole = whole or any(tables[name] for name in AROUND)
     unknown = _unknown_keys(tables)
-    meant = {name for key in unknown for name in names_in_file(key).nearest(key)}
+    meant = {name for key in unknown for name in names_in_file(key).nearest(key)[:1]}
     problems += [f"{file}: {unknown_in_file(key)}" for key in unknown]
     problems += _damping_problems(tables["drive"], meant, place)
     problems += _text_problems(tables["device"], place)
