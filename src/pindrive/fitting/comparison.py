@@ -12,8 +12,6 @@ from pindrive.fitting.results import Fit, ModelComparison
 from pindrive.motion.drive import Contact, Drive
 from pindrive.motion.profile import Profile
 
-pass
-
 __all__ = ["compare_models"]
 
 SPEEDS: Final = (0.0, 0.1, 0.4, 1.0)

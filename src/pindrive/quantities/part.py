@@ -7,14 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import Field, dataclass, fields
-from typing import (
-    Any,
-    Final,
-    SupportsFloat,
-    TypeVar,
-    cast,
-    dataclass_transform,
-)
+from typing import Any, Final, Protocol, SupportsFloat, TypeVar, cast, dataclass_transform
 
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
@@ -22,25 +15,18 @@ from pindrive.quantities.refusal import quoted, refusal
 T = TypeVar("T")
 
 
-class Number:
+class Number(Protocol):
     """The type of a `checked` field that takes a number, SI, or text with a unit."""
 
-    def __get__(self, instance: object, owner: object) -> float:
-        """The number, SI."""
-        raise NotImplementedError
-
-    def __set__(self, instance: object, value: float | str) -> None:
-        """Takes a number or text."""
+    def __get__(self, instance: object, owner: object) -> float: ...
+    def __set__(self, instance: object, value: float | str) -> None: ...
 
 
-class OptionalNumber:
+class OptionalNumber(Protocol):
     """The same, of one that may be None."""
 
-    def __get__(self, instance: object, owner: object) -> float | None:
-        """The number, SI, or None."""
-
-    def __set__(self, instance: object, value: float | str | None) -> None:
-        """Takes a number, text or None."""
+    def __get__(self, instance: object, owner: object) -> float | None: ...
+    def __set__(self, instance: object, value: float | str | None) -> None: ...
 
 
 class Part:
