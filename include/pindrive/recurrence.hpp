@@ -69,8 +69,9 @@ class Extent {
 ///
 /// Each state is compared with two kept states. One is renewed after ever more events, so that a period of any
 /// length is found, and the other after few events, so that a short period is found soon. The first three events
-/// are not kept: most motions have few events and rest. A return within `return_tolerance` closes a cycle. A cycle that is approached geometrically is followed from return to
-/// return, and closed when the contraction bounds its remaining distance by `approach_tolerance`.
+/// are not kept: most motions come to rest after few. A return within `return_tolerance` closes a cycle. A cycle
+/// that is approached geometrically is followed from return to return, and closed when the contraction bounds its
+/// remaining distance by `approach_tolerance`.
 ///
 /// A motion that has not returned after many events is irregular (chaotic or quasi-periodic), unless it grows
 /// or decays: then the durations of windows of equally many events increase or decrease without exception, or
@@ -123,7 +124,7 @@ class CycleDetector {
     T stuck{0};  ///< for how long the plate has stuck to the pin since then, s
   };
 
-  static constexpr long long first_kept = 3;  ///< of the events from 0 on
+  static constexpr long long first_kept = 3;  ///< index of the first event that is kept
   /// Events after which the recent state is renewed.
   static constexpr long long short_memory = 32;
   static constexpr int windows_in_block = irregular_windows / 8;
@@ -240,10 +241,10 @@ class CycleDetector {
 
   const Drive<T>& drive_;
   Visit kept_, recent_, followed_;
-  long long count_{0},
-      next_{first_kept};      ///< events so far; count at which the kept visit is renewed
-  long long period_{0};       ///< of the followed approach, in events; 0 without one
-  T distance_{0}, ratio_{1};  ///< of its last return, and to the distance before
+  long long count_{0};          ///< events so far
+  long long next_{first_kept};  ///< count at which the kept visit is renewed
+  long long period_{0};         ///< of the followed approach, in events; 0 without one
+  T distance_{0}, ratio_{1};    ///< of its last return, and to the distance before
 
   int in_window_{0}, windows_{0};  ///< events in the window, windows so far
   int turns_{0};                   ///< changes between longer and shorter windows
