@@ -93,7 +93,7 @@ constexpr struct {
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   if (argc == 3 && (what == "release" || what == "summary"))
-    return releases(what == "summary", std::atol(argv[2]));
+    return releases(what == "summary", std::strtol(argv[2], nullptr, 10));
   for (const auto& family : families)
     if (argc == 4 && what == family.name)
       return hashes(family.family, std::strtoull(argv[2], nullptr, 10),
