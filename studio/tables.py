@@ -35,6 +35,7 @@ from pindrive.motion.release import CONTINUOUS, INPUTS
 from pindrive.plot.style import CURVES, EVENT_SHAPE, PALETTE, SIGNS, event_name
 from pindrive.quantities import budgets
 from pindrive.quantities.drive import COLUMNS
+from pindrive.quantities.names import OTHER_WORDS
 from pindrive.quantities.quantity import Bounds, Quantity
 from pindrive.quantities.results import CHANNELS, MOTION, OUTPUTS
 from pindrive.quantities.table import QUANTITIES
@@ -159,6 +160,8 @@ def tables() -> dict[str, Any]:
         "series": [column(quantity) for quantity in MOTION],
         "channels": [column(quantity) for quantity in CHANNELS.values()],
         "keys": KEYS,
+        "variables": {key: quantity.variable for key, quantity in NUMBERS.items()},
+        "otherWords": OTHER_WORDS,
         "tables": TABLES,
         "alone": ALONE,
         "around": AROUND,

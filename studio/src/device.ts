@@ -15,7 +15,8 @@ import {
 } from "./checks";
 import type { Row, Rows } from "./core";
 import { CONTACTS, frictionKeys, type Value, type Values } from "./friction";
-import { closest, floatRepr, general, quoted } from "./python";
+import { nearest, unknownInFile } from "./names";
+import { floatRepr, general, quoted } from "./python";
 import { columnsOf, DRIVE, INPUTS, type Quantity, required, TABLES } from "./table";
 import { isTable, parseToml, TomlError, type TomlTable, type TomlValue } from "./toml";
 import { toSi, UnitError } from "./units";
@@ -122,8 +123,8 @@ class Reader {
     const { file, tables, problems } = this;
     const whole = TABLES.around.some((name) => Object.keys(tables[name]!).length > 0);
     const unknown = this.unknownKeys();
-    const meant = new Set(unknown.map((key) => nearest(key)));
-    for (const key of unknown) problems.push(`${file}: ${notKnown(key)}`);
+    const meant = new Set(unknown.map((key) => nearest(key)[0]));
+    for (const key of unknown) problems.push(`${file}: ${unknownInFile(key)}`);
     this.checkDamping(meant);
     this.checkTexts();
     const hand = whole && !("mouse_velocity" in tables.motion!);
@@ -251,32 +252,6 @@ class Reader {
 function split(key: string): [string, string] {
   const dot = key.indexOf(".");
   return dot < 0 ? [key, ""] : [key.slice(0, dot), key.slice(dot + 1)];
-}
-
-// ---- names ---------------------------------------------------------------------------------------
-
-/** The known table or key most like `key`. */
-function nearest(key: string): string | undefined {
-  const names = new Map<string, string>();
-  for (const known of [...TABLES.keys].reverse()) names.set(split(known)[1], known);
-  if (!key.includes(".")) for (const table of TABLES.tables) names.set(table, table);
-  const dot = key.lastIndexOf(".");
-  const [table, name] = [key.slice(0, Math.max(dot, 0)), key.slice(dot + 1)];
-  const all = [...names.keys()];
-  const here = all.filter((known) => TABLES.keys.includes(`${table}.${known}`));
-  const near = closest(key, TABLES.keys, 0.8) ?? closest(name, here) ?? closest(name, all, 0.7);
-  return near === undefined ? undefined : (names.get(near) ?? near);
-}
-
-function notKnown(key: string): string {
-  if (key === "plate.stiffness") {
-    return `${key} cannot be given, the plate is rigid; skin gives way by finger.stiffness`;
-  }
-  const near = nearest(key);
-  const said = /^[\w.-]{1,60}$/u.test(key) ? key : quoted(key);
-  if (near) return `unknown key ${said}; did you mean ${near}?`;
-  const known = TABLES.keys.filter((other) => other.startsWith(`${split(key)[0]}.`));
-  return `unknown key ${said}; there are ${(known.length ? known : TABLES.tables).join(", ")}`;
 }
 
 // ---- values ----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-// Values as Python writes them in messages, and its way of finding the nearest name.
+// Values as Python writes them in messages.
 
 /** The repr of a float: the shortest digits that give it back. */
 export function floatRepr(value: number): string {
@@ -81,45 +81,4 @@ export function quoted(value: unknown): string {
 export function counted(count: number, noun: string): string {
   const shown = String(count).replace(/\B(?=(\d{3})+$)/g, " ");
   return `${shown} ${noun}${count === 1 ? "" : "s"}`;
-}
-
-// ---- the nearest name ------------------------------------------------------------------------------
-
-/** The best match of a word among others with at least the similarity `cutoff`; as difflib has it. */
-export function closest(word: string, among: readonly string[], cutoff = 0.6): string | undefined {
-  let best: string | undefined;
-  let most = -1;
-  for (const candidate of among) {
-    const ratio = similarity(candidate, word);
-    // Of two alike, the one that sorts last, as heapq.nlargest of (ratio, word) gives it.
-    if (ratio >= cutoff && (ratio > most || (ratio === most && candidate > best!))) {
-      [best, most] = [candidate, ratio];
-    }
-  }
-  return best;
-}
-
-/** Twice the characters in matching blocks over all of them (Ratcliff and Obershelp). */
-function similarity(a: string, b: string): number {
-  const total = a.length + b.length;
-  return total ? (2 * matching(a, b)) / total : 1;
-}
-
-function matching(a: string, b: string): number {
-  let [size, atA, atB] = [0, 0, 0];
-  let lengths = new Map<number, number>();
-  for (let i = 0; i < a.length; ++i) {
-    const next = new Map<number, number>();
-    for (let j = 0; j < b.length; ++j) {
-      if (a[i] !== b[j]) continue;
-      const length = (lengths.get(j - 1) ?? 0) + 1;
-      next.set(j, length);
-      if (length > size) [size, atA, atB] = [length, i - length + 1, j - length + 1];
-    }
-    lengths = next;
-  }
-  if (!size) return 0;
-  return (
-    size + matching(a.slice(0, atA), b.slice(0, atB)) + matching(a.slice(atA + size), b.slice(atB + size))
-  );
 }

@@ -56,6 +56,10 @@ interface Tables {
   /** What a recording of a release may hold over time. */
   readonly channels: readonly Series[];
   readonly keys: readonly string[];
+  /** What keys that hold a quantity are called in Python. */
+  readonly variables: Readonly<Record<string, string>>;
+  /** Words that people write for the words of names. */
+  readonly otherWords: Readonly<Record<string, string>>;
   readonly tables: readonly string[];
   readonly alone: readonly string[];
   readonly around: readonly string[];

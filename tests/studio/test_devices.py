@@ -115,6 +115,12 @@ WRONG = [
     ("", GOOD.replace('"10 g"', '"10 g"\ntravel = "1 mm"') + 'displacement = "-2 mm"\n'),
     ('"5 mN"', '"5 mN"\n[scan]\nhand_speed = "1 kg"'),
     ('"5 mN"', '"5 mN"\n[array]\npitc = "1 mm"'),
+    ('"5 mN"', '"5 mN"\nfriction = "1 N"'),
+    ('"5 mN"', '"5 mN"\nqqqq = "1 N"'),
+    ('"10 g"', '"10 g"\nspring = "1 N/m"'),
+    ("[drive]", "masse = 3\n[drive]"),
+    ("[drive]", "mouse_speed = 3\n[drive]"),
+    ("[drive]", "[scna]\nx = 3\n[drive]"),
 ]
 """A text of a file that is good, and what stands there instead."""
 

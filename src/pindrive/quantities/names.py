@@ -20,7 +20,7 @@ _BY_PART: Final = 0.9
 """Likeness of a known name in the wrong table, and of the names of a table that stands alone."""
 _FEW: Final = 8
 """So many names are listed where none is near."""
-_OTHER_WORDS: Final = {
+OTHER_WORDS: Final = {
     "speed": "velocity",
     "friction": "kinetic",
     "spring": "stiffness",
@@ -92,7 +92,7 @@ class Names:
     def nearest(self, given: str) -> tuple[str, ...]:
         """The names most like an unknown one, the likeliest first; none where none is near."""
         plain = _plain(given)
-        usual = "_".join(_OTHER_WORDS.get(word, word) for word in plain.split("_"))
+        usual = "_".join(OTHER_WORDS.get(word, word) for word in plain.split("_"))
         likeness: dict[str, float] = {}
         table = given.partition(".")[0] if "." in given else ""
         for spelled, name in self._all_spellings():
