@@ -54,6 +54,19 @@ def test_an_unknown_name_gets_the_nearest(given: object, said: str) -> None:
     assert str(refused.value) == said
 
 
+def test_of_two_names_with_one_spelling_the_first_has_it() -> None:
+    two = Names("number", {"median_smear": ("smear",), "worst_smear": ("smear",)})
+    assert two.matches("smear") == ("median_smear",)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("speed", "motion.velocity"), ("friction", "plate.kinetic"), ("spring", "drive.stiffness")],
+)
+def test_the_words_of_others_find_a_name(written: str, meant: str) -> None:
+    assert NAMES.nearest(written)[0] == meant
+
+
 def test_every_python_name_is_a_name_of_its_key() -> None:
     for key, quantity in NUMBERS.items():
         assert NAMES.matches(key) == NAMES.matches(key.replace(".", "_")) == (key,)
