@@ -46,10 +46,12 @@ def test_a_package_says_what_is_public(name: str) -> None:
     said = re.findall(r"^- `(\w+)`: \w.*$", package.__doc__ or "", re.MULTILINE)
     assert {*said} == {*package.__all__} == {*dir(package)}
     assert len(said) == len(package.__all__)
+    modules = {file.stem for file in Path(package.__path__[0]).glob("*.py")}
+    assert not modules & {*said}, "the import of a module would hide the name of the same spelling"
     for public in package.__all__:
         assert getattr(package, public) is not None
         assert not inspect.ismodule(getattr(package, public)), public
-    with pytest.raises(AttributeError, match=f"module 'pindrive.{name}' has no attribute 'x'"):
+    with pytest.raises(AttributeError, match=f"No pindrive.{name} attribute x"):
         getattr(package, "x")  # noqa: B009
 
 

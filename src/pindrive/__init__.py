@@ -1,14 +1,14 @@
 """pindrive: exact simulation of a tactile device's pin drive under dry friction."""
 
+import lazy_loader
+
+_public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
 
 def __getattr__(name: str) -> object:
     """Import a public name at its first use; `import pindrive` itself loads no other module."""
-    from pindrive.lazy import attach
+    if name == "__version__":
+        from importlib.metadata import version
 
-    get, _ = attach(__name__)
-    return get(name)
-
-
-def __dir__() -> list[str]:
-    """The public names alone."""
-    return sorted(__getattr__("__all__"))  # type: ignore[call-overload]
+        return version(__name__)
+    return _public_name(name)

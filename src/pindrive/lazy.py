@@ -1,8 +1,4 @@
-"""Imports at first use, of libraries and of public names.
-
-Libraries that take long to load are names of this module, and are loaded when one of their own
-names is first used. A package exports its public names by `attach`. The package lazy_loader does
-both, but its modules have no types.
+"""Libraries that take long to load, imported when one of their own names is first used.
 
 The libraries of the extra "complete" need not be installed: what needs none of them works without.
 """
@@ -19,7 +15,6 @@ __all__ = [
     "ImageFont",
     "ImageOps",
     "NotebookHtml",
-    "attach",
     "features",
     "ft2font",
     "h5netcdf",
@@ -41,7 +36,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from types import ModuleType
 
     import h5netcdf
@@ -130,34 +124,6 @@ def _loaded(name: str) -> ModuleType:
             raise ModuleNotFoundError(reason, name=error.name) from None
         raise
     return sys.modules[name]
-
-
-def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """The functions `__getattr__` and `__dir__` of a package whose names are imported at first use.
-
-    Args:
-        package: its name; the module of each public name stands in its `__init__.pyi`.
-    """
-    module = sys.modules[package]
-
-    def get(name: str) -> object:
-        with open(f"{module.__file__}i", encoding="utf-8") as stub:
-            lines = (line.split() for line in stub)
-            public = {words[5]: words[1] for words in lines if words[4:5] == ["as"]}
-        if name == "__version__":
-            from importlib.metadata import version
-
-            value: object = version(package)
-        elif name == "__all__":
-            value = sorted(public)
-        elif name in public:
-            value = getattr(_loaded(public[name]), name)
-        else:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        vars(module)[name] = value
-        return value
-
-    return get, lambda: sorted(module.__all__)
 
 
 class NotebookHtml:

@@ -17,9 +17,9 @@ from pindrive.cli.scan_tables import (
     verdict_words,
 )
 from pindrive.cli.tables import device_words, ending, motion_report, regime
-from pindrive.device import Device, PinArray, Scene, lines, scan
+from pindrive.device import Criteria, Device, PinArray, Scene, lines, scan
 from pindrive.device.dataset import numbers as pin_numbers
-from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.evaluation import Judgement, judge
 from pindrive.evaluation.line_crossings import Cue
 from pindrive.evaluation.resolution import SpeedLimit, Trial
 from pindrive.files.device import load_device

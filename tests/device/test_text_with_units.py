@@ -8,8 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray, Scene, lines, strokes
-from pindrive.evaluation import Criteria
+from pindrive.device import (
+    Coil,
+    ControlBlock,
+    Criteria,
+    Electromagnet,
+    PinArray,
+    Scene,
+    lines,
+    strokes,
+)
 
 # What makes a part of a device, with numbers in SI and with text.
 PARTS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from pindrive import Contact, Drive, Profile, Release, simulate
 from pindrive.device import (
     ControlBlock,
+    Criteria,
     Device,
     Electromagnet,
     HandPath,
@@ -23,7 +24,7 @@ from pindrive.device import (
     scan,
     strokes,
 )
-from pindrive.evaluation import Criteria, Judgement, Line, judge
+from pindrive.evaluation import Judgement, Line, judge
 from pindrive.evaluation.line_crossings import FATES, printed, turnings
 from random_scans import RandomScan
 

@@ -15,8 +15,8 @@ from pindrive import Contact, Drive
 from pindrive.cli.app import app
 from pindrive.cli.scan_tables import beyond, speed_report
 from pindrive.cli.tables import console
-from pindrive.device import Device, Electromagnet, HandPath, PinArray, Scene, scan
-from pindrive.evaluation import Criteria, judge
+from pindrive.device import Criteria, Device, Electromagnet, HandPath, PinArray, Scene, scan
+from pindrive.evaluation import judge
 from pindrive.evaluation.resolution import (
     SpeedLimit,
     SpeedLimits,

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figure_reading import Array, collisions, data, legend_of, lines, patch_spans, points
-from pindrive.evaluation import Criteria
+from pindrive.device import Criteria
 from pindrive.evaluation.resolution import SpeedLimit
 from pindrive.plot.resolution import plot_speeds
 

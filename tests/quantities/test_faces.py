@@ -12,9 +12,8 @@ from typing import Any
 import pytest
 
 from pindrive import Contact, Drive, Profile, Release, simulate, simulate_batch
-from pindrive.device import Coil, ControlBlock, Electromagnet, PinArray
+from pindrive.device import Coil, ControlBlock, Criteria, Electromagnet, PinArray
 from pindrive.device.reading import Reading
-from pindrive.evaluation import Criteria
 from pindrive.files.keys import NUMBERS, variable
 from pindrive.motion.batch import _ARGUMENTS
 from pindrive.quantities.drive import COLUMNS

@@ -22,11 +22,11 @@ from typer.testing import CliRunner, Result
 from pindrive import Contact, Drive, Status
 from pindrive.cli.app import app
 from pindrive.cli.study_tables import influence_report
-from pindrive.device import Coil, ControlBlock, Device, Electromagnet, PinArray, scan
+from pindrive.device import Coil, ControlBlock, Criteria, Device, Electromagnet, PinArray, scan
 from pindrive.device.coil import COIL as MADE_OF
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
-from pindrive.evaluation import Criteria, Judgement, judge
+from pindrive.evaluation import Judgement, judge
 from pindrive.files.keys import NUMBERS
 from pindrive.files.output import OutputError
 from pindrive.plot.sensitivity import plot_influence

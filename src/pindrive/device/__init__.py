@@ -4,6 +4,7 @@
 - `CoilState`: the last switching of a coil
 - `Commands`: on and off of one coil over time
 - `ControlBlock`: a threshold with hysteresis, at a sample rate, with latency
+- `Criteria`: what counts as felt
 - `Current`: the current in a coil over time
 - `Decision`: where the control block stands for one coil
 - `Device`: drive, magnet, control block and pin array
@@ -25,6 +26,6 @@
 - `through`: a path along recorded places
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import pindrive
 from pindrive import lazy
 from pindrive.device.controller import Decision
 from pindrive.device.current import CoilState, Commands, Current, commanded_spans
@@ -46,26 +47,6 @@ from pindrive.quantities.table import check, default
 
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
-
-
-class DescribedDevice(Protocol):
-    """A device with how a hand reads with it and what counts as felt, as a device file says."""
-
-    @property
-    def device(self) -> Device:
-        """The device."""
-
-    @property
-    def reading(self) -> Reading:
-        """How a hand reads with it."""
-
-    @property
-    def criteria(self) -> Criteria:
-        """What counts as felt."""
-
-    @property
-    def touch(self) -> float | Profile | None:
-        """Touch force over the time of a scan, N; None: that of its drive."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -369,7 +350,7 @@ class Scan(lazy.NotebookHtml):
 
 
 def scan(
-    device: Device | DescribedDevice,
+    device: Device | pindrive.DeviceFile,
     page: Page | Scene | str,
     hand: HandPath | Reading | str | PathLike[str] | None = None,
     *,
@@ -416,7 +397,7 @@ def scan(
         64
     """
     described = None if isinstance(device, Device) else device
-    if described is not None and not isinstance(getattr(described, "device", None), Device):
+    if described is not None and not isinstance(described, pindrive.DeviceFile):
         required = "a Device, or what load_device reads"
         raise ValueError(refusal("device", required, repr(device)))
     whole = device if isinstance(device, Device) else device.device

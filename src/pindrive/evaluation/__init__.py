@@ -1,6 +1,5 @@
 """What a scan showed the finger, against what is printed: by lines, by pitch, as an image.
 
-- `Criteria`: what counts as felt
 - `Echo`: a swing of a pin that feels like a line and is none
 - `Edge`: one end of a printed line, and what became of it
 - `judge`: what the finger was shown, line by line
@@ -11,6 +10,6 @@
 - `SpeedLimits`: the same of each of several pitches
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,6 +1,6 @@
-# Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
+# The module of each public name; `__init__.py` describes them.
 
-from pindrive.files.device import ConfigError as ConfigError
-from pindrive.files.device import DeviceFile as DeviceFile
-from pindrive.files.device import load_device as load_device
-from pindrive.files.output import OutputError as OutputError
+from .device import ConfigError as ConfigError
+from .device import DeviceFile as DeviceFile
+from .device import load_device as load_device
+from .output import OutputError as OutputError

@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 from pindrive.device.controller import ControlBlock
 from pindrive.device.device import Criteria, Device
 from pindrive.device.reading import Reading
-from pindrive.device.recording import read_csv
 from pindrive.files.keys import (
     ALONE,
     AROUND,
@@ -74,10 +73,11 @@ class ConfigError(ValueError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviceFile:
-    """What a device file says, in SI: the drive and the start of its motion (see `simulate`).
+    """A device file as `load_device` reads it, in SI units.
 
-    Where it has a table of the whole device, or that is requested, `whole` is that device, and how
-    a hand reads with it (see `pindrive.device.scan`).
+    It holds the drive and the start of its motion, which `simulate` takes. `whole` is the table of
+    the whole device and of the hand that reads with it, or `None` where the file has none and none
+    was requested.
     """
 
     path: Path
@@ -155,7 +155,7 @@ class DeviceFile:
     @property
     def recording_words(self) -> str:
         """What the recording is that gives the mouse velocity, and its smoothing; empty: none."""
-        return recording_words(self.tables, self.path.parent, read_csv)
+        return recording_words(self.tables, self.path.parent)
 
     def with_whole(self) -> DeviceFile:
         """The same with `whole`, also of a file without a table of it."""
@@ -263,7 +263,7 @@ def device_of(
     hand = whole and "mouse_velocity" not in tables["motion"]
     left_out = {"motion.mouse_velocity"} if hand else set()
     names = TABLES if whole else ALONE
-    read, unread = with_files_read(_copied(tables), file.parent, place, read_csv)
+    read, unread = with_files_read(_copied(tables), file.parent, place)
     values, found = read_values(read, names, place, meant | left_out)
     found = [*unread, *found]
     if hand:  # a single release is at the hand's speed then

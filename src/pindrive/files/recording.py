@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from pindrive.device.hand import RECORDED, HandPath
+from pindrive.device.recording import read_csv
 from pindrive.files.keys import NUMBERS, Tables, number
 from pindrive.motion.release import CONTINUOUS
 from pindrive.quantities.csv_table import CsvTable
@@ -24,15 +25,6 @@ SPEED: Final = "motion.mouse_velocity"
 """The input that a recording of the hand may give."""
 
 
-class Reader(Protocol):
-    """What reads a recorded path, as `read_csv` of `pindrive.device.recording` does."""
-
-    def __call__(
-        self, path: Path, /, *, acceleration: float, resolution: float, cutoff: float
-    ) -> HandPath:
-        """The path of the hand."""
-
-
 def is_file(key: str, value: object) -> bool:
     """Whether a value of a device file names a CSV, where the key may change over time."""
     over_time = key in NUMBERS and NUMBERS[key].rows_of in OVER_TIME
@@ -40,7 +32,7 @@ def is_file(key: str, value: object) -> bool:
 
 
 def with_files_read(
-    tables: Tables, folder: Path, place: Callable[..., str], read_path: Reader
+    tables: Tables, folder: Path, place: Callable[..., str]
 ) -> tuple[dict[str, Any], list[str]]:
     """The tables with the rows, SI, of each CSV that they name, and what is wrong with those.
 
@@ -48,7 +40,6 @@ def with_files_read(
         tables: of a device file; their values as TOML has them.
         folder: of that file, to which a path is relative.
         place: where keys were written.
-        read_path: of a recorded hand.
     """
     found, problems = dict(tables), []
     for key, file in files_named(tables, folder).items():
@@ -56,7 +47,7 @@ def with_files_read(
         if found[table] is tables[table]:
             found[table] = dict(tables[table])
         try:
-            found[table][name] = _rows(file, key, tables, read_path)
+            found[table][name] = _rows(file, key, tables)
         except ValueError as error:
             problems.append(f"{place(key)}: {key}: {error}")
             found[table][name] = ((0.0, 0.0),)  # the rest of the file is read all the same
@@ -74,7 +65,7 @@ def files_named(tables: Tables, folder: Path) -> dict[str, Path]:
     return found
 
 
-def recording_words(tables: Tables, folder: Path, read_path: Reader) -> str:
+def recording_words(tables: Tables, folder: Path) -> str:
     """What the recording is that gives the mouse velocity, and its smoothing; empty: none does.
 
     The tables have been read without a problem.
@@ -82,7 +73,7 @@ def recording_words(tables: Tables, folder: Path, read_path: Reader) -> str:
     file = files_named(tables, folder).get(SPEED)
     if file is None or NUMBERS[SPEED].name in CsvTable.read(file, "rows", ""):
         return ""
-    return _path(file, tables, read_path).about
+    return _path(file, tables).about
 
 
 def profile_words(file: Path) -> str:
@@ -108,12 +99,12 @@ def profile_header(quantity: Quantity) -> str:
     return f"{SERIES['time'].heading}, {quantity.heading}"
 
 
-def _rows(file: Path, key: str, tables: Tables, read_path: Reader) -> Rows:
+def _rows(file: Path, key: str, tables: Tables) -> Rows:
     """The rows of a CSV that stands for a key, SI."""
     name = NUMBERS[key].name
     table = CsvTable.read(file, f"a CSV of {name}", profile_header(NUMBERS[key]))
     if name not in table and key == SPEED and ("x" in table or "dx" in table):
-        path = _path(file, tables, read_path)
+        path = _path(file, tables)
         return path.plate_velocity(_given(tables, "array.axis")).rows
     return _profile(table, key)
 
@@ -140,9 +131,9 @@ def _profile(table: CsvTable, key: str) -> Rows:
     return rows
 
 
-def _path(file: Path, tables: Tables, read_path: Reader) -> HandPath:
+def _path(file: Path, tables: Tables) -> HandPath:
     """The path of a recorded hand, with what [scan] says of recordings."""
-    return read_path(
+    return read_csv(
         file,
         acceleration=_given(tables, "scan.hand_acceleration"),
         resolution=_given(tables, "scan.mouse_resolution"),

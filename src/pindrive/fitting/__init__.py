@@ -12,6 +12,6 @@
 - `Recording`: samples of one release, and what is known of it
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -21,6 +21,6 @@
 - `Transient`: the numbers of a transient
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -7,11 +7,12 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, isfinite, nan
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import pindrive
 from pindrive import _core, lazy
 from pindrive.lazy import mpl_figure, xr
 from pindrive.motion.core_numbers import PLACES, ROWS, CoreNumbers, Rows, entry
@@ -46,29 +47,6 @@ _ROW = re.compile(
 )
 
 
-class Start(Protocol):
-    """What is asked of a `Release`."""
-
-    @property
-    def velocity(self) -> float | None: ...
-
-
-class Simulated(Protocol):
-    """What is asked of a `Motion`, which itself hands out sensitivities."""
-
-    duration: float
-    settling_band: float
-    core_numbers: CoreNumbers
-    drive: Drive
-
-    @property
-    def release(self) -> Start: ...
-
-    def position(self, t: ArrayLike, side: Side) -> object: ...
-    def velocity(self, t: ArrayLike, side: Side) -> object: ...
-    def stretch(self, t: ArrayLike, side: Side) -> object: ...
-
-
 class Sensitivity(lazy.NotebookHtml):
     """Derivatives of a motion, SI units of the quantity per SI unit of the parameter.
 
@@ -78,7 +56,7 @@ class Sensitivity(lazy.NotebookHtml):
             on, and why; derivatives after that time do not exist and are NaN.
     """
 
-    def __init__(self, motion: Simulated, parameters: Sequence[str]) -> None:
+    def __init__(self, motion: pindrive.Motion, parameters: Sequence[str]) -> None:
         if isinstance(parameters, str) or not parameters:
             raise ValueError(refusal("parameters", "a list of names", repr(parameters)))
         self._motion = motion
@@ -195,7 +173,7 @@ class _Derivative:
     way. Where they take another course, the motion stands on the edge between two.
     """
 
-    def __init__(self, motion: Simulated, name: str) -> None:
+    def __init__(self, motion: pindrive.Motion, name: str) -> None:
         numbers = motion.core_numbers
         along, size = _direction(motion, name)
         self.name, self.size = name, size
@@ -291,7 +269,7 @@ def _numbers(
 # ---- parameters ----------------------------------------------------------------------------------
 
 
-def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
+def _direction(motion: pindrive.Motion, given: str) -> tuple[CoreNumbers, float]:
     """How the core's numbers change with a parameter, and the size of the parameter."""
     numbers = motion.core_numbers
     if (name := _key_as_name(given)) in _COEFFICIENTS:
@@ -313,7 +291,7 @@ def _direction(motion: Simulated, given: str) -> tuple[CoreNumbers, float]:
     return along, size
 
 
-def _along_friction(motion: Simulated, name: str) -> tuple[CoreNumbers, float]:
+def _along_friction(motion: pindrive.Motion, name: str) -> tuple[CoreNumbers, float]:
     """The same of a coefficient, or of what presses on a contact given by one."""
     slopes = _friction_slopes(motion.drive, name)
     table, _, part = name.partition("_")
@@ -402,7 +380,7 @@ def _start_slope(rows: Rows, along: Rows) -> float:
     return float(np.interp(0.0, times, d_values - slope * d_times))
 
 
-def _natural_size(motion: Simulated, place: Place) -> float:
+def _natural_size(motion: pindrive.Motion, place: Place) -> float:
     """A size, in this motion, for a parameter that is zero."""
     drive, omega = motion.drive, motion.drive.natural_frequency
     at_first, speeds = motion.core_numbers[7:9], (abs(v) for _, v in motion.core_numbers[5])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Protocol, cast, runtime_checkable
+from typing import cast
 
+import pindrive
 from pindrive import _core
 from pindrive.motion.core_numbers import CoreNumbers
 from pindrive.motion.drive import Drive
@@ -27,7 +28,7 @@ _GLANCE = (
 
 
 def simulate(
-    drive: Drive | Described,
+    drive: Drive | pindrive.DeviceFile,
     release: Release | None = None,
     *,
     duration: float | str | None = None,
@@ -54,7 +55,7 @@ def simulate(
     Warns:
         ImplausibleValueWarning: a value that no such device has, such as a velocity in mm/s.
     """
-    if not isinstance(drive, Drive) and isinstance(drive, Described):
+    if not isinstance(drive, Drive) and isinstance(drive, pindrive.DeviceFile):
         release = drive.release if release is None else release
         duration = drive.duration if duration is None else duration
         settling_band = drive.settling_band if settling_band is None else settling_band
@@ -86,28 +87,7 @@ def simulated(
     return Motion(drive, release, end, check("settling_band", settling_band))
 
 
-@runtime_checkable
-class Described(Protocol):
-    """What says all of a motion, as a device file does."""
-
-    @property
-    def drive(self) -> Drive:
-        """What moves."""
-
-    @property
-    def release(self) -> Release:
-        """The initial state, and the inputs."""
-
-    @property
-    def duration(self) -> float | None:
-        """In s; None: long enough to see the ending."""
-
-    @property
-    def settling_band(self) -> float:
-        """As for `simulate`."""
-
-
-def motion_of(device: Described) -> Motion:
+def motion_of(device: pindrive.DeviceFile) -> Motion:
     """The release that a device file describes, without the warnings, which its reading gives."""
     return simulated(
         device.drive,

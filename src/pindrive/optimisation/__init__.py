@@ -13,6 +13,6 @@
 - `Wish`: a device, what may vary, under which conditions, what is demanded, and the goals
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

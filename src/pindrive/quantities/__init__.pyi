@@ -1,11 +1,11 @@
-# Where each public name is; `__init__.py` says what it is. One import a line: `attach` reads them.
+# The module of each public name; `__init__.py` describes them.
 
-from pindrive.quantities.quantity import Bounds as Bounds
-from pindrive.quantities.quantity import Quantity as Quantity
-from pindrive.quantities.status import End as End
-from pindrive.quantities.status import SimulationError as SimulationError
-from pindrive.quantities.status import Status as Status
-from pindrive.quantities.table import ImplausibleValueWarning as ImplausibleValueWarning
-from pindrive.quantities.table import QUANTITIES as QUANTITIES
-from pindrive.quantities.table import check as check
-from pindrive.quantities.units import to_si as to_si
+from .quantity import Bounds as Bounds
+from .quantity import Quantity as Quantity
+from .status import End as End
+from .status import SimulationError as SimulationError
+from .status import Status as Status
+from .table import ImplausibleValueWarning as ImplausibleValueWarning
+from .table import QUANTITIES as QUANTITIES
+from .table import check as check
+from .units import to_si as to_si

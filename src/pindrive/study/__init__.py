@@ -12,6 +12,6 @@ A study file, or Python, names a device and says which of its keys change and ho
 - `sweep`: computes every point of a study into a file
 """
 
-from pindrive.lazy import attach
+import lazy_loader
 
-__getattr__, __dir__ = attach(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

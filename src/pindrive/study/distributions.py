@@ -13,12 +13,13 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, log
-from typing import Any, Final, Literal, Protocol
+from typing import Any, Final, Literal
 from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
+import pindrive
 from pindrive.files.keys import DRIVE, friction_parts
 from pindrive.lazy import qmc, special
 from pindrive.motion.friction import COEFFICIENT_OF, friction_force
@@ -221,18 +222,7 @@ LEFT_OUT: Final = {
 """Keys that are another one's value where a device file leaves them out."""
 
 
-class Valued(Protocol):
-    """What is asked of a `DeviceFile`: what its keys have, SI, and which of them follow."""
-
-    @property
-    def derived(self) -> tuple[str, ...]:
-        """The keys whose values follow from those of others."""
-
-    def values(self) -> Mapping[str, Any]:
-        """The value of every key, SI; None where it was left out."""
-
-
-def base_value(device: Valued, key: str) -> Any:
+def base_value(device: pindrive.DeviceFile, key: str) -> Any:
     """What the device has for a key, in SI; for what it leaves out, what holds then."""
     value = device.values()[key]
     if value is not None or key not in LEFT_OUT:
@@ -240,7 +230,9 @@ def base_value(device: Valued, key: str) -> Any:
     return device.values()[LEFT_OUT[key]]
 
 
-def implied_links(device: Valued, varied: Collection[str], scans: bool) -> dict[str, Linked]:
+def implied_links(
+    device: pindrive.DeviceFile, varied: Collection[str], scans: bool
+) -> dict[str, Linked]:
     """The keys that a device gives and that keep their ratio to varied ones (`Quantity.follows`).
 
     A curve is no single value: it keeps its ratio where a motion is put together. A ratio to zero
@@ -274,7 +266,9 @@ def implied_links(device: Valued, varied: Collection[str], scans: bool) -> dict[
     return found
 
 
-def with_links(device: Valued, columns: Columns, links: Mapping[str, Linked]) -> Columns:
+def with_links(
+    device: pindrive.DeviceFile, columns: Columns, links: Mapping[str, Linked]
+) -> Columns:
     """The columns, and those of the keys that follow them or a value of the device.
 
     The links have no circle (see `circle`).
