@@ -100,7 +100,7 @@ def warm_up() -> None:
             Path(name).write_text(content, encoding="utf-8")
         for line in (
             "check device.toml",
-            "simulate device.toml --plot a.png --netcdf a.nc",
+            "simulate device.toml --plot a.png -o a.nc",
             "scan device.toml --text A --lines a.csv -o b.nc --plot b.png",
             "speed device.toml --pitch 9mm --slowest 50mm/s",
             "sweep study.toml --threads 1",
@@ -287,9 +287,9 @@ def options(command: str, scans: bool, rng: np.random.Generator) -> list[str]:
         return ["device.toml"]
     if command == "simulate":
         kinds = (
-            ["--csv", "a.csv"],
-            ["--netcdf", "a.nc"],
-            ["--json", "a.json"],
+            ["-o", "a.csv"],
+            ["-o", "a.nc"],
+            ["-o", "a.json"],
             ["--plot", "a.png"],
         )
         chosen = [part for kind in kinds if rng.random() < 0.12 for part in kind]

@@ -52,9 +52,9 @@ def python(folder: Path, *arguments: str | Path) -> subprocess.CompletedProcess[
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        (("simulate", EXAMPLE, "--csv", "motion.csv"), "Laws checked"),
+        (("simulate", EXAMPLE, "-o", "motion.csv"), "Laws checked"),
         (("check", READER), "In its slot"),
-        (("scan", READER, "--grating", "4 mm", "--csv", "pins.csv"), "64 shown"),
+        (("scan", READER, "--grating", "4 mm", "-o", "pins.csv"), "64 shown"),
         (("speed", READER, "--pitch", "4 mm"), "Tried:"),
         (("fmu", EXAMPLE, "-o", "drive.fmu"), "Wrote drive.fmu"),
         (("init", "own.toml", "--device"), "Wrote own.toml"),
@@ -71,14 +71,15 @@ def test_what_works_without(tmp_path: Path, command: tuple[str | Path, ...], sai
     ("command", "line"),
     [
         (("simulate", EXAMPLE, "--plot", "a.png"), "--plot a.png: matplotlib"),
-        (("scan", READER, "--grating", "4 mm", "-o", "a.nc"), "--output a.nc: h5netcdf"),
+        (("scan", READER, "--grating", "4 mm", "-o", "a.nc"), "-o a.nc: h5netcdf"),
         (("scan", READER, "--grating", "4 mm", "--animate", "a.gif"), "matplotlib"),
         (("scan", READER, "--text", "A"), "matplotlib"),
+        (("speed", READER, "-o", "a.csv"), "-o a.csv: xarray"),
         (("sweep", STUDY, "-o", "a.nc"), "a.nc: h5netcdf"),
         (("sensitivity", STUDY), "scipy"),
         (("fit", EXAMPLE, RECORDING, "--free", "mass"), "scipy"),
         (("design", WISH, "-o", "a"), "scipy"),
-        (("paper", "--out", "a"), "xarray"),
+        (("paper", "-o", "a"), "xarray"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )

@@ -100,7 +100,7 @@ def test_a_folder_that_holds_something_else_is_refused() -> None:
     Path("out").mkdir()
     Path("out/notes.txt").write_text("mine")
     line = refused("design", "wish.toml", "-o", "out")
-    assert line == "-o out: holds notes.txt, which is of no design; give another folder"
+    assert line == "-o out: holds notes.txt, which is of no design; give another folder, or --force"
     Path("file").write_text("mine")
     assert "file: cannot be written" in refused("design", "wish.toml", "-o", "file")
 

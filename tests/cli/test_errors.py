@@ -10,6 +10,7 @@ import pytest
 
 import pindrive
 from command import EXAMPLE, GOOD, refused, run
+from pindrive.files.output import PICTURES
 from pindrive.quantities.results import MOTION
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -37,7 +38,7 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 @pytest.mark.parametrize("command", ["check", "simulate"])
 def test_bad_device_file(command: str, old: str, new: str, place: str, bound: str) -> None:
     Path("bad.toml").write_text(GOOD.replace(old, new, 1), encoding="utf-8")
-    line = refused(command, "bad.toml", *(["--csv", "out.csv"] if command == "simulate" else []))
+    line = refused(command, "bad.toml", *(["-o", "out.csv"] if command == "simulate" else []))
     assert line.startswith("bad.toml: ")
     assert place in line
     assert bound in line
@@ -82,36 +83,29 @@ def test_bad_override(override: str, problem: str) -> None:
     assert refused("simulate", EXAMPLE, "--set", override).startswith(problem)
 
 
-@pytest.mark.parametrize("option", ["--plot", "--csv", "--netcdf", "--json"])
+@pytest.mark.parametrize("suffix", [".png", ".csv", ".nc", ".json"])
 @pytest.mark.parametrize(
     ("target", "reason"),
     [
-        ("no/such/folder/out.png", "No such file or directory"),
-        ("folder.png", "not a regular file"),
-        ("file.png/out.png", "Not a directory"),
-        pytest.param(
-            os.devnull,
-            "not a regular file",
-            marks=pytest.mark.skipif(os.name == "nt", reason="NUL is no path there"),
-        ),
+        ("no/such/folder/out", "No such file or directory"),
+        ("folder", "not a regular file"),
+        ("file/out", "Not a directory"),
+        ("device", "not a regular file"),
     ],
 )
 def test_unwritable_output_is_refused_before_anything_runs(
-    option: str, target: str, reason: str, monkeypatch: pytest.MonkeyPatch
+    suffix: str, target: str, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def simulate(*_: object, **__: object) -> NoReturn:
         raise AssertionError("simulated all the same")
 
     monkeypatch.setattr(pindrive, "simulate", simulate)
-    Path("folder.png").mkdir()
-    Path("file.png").write_text("")
-    if option == "--plot" and target == os.devnull:
-        assert refused("simulate", EXAMPLE, option, target).endswith("must end in .png, .svg, .pdf")
-    else:
-        line = refused(
-            "simulate", EXAMPLE, "--csv" if option != "--csv" else "--json", "good", option, target
-        )
-        assert line == f"{target}: cannot be written: {reason}"
+    Path(f"folder{suffix}").mkdir()
+    Path("file").write_text("")
+    Path(f"device{suffix}").symlink_to(os.devnull)
+    option = "--plot" if suffix == ".png" else "-o"
+    line = refused("simulate", EXAMPLE, "-o", "good.json", option, f"{target}{suffix}")
+    assert line == f"{target}{suffix}: cannot be written: {reason}"
 
 
 def test_unknown_picture_format() -> None:
@@ -120,11 +114,17 @@ def test_unknown_picture_format() -> None:
 
 
 def test_one_file_named_twice() -> None:
-    line = refused("simulate", EXAMPLE, "--csv", "a", "--json", "./a")
-    assert line == "--json a: is named twice; give each file a name of its own"
+    line = refused("simulate", EXAMPLE, "-o", "a.nc", "-o", "./a.nc")
+    assert line == "-o a.nc: is named twice; give each file a name of its own"
     Path("mine.toml").write_text(GOOD)
-    line = refused("simulate", "mine.toml", "--csv", "mine.toml")
-    assert line == "--csv mine.toml: is read by this command; give another name"
+    Path("a.csv").symlink_to("mine.toml")
+    line = refused("simulate", "mine.toml", "-o", "a.csv", "--force")
+    assert line == "-o a.csv: is read by this command; give another name"
+
+
+def test_a_suffix_that_no_output_has() -> None:
+    line = refused("simulate", EXAMPLE, "-o", "a.xlsx")
+    assert line == "-o a.xlsx: must end in .csv, .nc, .json"
 
 
 def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,7 +135,7 @@ def test_a_failing_disk_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pindrive.files.export.write_csv", write_csv)
     older = ",".join(quantity.heading for quantity in MOTION)
     Path("a.csv").write_text(older)
-    line = refused("simulate", EXAMPLE, "--json", "a.json", "--csv", "a.csv")
+    line = refused("simulate", EXAMPLE, "-o", "a.json", "-o", "a.csv")
     assert line == "a.csv: cannot be written: No space left on device"
     assert Path("a.csv").read_text() == older
 
@@ -151,8 +151,8 @@ def test_a_disk_that_fills_up_leaves_nothing(name: str, monkeypatch: pytest.Monk
     sizes = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1024, sizes[1]))
     try:
-        option = {".csv": "--csv", ".nc": "--netcdf", ".json": "--json"}
-        line = refused("simulate", EXAMPLE, option.get(Path(name).suffix, "--plot"), name)
+        picture = Path(name).suffix in PICTURES
+        line = refused("simulate", EXAMPLE, "--plot" if picture else "-o", name)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, sizes)
     assert line == f"{name}: cannot be written: File too large"
@@ -179,6 +179,6 @@ def test_interruption_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("pindrive.files.export.write_csv", write_csv)
-    result = run("simulate", EXAMPLE, "--csv", "a.csv")
+    result = run("simulate", EXAMPLE, "-o", "a.csv")
     assert result.exit_code in (1, 130)
     assert list(Path().iterdir()) == []

@@ -65,7 +65,7 @@ def test_a_fit_prints_its_table_and_writes_a_device_file_with_its_source() -> No
         (["--free", "stiffness", "--noise", "force=5 N"], "pin.csv: noise must be of position"),
         (["--free", "force_offset"], "free must be an offset of a recorded channel"),
         (["--free", "mass", "--plot", "a.doc"], "--plot a.doc: must end in .png"),
-        (["--free", "mass", "-o", "pin.csv"], "-o pin.csv: is read by this command"),
+        (["--free", "mass", "-o", "pin.csv"], "-o pin.csv: must end in .toml"),
     ],
 )
 def test_bad_options_are_one_line(arguments: list[str], said: str) -> None:

@@ -25,7 +25,7 @@ from wishes import SMALL
 PROGRAM: Any = typer.main.get_command(app)
 NAMES: list[str] = PROGRAM.list_commands(None)
 SHARED = {
-    *("__init__", "app", "errors", "help", "interrupts", "options", "progress"),
+    *("__init__", "app", "errors", "help", "interrupts", "options", "outputs", "progress"),
     *("design_tables", "fit_tables", "scan_tables", "study_tables", "tables"),
 }
 HEADINGS = (

@@ -142,7 +142,7 @@ def test_the_command_line_tells_them_apart() -> None:
     Path("decays.toml").write_text(
         DEVICE.format(damping=0.1, static=50, finger=0), encoding="utf-8"
     )
-    shown = run("simulate", "decays.toml", "--json", "d.json", "--netcdf", "d.nc")
+    shown = run("simulate", "decays.toml", "-o", "d.json", "-o", "d.nc")
     last = CASES["decays after events at the plate"][0]().transient.last_event_time
     assert (
         "Decays towards x = 0.2000 mm and never comes to rest; "

@@ -49,7 +49,7 @@ def test_motions_and_their_events(device: Path, written_by: str) -> None:
     if written_by == "python":
         motion.to_csv("m.csv", rate="2 kHz")
     else:
-        assert run("simulate", device, "--csv", "m.csv").exit_code == 0
+        assert run("simulate", device, "-o", "m.csv").exit_code == 0
     check_motion(motion, "m.csv")
     check_events(motion.events, read("m-events.csv"))
     recording = read_recording("m.csv")
@@ -66,7 +66,7 @@ def test_scans_their_events_and_their_lines(written_by: str) -> None:
         scan.to_csv("s.csv", rate="1 kHz")
     else:
         changes = [f"--set={change}" for change in DEVICE]
-        files = ("--csv", "s.csv", "--lines", "lines.csv")
+        files = ("-o", "s.csv", "--lines", "lines.csv")
         assert run("scan", READER, "--grating", "4 mm", *changes, *files).exit_code == 0
         judgement, table = scan.evaluate(), read("lines.csv")
         columns = judgement.columns()
@@ -95,6 +95,6 @@ def test_scans_their_events_and_their_lines(written_by: str) -> None:
 def test_a_recording_of_a_bench_is_not_replaced_by_a_motion() -> None:
     rows = "".join(f"{0.001 * i},{0.001 * i**2}\n" for i in range(20))
     Path("bench.csv").write_text(f"time [s],position [m]\n{rows}")
-    said = run("simulate", EXAMPLE, "--csv", "bench.csv")
+    said = run("simulate", EXAMPLE, "-o", "bench.csv")
     assert said.exit_code == 2
     assert "bench.csv: is there and is no CSV file of a motion" in said.stderr

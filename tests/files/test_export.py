@@ -86,7 +86,7 @@ def test_too_many_samples_are_refused_before_a_file_is_begun() -> None:
     )
     assert list(Path().iterdir()) == []
     line = refused(
-        "simulate", EXAMPLE, "--set", "duration=60 min", "--csv", "a.csv", "--rate", "1000 kHz"
+        "simulate", EXAMPLE, "--set", "duration=60 min", "-o", "a.csv", "--rate", "1000 kHz"
     )
     assert "the samples of the motion must be at most 10000000, got 3600000001" in line
     assert list(Path().iterdir()) == []
@@ -104,22 +104,22 @@ def test_a_file_of_another_kind_stays() -> None:
 
 
 def test_commands_take_a_rate() -> None:
-    said = run("simulate", EXAMPLE, "--csv", "a.csv", "--rate", "2 kHz")
+    said = run("simulate", EXAMPLE, "-o", "a.csv", "--rate", "2 kHz")
     assert said.stdout.endswith("Wrote a.csv\nWrote a-events.csv\n")
     device = pd.load_device(EXAMPLE)
     pd.simulate(device.drive, device.release).to_csv("b.csv", rate=2000.0)
     assert Path("a.csv").read_bytes() == Path("b.csv").read_bytes()
     assert Path("a-events.csv").read_bytes() == Path("b-events.csv").read_bytes()
     small = ("--set", "array.columns=1", "--set", "array.rows=1")
-    said = run("scan", READER, *small, "--grating", "4 mm", "--csv", "s.csv", "--rate", "200 Hz")
+    said = run("scan", READER, *small, "--grating", "4 mm", "-o", "s.csv", "--rate", "200 Hz")
     assert said.stdout.endswith("Wrote s.csv\nWrote s-events.csv\n")
     scan = pd.scan(
         pd.load_device(READER, ["array.columns=1", "array.rows=1"]), pd.Page(grating=[0.004])
     )
     scan.to_csv("c.csv", rate=200.0)
     assert Path("s.csv").read_bytes() == Path("c.csv").read_bytes()
-    assert refused("simulate", EXAMPLE, "--rate", "1 kHz") == "--rate goes with --csv"
-    assert refused("simulate", EXAMPLE, "--csv", "x.csv", "--rate", "1 mm").startswith(
+    assert refused("simulate", EXAMPLE, "--rate", "1 kHz") == "--rate goes with -o FILE.csv"
+    assert refused("simulate", EXAMPLE, "-o", "x.csv", "--rate", "1 mm").startswith(
         '--rate: rate must be in Hz or a unit alike, like "1 kHz", got "1 mm"'
     )
 

@@ -33,19 +33,33 @@ STUDY = (
 HAND = "time [s],x [mm],y [mm]\n" + "".join(f"{0.01 * i:g},{i:g},0\n" for i in range(40))
 SCAN = ("scan", "reader.toml", "--grating", "4 mm")
 SPEED = ("speed", "reader.toml", "--pitch", "4 mm", "--fastest", "50 mm/s", "--slowest", "45 mm/s")
+SENSITIVITY = ("sensitivity", "study.toml", "--rows", "128")
+ROBUSTNESS = ("robustness", "study.toml", "--draws", "9")
 COMMANDS = {
     "simulate --plot": (("simulate", "device.toml", "--plot"), "a.png"),
-    "simulate --csv": (("simulate", "device.toml", "--csv"), "a.csv"),
-    "simulate --netcdf": (("simulate", "device.toml", "--netcdf"), "a.nc"),
-    "simulate --json": (("simulate", "device.toml", "--json"), "a.json"),
+    "simulate -o a.csv": (("simulate", "device.toml", "-o"), "a.csv"),
+    "simulate -o a.nc": (("simulate", "device.toml", "-o"), "a.nc"),
+    "simulate -o a.json": (("simulate", "device.toml", "-o"), "a.json"),
     "scan --plot": ((*SCAN, "--plot"), "a.svg"),
     "scan --animate": ((*SCAN, "--slow", "0.1", "--animate"), "a.gif"),
     "scan --lines": ((*SCAN, "--lines"), "a.csv"),
-    "scan -o": ((*SCAN, "-o"), "a.nc"),
+    "scan -o a.csv": ((*SCAN, "-o"), "a.csv"),
+    "scan -o a.nc": ((*SCAN, "-o"), "a.nc"),
+    "scan -o a.json": ((*SCAN, "-o"), "a.json"),
     "speed --plot": ((*SPEED, "--plot"), "a.pdf"),
-    "map -o": (("map", "swept.nc", "-o"), "a.png"),
-    "sensitivity --plot": (("sensitivity", "study.toml", "--rows", "128", "--plot"), "a.png"),
-    "robustness --plot": (("robustness", "study.toml", "--draws", "9", "--plot"), "a.svg"),
+    "speed -o a.csv": ((*SPEED, "-o"), "a.csv"),
+    "speed -o a.nc": ((*SPEED, "-o"), "a.nc"),
+    "speed -o a.json": ((*SPEED, "-o"), "a.json"),
+    "map -o": (("map", "swept.nc", "--plot"), "a.png"),
+    "sensitivity --plot": ((*SENSITIVITY, "--plot"), "a.png"),
+    "sensitivity -o a.csv": ((*SENSITIVITY, "-o"), "a.csv"),
+    "sensitivity -o a.nc": ((*SENSITIVITY, "-o"), "a.nc"),
+    "sensitivity -o a.json": ((*SENSITIVITY, "-o"), "a.json"),
+    "robustness --plot": ((*ROBUSTNESS, "--plot"), "a.svg"),
+    "robustness -o a.csv": ((*ROBUSTNESS, "-o"), "a.csv"),
+    "robustness -o a.nc": ((*ROBUSTNESS, "-o"), "a.nc"),
+    "robustness -o a.json": ((*ROBUSTNESS, "-o"), "a.json"),
+    "fmu -o": (("fmu", "device.toml", "-o"), "a.fmu"),
 }
 """What writes a file, and under which name."""
 
@@ -85,7 +99,7 @@ def test_a_file_is_replaced_by_its_own_kind_alone(command: str) -> None:
     before = foreign(name)
     said = refused(*arguments, name)
     assert f" {name}: is there and is no " in said
-    assert said.endswith("; it stays, give another name")
+    assert said.endswith("; give another name, or --force")
     assert Path(name).read_bytes() == before
     Path(name).unlink()
     Path(name).touch()  # an empty file holds nothing
@@ -98,10 +112,10 @@ def test_a_file_is_replaced_by_its_own_kind_alone(command: str) -> None:
 WRITERS = {**COMMANDS, "sweep -o": (("sweep", "study.toml", "-o"), "a.nc")}
 LINKS = [
     (command, link)
-    for command, (_, name) in WRITERS.items()
-    # A picture's name has an ending of its own, which no input has.
+    for command in WRITERS
+    # Other commands write files of a suffix that no input has.
     for link in ("itself", "another way", "symbolic", "hard")
-    if link in ("symbolic", "hard") or Path(name).suffix in (".csv", ".json", ".nc")
+    if link in ("symbolic", "hard") or command in ("sweep -o", "fmu -o")
 ]
 
 
@@ -135,7 +149,6 @@ INPUTS = {
         (INPUTS["--path"], "--lines", "hand.csv"),
         (INPUTS["--path"], "-o", "hand.csv"),
         (INPUTS["--path"], "-o", "./hand.csv"),
-        (INPUTS["--path"], "-o", "reader.toml"),
     ],
 )
 def test_a_page_and_a_recording_stay(arguments: tuple[str, ...], option: str, target: str) -> None:
@@ -159,57 +172,57 @@ def test_the_device_and_the_page_of_a_study_stay() -> None:
         said = refused(command, "paged.toml", "--plot", "page.png")
         assert said == "--plot page.png: is read by this command; give another name"
     os.link("page.png", "study.nc.partial")
-    said = refused("sweep", "paged.toml", "-o", "study.nc", "--restart")
+    said = refused("sweep", "paged.toml", "-o", "study.nc", "--force")
     assert said == "study.nc.partial: is read by this command; give another name"
 
 
 # ---- results that took long ----------------------------------------------------------------------
 
 
-def test_a_study_takes_restart_to_be_replaced() -> None:
+def test_a_study_is_replaced_on_request_only() -> None:
     first = Path("swept.nc").read_bytes()
     said = refused("sweep", "study.toml", "-o", "swept.nc")
-    assert said == "swept.nc: exists already; --restart replaces it"
+    assert said == "swept.nc: exists already; --force replaces it"
     assert "is complete" in run("sweep", "study.toml", "-o", "swept.nc", "--resume").stdout
     Path("study.toml").write_text(STUDY.replace('"9 g"', '"8 g"'))
-    assert refused("sweep", "study.toml", "-o", "swept.nc").endswith("--restart replaces it")
+    assert refused("sweep", "study.toml", "-o", "swept.nc").endswith("--force replaces it")
     said = refused("sweep", "study.toml", "-o", "swept.nc", "--resume")
     assert said.startswith("swept.nc: holds another study: ")
     assert Path("swept.nc").read_bytes() == first
-    assert run("sweep", "study.toml", "-o", "swept.nc", "--restart").exit_code == 0
+    assert run("sweep", "study.toml", "-o", "swept.nc", "--force").exit_code == 0
     assert Path("swept.nc").read_bytes() != first
 
 
-@pytest.mark.parametrize("consent", [(), ("--resume",), ("--restart",)])
+@pytest.mark.parametrize("options", [(), ("--resume",)])
 @pytest.mark.parametrize("name", ["device.toml", "page.png", "motion.nc", "alien.nc"])
-def test_a_sweep_replaces_nothing_but_a_study(name: str, consent: tuple[str, ...]) -> None:
-    run("simulate", "device.toml", "--netcdf", "motion.nc")
+def test_a_sweep_replaces_nothing_but_a_study(name: str, options: tuple[str, ...]) -> None:
+    run("simulate", "device.toml", "-o", "motion.nc")
     foreign("alien.nc")
     before = Path(name).read_bytes()
-    said = refused("sweep", "study.toml", "-o", name, *consent)
+    said = refused("sweep", "study.toml", "-o", name, *options)
     assert said == (
-        f"{name}: is there and is no NetCDF file of a study; it stays, give another name"
+        f"{name}: is there and is no NetCDF file of a study; give another name, or --force"
     )
     assert Path(name).read_bytes() == before
 
 
 def test_a_study_is_not_replaced_by_a_motion_or_a_scan() -> None:
     before = Path("swept.nc").read_bytes()
-    said = refused("simulate", "device.toml", "--netcdf", "swept.nc")
-    assert "is no NetCDF file of a motion; it stays" in said
-    assert "is no NetCDF file of a scan; it stays" in refused(*SCAN, "-o", "swept.nc")
+    said = refused("simulate", "device.toml", "-o", "swept.nc")
+    assert "is no NetCDF file of a motion; " in said
+    assert "is no NetCDF file of a scan; " in refused(*SCAN, "-o", "swept.nc")
     assert Path("swept.nc").read_bytes() == before
 
 
-def test_init_replaces_device_files_alone_and_only_when_forced() -> None:
+def test_init_replaces_nothing_unless_forced() -> None:
     said = refused("init", "device.toml")
     assert said == "device.toml: exists already; --force replaces it"
     for name in ("study.toml", "page.png", "swept.nc", "hand.csv"):
-        for force in ((), ("--force",)):
-            said = refused("init", name, *force)
-            assert said == f"{name}: is there and is no device file; it stays, give another name"
-    assert run("init", "device.toml", "--force").exit_code == 0
-    assert run("check", "device.toml").exit_code == 0
+        said = refused("init", name)
+        assert said == f"{name}: is there and is no device file; give another name, or --force"
+    for name in ("device.toml", "page.png"):
+        assert run("init", name, "--force").exit_code == 0
+        assert run("check", name).exit_code == 0
 
 
 # ---- the mechanism -------------------------------------------------------------------------------
@@ -248,9 +261,9 @@ def test_a_report_replaces_a_report_alone(tmp_path: Path) -> None:
 def test_paper_keeps_a_page_of_another() -> None:
     Path("out").mkdir()
     Path("out/paper.html").write_text("<!DOCTYPE html>\n<title>Mine</title>\n")
-    said = refused("paper", "--out", "out")
+    said = refused("paper", "-o", "out")
     assert said == (
-        "--out out/paper.html: is there and is no report of the paper; it stays, give another name"
+        "-o out/paper.html: is there and is no report of the paper; give another name, or --force"
     )
     Path("docs").mkdir()
     Path("docs/paper.md").write_text("# Mine\n")
@@ -264,4 +277,4 @@ def test_a_file_that_cannot_be_read_is_not_replaced(monkeypatch: pytest.MonkeyPa
     Path("a.csv").write_text(",".join(quantity.heading for quantity in MOTION))
     monkeypatch.setattr("pindrive.files.output._head", unreadable)
     with pytest.raises(OutputError, match=r"a\.csv: is there, and cannot be read: Permission"):
-        check_outputs([Output(Path("a.csv"), MOTION_CSV, "--csv")])
+        check_outputs([Output(Path("a.csv"), MOTION_CSV, "-o")])

@@ -208,8 +208,8 @@ def test_an_input_is_not_written_over() -> None:
     text = "time [ms], mouse_velocity [mm/s]\n0,60\n"
     csv("speed.csv", text)
     path = device(SPEED, 'mouse_velocity = "speed.csv"')
-    said = refused("simulate", str(path), "--csv", "speed.csv")
-    assert said == "--csv speed.csv: is read by this command; give another name"
+    said = refused("simulate", str(path), "-o", "speed.csv")
+    assert said == "-o speed.csv: is read by this command; give another name"
     assert Path("speed.csv").read_text(encoding="utf-8") == text
 
 

@@ -310,9 +310,7 @@ REFUSALS = {
     ): '--grating: pitch must be a number with its unit (give a unit, like "4 mm")',
     ("--grating", "4 mm", "--font", "x.ttf"): "--font x.ttf: goes with --text alone",
     ("--text", "A", "--path", "none.csv"): "none.csv: cannot be read: No such file or directory",
-    ("--text", "A", "-o", "device.toml"): (
-        "--output device.toml: is read by this command; give another name"
-    ),
+    ("--text", "A", "-o", "device.toml"): ("-o device.toml: must end in .csv, .nc, .json"),
     ("--text", "A", "-o", "nowhere/a.nc"): "nowhere/a.nc: cannot be written: No such file or",
 }
 

@@ -50,7 +50,7 @@ def test_a_result_where_a_file_of_text_is_wanted() -> None:
         assert refused(command, "study.nc") == (
             "study.nc: is a NetCDF file; `pindrive map` draws one that a sweep wrote"
         )
-    assert refused("map", "study.toml", "-o", "map.png") == (
+    assert refused("map", "study.toml", "--plot", "map.png") == (
         "study.toml: cannot be read: it is no NetCDF file; `pindrive sweep` writes one of a study"
     )
 

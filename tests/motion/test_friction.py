@@ -160,4 +160,4 @@ def test_the_commands_of_studies_say_it_in_one_line() -> None:
         assert f"{words}0.17 to 0.255 over the tolerances" in done.stdout
         assert done.stderr == ""
     study('[axes]\ndrive.stiffness = ["50 N/m", "100 N/m"]\n')
-    assert "friction coefficient" not in run("sweep", "study.toml", "--restart").output
+    assert "friction coefficient" not in run("sweep", "study.toml", "--force").output

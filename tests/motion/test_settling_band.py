@@ -111,7 +111,7 @@ def test_simulate_says_uses_and_writes_it(how: str) -> None:
     arguments: tuple[str | Path, ...] = (
         (banded(),) if how == "file" else ("device.toml", "--set", "settling_band=2 %")
     )
-    done = run("simulate", *arguments, "--json", "a.json", "--netcdf", "a.nc", "--plot", "a.svg")
+    done = run("simulate", *arguments, "-o", "a.json", "-o", "a.nc", "--plot", "a.svg")
     assert done.exit_code == 0, done.output
     motion = motion_of(load_device("device.toml"))
     time = motion.settling_time(0.02)
@@ -180,14 +180,14 @@ def test_a_sweep_uses_it(how: str) -> None:
             motion = motion_of(load_device(EXAMPLE, [f"mouse_velocity={float(speed)!r} m/s"]))
             assert time == pytest.approx(motion.settling_time(0.02), rel=1e-12)
             assert time > motion.settling_time(0.05)
-    assert run("map", "study.nc", "-o", "map.svg").exit_code == 0
+    assert run("map", "study.nc", "--plot", "map.svg").exit_code == 0
     assert "ε" in Path("map.svg").read_text("utf-8")
 
 
 def test_a_map_tells_the_band_where_it_is_not_the_usual_one() -> None:
     Path("study.toml").write_text(f'base = "{EXAMPLE.as_posix()}"\n{AXES}')
     run("sweep", "study.toml")
-    run("map", "study.nc", "-o", "map.svg")
+    run("map", "study.nc", "--plot", "map.svg")
     assert "ε" not in Path("map.svg").read_text("utf-8")
 
 
@@ -221,7 +221,7 @@ def test_a_swept_band_and_slow_devices() -> None:
     Path("curved.toml").write_text(GOOD.replace('kinetic = "20 mN"', curve))
     for device in (EXAMPLE.as_posix(), "curved.toml"):
         Path("study.toml").write_text(f'base = "{device}"\n[axes]\nsettling_band = [0.01, 0.2]\n')
-        assert run("sweep", "study.toml", "--restart").exit_code == 0
+        assert run("sweep", "study.toml", "--force").exit_code == 0
         motion = motion_of(load_device(device))
         with xr.open_dataset("study.nc", decode_timedelta=False) as data:
             expected = [motion.settling_time(band) for band in (0.01, 0.2)]

@@ -41,11 +41,11 @@ def test_a_wish_for_a_whole_device() -> None:
     assert wish.plan.page and [goal.text() for goal in wish.goals] == ["maximise distinct_speed"]
 
 
-def test_a_wish_replaces_only_a_wish_and_a_study_is_none() -> None:
+def test_a_wish_replaces_a_study_only_when_forced() -> None:
     assert refused("init", "a.toml", "--study", "--wish") == "give --study or --wish, not both"
     assert run("init", "study.toml", "--study").exit_code == 0
-    assert refused("init", "study.toml", "--wish", "--force") == (
-        "study.toml: is there and is no wish file; it stays, give another name"
+    assert refused("init", "study.toml", "--wish") == (
+        "study.toml: is there and is no wish file; give another name, or --force"
     )
     assert run("init", "wish.toml", "--wish").exit_code == 0
     assert run("init", "wish.toml", "--wish", "--force").exit_code == 0

@@ -46,7 +46,7 @@ def made(steps: list[str]) -> Report:
 
 @pytest.fixture(scope="module")
 def files(made: Report, steps: list[str]) -> dict[str, bytes]:
-    """What `pindrive paper --out` writes."""
+    """What `pindrive paper -o` writes."""
     return made.files(steps.append)
 
 
@@ -559,7 +559,7 @@ def quick(made: Report, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 @pytest.mark.usefixtures("quick")
 def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) -> None:
     out, docs = tmp_path / "new" / "report", tmp_path / "docs"
-    result = CliRunner().invoke(app, ["paper", "--out", str(out), "--docs", str(docs)])
+    result = CliRunner().invoke(app, ["paper", "-o", str(out), "--docs", str(docs)])
     assert result.exit_code == 0, result.output
     assert "3 hold, 13 hold under a condition" in result.stdout
     written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
@@ -573,8 +573,7 @@ def test_the_command_refuses_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(report, "make", lambda step: pytest.fail("computed all the same"))
     (tmp_path / "file").write_text("mine")
     for arguments, words in (
-        ([], "say where the report goes: --out DIR, or --docs DIR"),
-        (["--out", str(tmp_path / "file")], f"{tmp_path / 'file'}: cannot be written"),
+        (["-o", str(tmp_path / "file")], f"{tmp_path / 'file'}: cannot be written"),
         (["--docs", str(tmp_path / "file/deep")], "cannot be written: file is no folder"),
     ):
         result = CliRunner().invoke(app, ["paper", *arguments])
@@ -589,6 +588,6 @@ def test_an_interrupt_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyP
         raise KeyboardInterrupt
 
     monkeypatch.setattr(report, "make", interrupted)
-    result = CliRunner().invoke(app, ["paper", "--out", str(tmp_path / "new")])
+    result = CliRunner().invoke(app, ["paper", "-o", str(tmp_path / "new")])
     assert result.exit_code == 130
     assert list(tmp_path.iterdir()) == []

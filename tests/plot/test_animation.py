@@ -147,7 +147,7 @@ def test_the_command_writes_a_gif_or_nothing(tmp_path: Path) -> None:
     for bad, words in (
         (["--animate", str(target), "--slow", "0"], "--slow must be greater than 0, got 0.0"),
         (["--animate", str(tmp_path / "film.avi")], "must end in .gif or .mp4"),
-        (["--animate", str(target), "--output", str(target)], "is named twice"),
+        (["--lines", "a.csv", "--output", "./a.csv"], "is named twice"),
     ):
         refused = CliRunner().invoke(app, [*command, *bad])
         assert refused.exit_code == 2

@@ -373,30 +373,31 @@ def run(*arguments: str) -> Result:
 def test_the_command_draws(folder: Path, tmp_path: Path, ending: str) -> None:
     target = tmp_path / f"map.{ending}"
     held = ("--at", "plate.kinetic=5 mN", "--at", "damping_ratio=0.2")
-    said = run(str(folder / "grid.nc"), "-o", str(target), "--x", "mouse_velocity", *held)
-    assert (said.exit_code, said.stdout) == (0, f"Wrote {target}\n")
+    said = run(str(folder / "grid.nc"), "--plot", str(target), "--x", "mouse_velocity", *held)
+    assert said.exit_code == 0
+    assert said.stdout.endswith(f"Wrote {target}\n")
     begin = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[ending]
     assert target.read_bytes().startswith(begin)
 
 
 REFUSED = {
-    "grid.nc -o map.gif": "--output map.gif: must end in .png, .svg, .pdf",
-    "half.nc.partial -o map.png": "half.nc.partial: is not finished; `pindrive sweep --resume` "
+    "grid.nc --plot a.gif": "--plot a.gif: must end in .png, .svg, .pdf",
+    "half.nc.partial --plot a.png": "half.nc.partial: is not finished; `pindrive sweep --resume` "
     "continues it",
-    "none.nc -o map.png": "none.nc: cannot be read: No such file or directory",
-    "grid.toml -o map.png": "grid.toml: cannot be read: ",
-    "alien.nc -o map.png": "alien.nc: is no study; `pindrive sweep` writes one",
-    "one.nc -o map.png": "one.nc: holds a single point, there is nothing to draw over",
-    "grid.nc -o map.png --x mass": "--x mass: grid.nc does not vary it; there are mouse_velocity,",
-    "grid.nc -o map.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "
+    "none.nc --plot a.png": "none.nc: cannot be read: No such file or directory",
+    "grid.toml --plot a.png": "grid.toml: cannot be read: ",
+    "alien.nc --plot a.png": "alien.nc: is no study; `pindrive sweep` writes one",
+    "one.nc --plot a.png": "one.nc: holds a single point, there is nothing to draw over",
+    "grid.nc --plot a.png --x mass": "--x mass: grid.nc does not vary it; there are ",
+    "grid.nc --plot a.png --x stifness": "--x stifness: grid.nc does not vary it; did you mean "
     "stiffness?",
-    "grid.nc -o map.png --number heat": "--number: unknown number heat; ",
-    "grid.nc -o map.png --number peak_stretch": "--number peak_stretch: grid.nc does not hold it",
-    "grid.nc -o map.png --at mass": '--at "mass": must be key=value',
-    "grid.nc -o map.png --at plate.kinetic=5": "--at plate.kinetic: must be a number with its unit",
-    "grid.nc -o map.png --x mouse_velocity --y mouse_velocity": "--y mouse_velocity: does not "
+    "grid.nc --plot a.png --number heat": "--number: unknown number heat; ",
+    "grid.nc --plot a.png --number peak_stretch": "--number peak_stretch: grid.nc does not hold it",
+    "grid.nc --plot a.png --at mass": '--at "mass": must be key=value',
+    "grid.nc --plot a.png --at plate.kinetic=5": "--at plate.kinetic: must be a number with",
+    "grid.nc --plot a.png --x mouse_velocity --y mouse_velocity": "--y mouse_velocity: does not "
     "change independently of mouse_velocity",
-    "drawn.nc -o map.png --at mass=1g": "--at mass: is sampled, and cannot be held at one value",
+    "drawn.nc --plot a.png --at mass=1g": "--at mass: is sampled, and cannot be held at one value",
 }
 
 

@@ -99,7 +99,7 @@ def test_a_map_shades_and_prints_where_it_is_met(
             if not panel.met[j, i]:
                 assert not inside.contains_point((x, y))
     assert "the specification is met" in legend_of(figure)
-    done = run("map", folder / "grid.nc", "--number", "swing", "-o", tmp_path / "map.png")
+    done = run("map", folder / "grid.nc", "--number", "swing", "--plot", tmp_path / "map.png")
     met, exist = int(meets(data).sum()), int((data.status == 0).sum())
     assert f"specification met: {100.0 * met / exist:.1f} % of {exist} points" in done.stdout
 

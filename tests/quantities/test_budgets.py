@@ -60,7 +60,7 @@ REFUSED = {
     ("speed --pitch 2mm --fastest 1e9m/s", ""): "--fastest: fastest must be finite and at least",
     ("speed --pitch 1e-6m --width 0.9e-6m --fastest 100m/s", ""): "the pixels of the page must be",
     (
-        "simulate --samples 1000000000000 --csv a.csv",
+        "simulate --samples 1000000000000 -o a.csv",
         "",
     ): "--samples: the samples of the motion must",
 }
@@ -104,7 +104,7 @@ def test_a_motion_of_very_many_phases_is_no_json() -> None:
         'velocity = "8 mm/s"\n',
         encoding="utf-8",
     )
-    said = run("simulate", "device.toml", "--json", "a.json")
+    said = run("simulate", "device.toml", "-o", "a.json")
     assert said.exit_code == 2, said.output
     assert said.stderr.startswith("the phases of a motion that is written as JSON must be at most")
     assert not Path("a.json").exists()

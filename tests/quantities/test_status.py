@@ -105,7 +105,7 @@ def test_json_names_the_code(tmp_path: Path) -> None:
     from command import EXAMPLE
 
     target = tmp_path / "motion.json"
-    assert run("simulate", EXAMPLE, "--json", target).exit_code == 0
+    assert run("simulate", EXAMPLE, "-o", target).exit_code == 0
     assert json.loads(target.read_text(encoding="utf-8"))["status"] == "ok"
 
 

@@ -95,7 +95,7 @@ def test_memory_is_bounded_by_the_chunk() -> None:
             count = {count}
             """
         )
-        arguments = ["sweep", "study.toml", "--stop-after", "20000", "--threads", "2", "--restart"]
+        arguments = ["sweep", "study.toml", "--stop-after", "20000", "--threads", "2", "--force"]
         command = [sys.executable, "-c", PEAK, *arguments]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         assert "Stopped at 20 480 of" in done.stdout or count == 200

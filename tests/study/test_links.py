@@ -211,7 +211,7 @@ def test_the_file_and_its_map_say_what_followed() -> None:
         (link,) = json.loads(data.attrs["identity"])["links"].values()
         assert link["of"] == "plate.kinetic"
         assert data.attrs["links"] == "plate.static = 1.20455 × plate.kinetic"
-    run("map", "study.nc", "-o", "map.svg")
+    run("map", "study.nc", "--plot", "map.svg")
     assert "static plate friction = 1.20455 × plate friction" in Path("map.svg").read_text("utf-8")
 
 

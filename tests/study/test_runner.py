@@ -167,8 +167,7 @@ def test_stopped_and_resumed_is_the_same_file(whole: bytes) -> None:
     again = run("study.toml")
     assert (again.exit_code, again.stdout) == (2, "")
     assert again.stderr == (
-        "study.nc.journal: an unfinished run is there; --resume continues it, "
-        "--restart begins anew\n"
+        "study.nc.journal: an unfinished run is there; --resume continues it, --force begins anew\n"
     )
     assert run("study.toml", "--resume").exit_code == 0
     assert Path("study.nc").read_bytes() == whole
@@ -269,11 +268,11 @@ def test_a_ruined_file_is_not_gone_on_with() -> None:
     said = run("study.toml", "--resume")
     assert said.exit_code == 2
     assert said.stderr.startswith("study.nc.partial: is damaged: ")
-    assert said.stderr.endswith("; --restart begins anew\n")
+    assert said.stderr.endswith("; --force begins anew\n")
     Path("study.nc.journal").write_bytes(b"rubbish\n")
     said = run("study.toml", "--resume")
     assert said.stderr == "study.nc.journal: is no journal of a study\n"
-    assert run("study.toml", "--restart").exit_code == 0
+    assert run("study.toml", "--force").exit_code == 0
 
 
 def test_a_changed_study_is_not_gone_on_with(whole: bytes) -> None:
@@ -284,14 +283,14 @@ def test_a_changed_study_is_not_gone_on_with(whole: bytes) -> None:
     assert said.exit_code == 2
     assert said.stderr == (
         "study.nc.journal: another study was begun there: dimensions[0] axes drive.mass second was "
-        "0.02, is 0.03; --restart begins anew\n"
+        "0.02, is 0.03; --force begins anew\n"
     )
     said = run("study.toml", "-o", "whole.nc", "--resume")
     assert "whole.nc: holds another study: dimensions[0] axes drive.mass second" in said.stderr
     assert Path("study.nc.partial").read_bytes() == before
     assert Path("whole.nc").read_bytes() == whole
     plan()
-    assert run("study.toml", "--restart").exit_code == 0
+    assert run("study.toml", "--force").exit_code == 0
     assert Path("study.nc").read_bytes() == whole
 
 
@@ -300,7 +299,7 @@ def test_one_process_at_a_time() -> None:
     run_of = plan()
     with Path("study.nc.journal").open("w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
-        for how in ("--resume", "--restart"):
+        for how in ("--resume", "--force"):
             said = run("study.toml", how)
             assert said.stderr == "study.nc.journal: another process is at this study\n"
     assert run_of.chunks == 9
@@ -320,7 +319,7 @@ REFUSED = {
     "study.toml -o study.toml": "study.toml: is read by this command; give another name",
     "study.toml -o no/study.nc": "no/study.nc: cannot be written: there is no folder no",
     "study.toml -o .": ".: cannot be written: not a regular file",
-    "study.toml --resume --restart": "give --resume or --restart, not both",
+    "study.toml --resume --force": "give --resume or --force, not both",
     "study.toml --threads 2 --cluster x": "give --threads or --cluster, not both: workers have "
     "their own",
     "still.toml": "still.toml: has no axes; write what to vary in [axes]",

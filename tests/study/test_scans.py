@@ -464,7 +464,7 @@ def test_maps_show_the_file() -> None:
         assert r"$v_\mathrm{h}$ (mm/s)" in figure.axes[0].get_xlabel()
         with pytest.raises(ValueError, match="unknown number"):
             view.number("settling_time")
-    said = run("map", "study.nc", "-o", "map.png", "--x", "latency", "--at", "hand_speed=80 mm/s")
+    said = run("map", "study.nc", "--plot", "m.png", "--x", "latency", "--at", "hand_speed=80 mm/s")
     assert said.exit_code == 0, said.output
 
 

@@ -32,7 +32,7 @@ def test_every_command_of_studies_takes_it() -> None:
     assert run("init", "study.toml", "--study").exit_code == 0
     for command in (
         ["sweep", "study.toml"],
-        ["map", "study.nc", "-o", "map.png"],
+        ["map", "study.nc", "--plot", "map.png"],
         ["sensitivity", "study.toml", "--tolerances", "--rows", "128"],
         ["robustness", "study.toml", "--draws", "200"],
     ):
@@ -66,17 +66,17 @@ def test_what_stands_in_comments_is_right_too(whole: bool) -> None:
     assert plan.size % 1024 == 0
 
 
-def test_init_replaces_a_study_only_with_a_study_and_when_forced() -> None:
+def test_init_replaces_a_study_only_when_forced() -> None:
     assert run("init", "study.toml", "--study").exit_code == 0
     assert refused("init", "study.toml", "--study") == (
         "study.toml: exists already; --force replaces it"
     )
-    assert refused("init", "study.toml", "--force") == (
-        "study.toml: is there and is no device file; it stays, give another name"
+    assert refused("init", "study.toml") == (
+        "study.toml: is there and is no device file; give another name, or --force"
     )
     Path("device.toml").write_text(GOOD)
-    assert refused("init", "device.toml", "--study", "--force") == (
-        "device.toml: is there and is no study file; it stays, give another name"
+    assert refused("init", "device.toml", "--study") == (
+        "device.toml: is there and is no study file; give another name, or --force"
     )
     assert run("init", "study.toml", "--study", "--force").exit_code == 0
 

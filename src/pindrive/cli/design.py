@@ -18,6 +18,7 @@ from pindrive.cli.options import (
     count_option,
     file_option,
 )
+from pindrive.cli.outputs import ForceOption
 from pindrive.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -34,9 +35,10 @@ FILES = ("design.toml", "design.nc", "design.png", "transient.png", "speed.png")
 def design(
     wish: Annotated[Path, typer.Argument(metavar="WISH", help="Wish file (TOML).")],
     output: Annotated[
-        Path,
+        Path | None,
         file_option("A folder for the design and its figures.", "--output", "-o", metavar="DIR"),
-    ],
+    ] = None,
+    force: ForceOption = False,
     seed: Annotated[int, count_option("--seed", "Of all draws.", least=0)] = 1,
     threads: ThreadsOption = None,
     cluster: ClusterOption = None,
@@ -46,7 +48,7 @@ def design(
 
     A wish names a device, what may vary (ranges and catalogues), what is demanded under which
     conditions, tolerances and one to three goals. Exit status 1: no design meets the demands, and
-    the folder holds the closest.
+    what is printed and written is the closest.
     """
     from pindrive.files.output import check_folder, write_files
     from pindrive.optimisation.designing import optimise
@@ -56,19 +58,23 @@ def design(
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
         wanted = read_wish(wish, overrides or ())
-        _check_folder(output)
-        check_folder(output)
+        if output:
+            if not force:
+                _check_folder(output)
+            check_folder(output)
         with bar("Designs") as progress:
             tell = progress or (lambda done, total: None)
             found = optimise(
                 None, wanted, seed=seed, threads=threads, cluster=cluster, progress=tell
             )
-        write_files(output, _files(found, output))
+        if output:
+            write_files(output, _files(found, output), force=force)
     from pindrive.cli.design_tables import design_report
     from pindrive.cli.tables import show
 
     show(design_report(found))
-    typer.echo(f"Wrote {output}")
+    if output:
+        typer.echo(f"Wrote {output}")
     if not found.feasible:
         raise typer.Exit(NONE_MEETS)
 
@@ -79,7 +85,8 @@ def _check_folder(folder: Path) -> None:
         for path in sorted(folder.iterdir()):
             if path.name not in FILES:
                 raise ValueError(
-                    f"-o {folder}: holds {path.name}, which is of no design; give another folder"
+                    f"-o {folder}: holds {path.name}, which is of no design; "
+                    "give another folder, or --force"
                 )
 
 

@@ -12,14 +12,18 @@ from pindrive.cli.errors import refusing
 from pindrive.cli.help import ASKED, COMPUTED, command
 from pindrive.cli.options import (
     ClusterOption,
-    ForceOption,
     OverridesOption,
-    PlotOption,
     count_option,
-    file_option,
     option,
-    picture,
-    save_picture,
+)
+from pindrive.cli.outputs import (
+    ForceOption,
+    PlotOption,
+    by_suffix,
+    output_option,
+    pictures,
+    results,
+    say_written,
 )
 
 if TYPE_CHECKING:
@@ -40,7 +44,7 @@ def fit(
         list[str],
         option(ASKED, f'What is fitted, with bounds or not: "{EXAMPLE}".', metavar="KEYS"),
     ],
-    output: Annotated[Path | None, file_option("The fitted device file.", "--output", "-o")] = None,
+    output: Annotated[Path | None, output_option("The fitted device file: .toml.")] = None,
     mouse_velocity: Annotated[
         list[str] | None,
         option(
@@ -69,52 +73,45 @@ def fit(
     and plate_load where they change, such as "time [s], position [m]". What may be fitted: the
     keys of a drive and its motion, time_offset, and position_offset or that of another channel.
     """
-    from contextlib import ExitStack
-
     from pindrive.files.device import load_device
-    from pindrive.files.output import DEVICE_FILE, Output, naming, writing
+    from pindrive.files.output import DEVICE_FILE
+    from pindrive.fitting.results import Fit
 
-    with refusing(), ExitStack() as stack:
+    with refusing():
         loaded = load_device(device, overrides or ())
         keys, bounds = _free(free)
         given = _recordings(recordings, mouse_velocity or [], noise or [], window, loaded)
-        outputs = [picture(plot)] if plot else []
-        outputs += [Output(output, DEVICE_FILE, "-o")] if output else []
-        inputs = [*loaded.inputs, *recordings]
-        parts = stack.enter_context(writing(outputs, inputs, consent=force))
 
-        from pindrive.fitting.comparison import compare_models
-        from pindrive.fitting.estimation import fit as fitted
-
-        found = fitted(
-            given,
-            loaded.drive,
-            loaded.release,
-            free=keys,
-            bounds=bounds,
-            seed=seed,
-            cluster=cluster,
-        )
-        compared = compare_models(found, seed) if compare else None
-        if output:
+        def write_device(found: Fit, part: Path) -> None:
             from pindrive.fitting.device_file import fitted_file
 
-            with naming(output):
-                parts[output].write_text(fitted_file(loaded, found, output), encoding="utf-8")
-        if plot:
-            from pindrive.plot.fit import plot_fit
+            assert output
+            part.write_text(fitted_file(loaded, found, output), encoding="utf-8")
 
-            with naming(plot):
-                save_picture(plot_fit(found), plot, parts[plot])
+        targets = by_suffix([output] if output else [], {".toml": (DEVICE_FILE, write_device)})
+        targets += pictures(plot, Fit.plot)
+        with results(targets, [*loaded.inputs, *recordings], force=force) as write:
+            from pindrive.fitting.comparison import compare_models
+            from pindrive.fitting.estimation import fit as fitted
+
+            found = fitted(
+                given,
+                loaded.drive,
+                loaded.release,
+                free=keys,
+                bounds=bounds,
+                seed=seed,
+                cluster=cluster,
+            )
+            compared = compare_models(found, seed) if compare else None
+            write(found)
     from pindrive.cli.fit_tables import comparison_report, fit_report
     from pindrive.cli.tables import show
 
     show(fit_report(found))
     if compared:
         show(comparison_report(compared))
-    for path in (output, plot):
-        if path:
-            typer.echo(f"Wrote {path}")
+    say_written(targets)
 
 
 def _free(given: Sequence[str]) -> tuple[list[str], dict[str, tuple[float | str, float | str]]]:

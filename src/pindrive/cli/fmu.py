@@ -8,19 +8,16 @@ from typing import Annotated
 import typer
 
 from pindrive.cli.errors import refusing
-from pindrive.cli.help import FILES, WRITTEN, command
+from pindrive.cli.help import WRITTEN, command
 from pindrive.cli.options import DeviceArgument, OverridesOption, count_option
+from pindrive.cli.outputs import ForceOption, output_option
 
 
 @command("Other simulators", "pindrive fmu device.toml -o drive.fmu")
 def fmu(
     file: DeviceArgument,
-    output: Annotated[
-        Path,
-        typer.Option(
-            "--output", "-o", metavar="FMU", help="Where to write it.", rich_help_panel=FILES
-        ),
-    ],
+    output: Annotated[Path | None, output_option("The unit: .fmu; FILE.fmu unless given.")] = None,
+    force: ForceOption = False,
     fmi: Annotated[
         int,
         count_option("--fmi", "2 or 3, the version of FMI.", "2|3", least=2, most=3, panel=WRITTEN),
@@ -44,8 +41,10 @@ def fmu(
 
     with refusing():
         device = load_device(file, overrides or ())
-        with writing([Output(output, FMU, "-o")], device.inputs) as parts, naming(output):
-            write_fmu(device, parts[output], fmi)
+        target = output or file.with_suffix(".fmu")
+        outputs = [Output(target, FMU, "-o")]
+        with writing(outputs, device.inputs, force=force) as parts, naming(target):
+            write_fmu(device, parts[target], fmi)
     for name in inputs_of(device):
         given = getattr(device.release, name)
         if isinstance(given, Profile) and given.changes:
@@ -59,4 +58,4 @@ def fmu(
         )
     kinds = [variable.causality for variable in variables_of(device)]
     counts = (f"{kinds.count(kind)} {kind}s" for kind in ("parameter", "input", "output"))
-    typer.echo(f"Wrote {output}, FMI {fmi}.0 for co-simulation: {', '.join(counts)}")
+    typer.echo(f"Wrote {target}, FMI {fmi}.0 for co-simulation: {', '.join(counts)}")

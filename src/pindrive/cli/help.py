@@ -43,6 +43,7 @@ _SHARED: Final = (
     "help",
     "interrupts",
     "options",
+    "outputs",
     "progress",
     "scan_tables",
     "study_tables",

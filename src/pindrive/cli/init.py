@@ -9,7 +9,8 @@ import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import WRITTEN, command
-from pindrive.cli.options import ForceOption, option
+from pindrive.cli.options import option
+from pindrive.cli.outputs import ForceOption
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,6 +47,6 @@ def init(
     with refusing():
         if study and wish:
             raise ValueError("give --study or --wish, not both")
-        with writing([Output(file, kind)], consent=force) as parts, naming(file):
+        with writing([Output(file, kind)], force=force) as parts, naming(file):
             parts[file].write_text(made(whole=device), encoding="utf-8")
     typer.echo(f"Wrote {file}; try: pindrive {next_}")

@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from pindrive.cli.help import ASKED, COMPUTED, FILES
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from pindrive.files.output import Output
 
 
 def count_option(
@@ -64,13 +57,9 @@ OverridesOption = Annotated[
         metavar="KEY=VALUE",
     ),
 ]
-PlotOption = Annotated[Path | None, file_option("Draw it: .png, .svg or .pdf.")]
-CsvOption = Annotated[
-    Path | None, file_option("Even samples; events go beside it, to FILE-events.csv.")
-]
-ForceOption = Annotated[bool, option(FILES, "Replace such a file that is there.", "--force")]
 RateOption = Annotated[
-    str | None, file_option('Of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY")
+    str | None,
+    file_option('Samples of the CSV, as in "1 kHz".', "--rate", metavar="FREQUENCY"),
 ]
 ClusterOption = Annotated[
     str | None,
@@ -100,56 +89,3 @@ def measure(text: str, name: str, example: str, option: str) -> float:
     except UnitError as error:
         raise ValueError(refusal(label, str(error), quoted(text), option)) from None
     return check(name, value, where=option, label=label, given=quoted(text))
-
-
-def csv_rate(rate: str | None, csv: Path | None) -> float | None:
-    """The frequency of a CSV's samples, Hz; None where none is given.
-
-    Raises:
-        ValueError: it is no frequency, or there is no CSV.
-    """
-    if rate is not None and not csv:
-        raise ValueError("--rate goes with --csv")
-    return None if rate is None else measure(rate, "rate", "1 kHz", "--rate")
-
-
-def picture(path: Path, option: str = "--plot") -> Output:
-    """A picture that is to be written, in the format that its name asks for.
-
-    Raises:
-        ValueError: it asks for none.
-    """
-    from pindrive.files.output import PICTURES, Output
-
-    suffix = path.suffix.lower()
-    if suffix not in PICTURES:
-        raise ValueError(f"{option} {path}: must end in {', '.join(PICTURES)}")
-    return Output(path, PICTURES[suffix], option)
-
-
-def save_picture(figure: Figure, path: Path, part: Path) -> None:
-    """Write a figure to `part`, a file that will be called `path`."""
-    from pindrive.plot.style import save
-
-    save(figure, part, path.suffix.lower().removeprefix("."))
-
-
-@contextmanager
-def picturing(
-    path: Path | None, inputs: Sequence[Path]
-) -> Iterator[Callable[[Callable[[], Figure]], None]]:
-    """Begin a picture, if one is wanted, and give what writes the figure that a function makes.
-
-    Raises:
-        ValueError: it cannot be written, or is one of the inputs.
-    """
-    from pindrive.files.output import naming, writing
-
-    with writing([picture(path)] if path else [], inputs) as parts:
-
-        def write(make: Callable[[], Figure]) -> None:
-            if path:
-                with naming(path):
-                    save_picture(make(), path, parts[path])
-
-        yield write

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import command
-from pindrive.cli.options import (
-    OverridesOption,
+from pindrive.cli.options import OverridesOption, StudyArgument, ThreadsOption, count_option
+from pindrive.cli.outputs import (
+    ForceOption,
     PlotOption,
-    StudyArgument,
-    ThreadsOption,
-    count_option,
-    picturing,
+    ResultOption,
+    datasets,
+    pictures,
+    results,
+    say_written,
 )
 from pindrive.cli.progress import points_bar
 
@@ -22,7 +22,9 @@ from pindrive.cli.progress import points_bar
 @command("Studies", "pindrive robustness study.toml --plot yield.png")
 def robustness(
     study: StudyArgument,
+    output: ResultOption = None,
     plot: PlotOption = None,
+    force: ForceOption = False,
     draws: Annotated[
         int | None, count_option("--draws", "Random draws; 100 000 unless given, of scans 1000.")
     ] = None,
@@ -36,19 +38,22 @@ def robustness(
     to the largest that it can have, unless they have a tolerance of their own. Draws that cannot
     exist all the same are counted apart, with the reason.
     """
+    from pindrive.study.robustness import Robustness
     from pindrive.study.robustness import robustness as analyse
     from pindrive.study.study import load_study
 
     with refusing():
         plan = load_study(study, overrides or ())
-        with picturing(plot, plan.inputs) as draw:
+        targets = pictures(plot, Robustness.plot)
+        title = "Draws within the tolerances"
+        targets += datasets(output, title, ("design",), Robustness.to_dataset)
+        with results(targets, plan.inputs, force=force) as write:
             with points_bar() as tell:
                 found = analyse(plan, count=draws, seed=seed, threads=threads, progress=tell)
-            draw(found.plot)
+            write(found)
     from pindrive.cli.study_tables import robustness_report, say_coefficient
     from pindrive.cli.tables import show
 
     show(robustness_report(plan, found))
     say_coefficient(plan, tolerances=True)
-    if plot:
-        typer.echo(f"Wrote {plot}")
+    say_written(targets)

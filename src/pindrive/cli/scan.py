@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import FILES, PAGE, command
 from pindrive.cli.options import (
-    CsvOption,
     DeviceArgument,
     OverridesOption,
-    PlotOption,
     RateOption,
-    csv_rate,
     file_option,
     measures,
     option,
-    picture,
-    save_picture,
+)
+from pindrive.cli.outputs import (
+    ForceOption,
+    PlotOption,
+    Target,
+    Writer,
+    by_suffix,
+    csv_rate,
+    output_option,
+    pictures,
+    results,
+    say_written,
+    with_events,
 )
 from pindrive.cli.progress import bar
+
+if TYPE_CHECKING:
+    from pindrive.device.hand import HandPath
+    from pindrive.evaluation.perception import Judgement
 
 STROKES = "strokes"
 
@@ -46,50 +58,40 @@ def scan(
     path: Annotated[
         str, option(PAGE, "How the hand moves: a CSV of time, x, y.", metavar="strokes|FILE")
     ] = STROKES,
+    overrides: OverridesOption = None,
+    output: Annotated[
+        list[Path] | None,
+        output_option(
+            "The scan: .csv at even times, with its events in FILE-events.csv; .nc with units; "
+            ".json of the lines, without samples."
+        ),
+    ] = None,
     plot: PlotOption = None,
+    force: ForceOption = False,
+    rate: RateOption = None,
+    lines: Annotated[Path | None, file_option("Each line under each pin: .csv.")] = None,
     pin: Annotated[
         int | None, file_option("The pin drawn in detail, from 0.", metavar="NUMBER")
     ] = None,
     film: Annotated[Path | None, file_option("Film it: .gif or .mp4.", "--animate")] = None,
     slow: Annotated[float, option(FILES, "How many times slower the film is.")] = 4.0,
-    lines: Annotated[Path | None, file_option("Each line under each pin, as CSV.")] = None,
-    csv: CsvOption = None,
-    rate: RateOption = None,
-    output: Annotated[Path | None, file_option("All of it, as NetCDF.", "--output", "-o")] = None,
-    overrides: OverridesOption = None,
 ) -> None:
     """Move the device over a page and say what its pins do."""
     from pindrive.files.device import load_device
 
-    with refusing(), ExitStack() as stack:
+    with refusing():
         device_file = load_device(file, overrides or (), whole=True)
         device, reading = device_file.device, device_file.reading
-        from pindrive.files.output import FILMS, LINES_CSV, SCAN_NETCDF, Output, naming, writing
-
-        outputs = [picture(plot)] if plot else []
-        if film:
-            from pindrive.plot.animation import animate, animation_format, frame_times
-
-            film_kind = animation_format(film)
-            outputs.append(Output(film, FILMS[film.suffix.lower()], "--animate"))
-        if lines:
-            outputs.append(Output(lines, LINES_CSV, "--lines"))
-        if output:
-            outputs.append(Output(output, SCAN_NETCDF, "--output"))
-        frequency = csv_rate(rate, csv) or 1000.0
-        if csv:
-            from pindrive.files.export import events_path
-            from pindrive.files.output import SCAN_CSV, SCAN_EVENTS_CSV
-
-            outputs.append(Output(csv, SCAN_CSV, "--csv"))
-            outputs.append(Output(events_path(csv), SCAN_EVENTS_CSV, "--csv"))
+        wanted = output or []
+        frequency = csv_rate(rate, wanted) or 1000.0
         if pin is not None and not (plot and 0 <= pin < len(device.array)):
             required = f"from 0 to {len(device.array) - 1}, beside --plot"
             raise ValueError(f"--pin must be {required}, got {pin}")
 
         from pindrive.device.page_description import Page
         from pindrive.device.scanning import scan as follow
-        from pindrive.evaluation.perception import judge
+        from pindrive.evaluation.perception import Judgement, judge
+        from pindrive.files.output import LINES_CSV, SCAN_EVENTS_CSV
 
         page = Page(
             text=None if text is None else text.replace("\\n", "\n"),
@@ -101,51 +103,31 @@ def scan(
             path=None if path == STROKES else Path(path),
         )
         page.check("--{}")
-        parts = stack.enter_context(writing(outputs, [file, *page.files.values()]))
-        scene = page.scene(reading, device.array)
-        hand = page.hand(reading, scene, device.array)
-        if output:
-            from pindrive.device.dataset import check_samples, sample_count
+        targets = pictures(plot, partial(Judgement.plot, pin=pin))
+        targets += _films(film, slow) + by_suffix(wanted, _writers(frequency))
+        targets = with_events(targets, SCAN_EVENTS_CSV, _write_events)
+        line_writers = {".csv": (LINES_CSV, _write_lines)}
+        targets += by_suffix([lines] if lines else [], line_writers, "--lines")
+        with results(targets, [file, *page.files.values()], force=force) as write:
+            scene = page.scene(reading, device.array)
+            hand = page.hand(reading, scene, device.array)
+            suffixes = {path.suffix.lower() for path in wanted}
+            _check_sizes(hand, len(device.array), suffixes, frequency)
+            if film:
+                from pindrive.plot.animation import frame_times
 
-            check_samples(len(device.array), sample_count(hand))
-        if csv:
-            from pindrive.files import export
-
-            times = export.even_times(hand.begin, hand.end, frequency, len(device.array))
-        if film:
-            frame_times(hand, slow)
-        with bar("Pins") as progress:
-            done = follow(
-                device,
-                scene,
-                hand,
-                touch=device_file.touch,
-                max_angle=reading.max_angle,
-                progress=progress,
-            )
-        judgement = judge(done, device_file.criteria)
-        if output:
-            from pindrive.device.dataset import write_netcdf
-
-            with naming(output):
-                write_netcdf(done, parts[output])
-        if csv:
-            with naming(csv):
-                export.write_scan_csv(done, parts[csv], times)
-                export.write_scan_events(done, parts[export.events_path(csv)])
-        if lines:
-            from pindrive.files.export import write_lines
-
-            with naming(lines):
-                write_lines(judgement.columns(), parts[lines])
-        if plot:
-            from pindrive.plot.scan import plot_scan
-
-            with naming(plot):
-                save_picture(plot_scan(judgement, pin), plot, parts[plot])
-        if film:
-            with naming(film), bar("Frames") as progress:
-                animate(judgement, parts[film], film_kind, slow=slow, progress=progress)
+                frame_times(hand, slow)
+            with bar("Pins") as progress:
+                done = follow(
+                    device,
+                    scene,
+                    hand,
+                    touch=device_file.touch,
+                    max_angle=reading.max_angle,
+                    progress=progress,
+                )
+            judgement = judge(done, device_file.criteria)
+            write(judgement)
     from pindrive.cli.scan_tables import judgement_report, scan_report
     from pindrive.cli.tables import show
 
@@ -153,5 +135,64 @@ def scan(
         typer.echo(f"warning: {warning}", err=True)
     show(scan_report(done))
     show(judgement_report(judgement))
-    for target in outputs:
-        typer.echo(f"Wrote {target.path}")
+    say_written(targets)
+
+
+def _writers(frequency: float) -> dict[str, Writer[Judgement]]:
+    """How a scan is written, by the suffix of a file; with so many samples a second in a CSV."""
+    from pindrive.device.dataset import write_netcdf
+    from pindrive.files import dataset, export
+    from pindrive.files.output import SCAN_CSV, SCAN_NETCDF
+
+    def write_csv(judgement: Judgement, part: Path) -> None:
+        scan = judgement.scan
+        times = export.even_times(scan.path.begin, scan.path.end, frequency, len(scan.pins))
+        export.write_scan_csv(scan, part, times)
+
+    def write_json(judgement: Judgement, part: Path) -> None:
+        dataset.write_json(judgement.to_dataset(), part, f"Scan of {judgement.scan.scene.title}")
+
+    return {
+        ".csv": (SCAN_CSV, write_csv),
+        ".nc": (SCAN_NETCDF, lambda judgement, part: write_netcdf(judgement.scan, part)),
+        ".json": (dataset.DATASET_JSON, write_json),
+    }
+
+
+def _write_events(judgement: Judgement, part: Path) -> None:
+    from pindrive.files.export import write_scan_events
+
+    write_scan_events(judgement.scan, part)
+
+
+def _write_lines(judgement: Judgement, part: Path) -> None:
+    from pindrive.files.export import write_lines
+
+    write_lines(judgement.columns(), part)
+
+
+def _films(film: Path | None, slow: float) -> list[Target[Judgement]]:
+    """The film, if one is wanted and can be made here."""
+    if not film:
+        return []
+    from pindrive.files.output import FILMS
+    from pindrive.plot.animation import animate, animation_format
+
+    suffix = animation_format(film)
+
+    def write(judgement: Judgement, part: Path) -> None:
+        with bar("Frames") as progress:
+            animate(judgement, part, suffix, slow=slow, progress=progress)
+
+    return by_suffix([film], {s: (kind, write) for s, kind in FILMS.items()}, "--animate")
+
+
+def _check_sizes(hand: HandPath, pins: int, suffixes: set[str], frequency: float) -> None:
+    """Refuse files that would be too large before anything is computed."""
+    from pindrive.device.dataset import check_samples, sample_count
+    from pindrive.files.export import even_times
+
+    if ".nc" in suffixes:
+        check_samples(pins, sample_count(hand))
+    if ".csv" in suffixes:
+        even_times(hand.begin, hand.end, frequency, pins)

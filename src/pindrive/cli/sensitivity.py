@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import ASKED, command
 from pindrive.cli.options import (
     OverridesOption,
-    PlotOption,
     StudyArgument,
     ThreadsOption,
     count_option,
     option,
-    picturing,
+)
+from pindrive.cli.outputs import (
+    ForceOption,
+    PlotOption,
+    ResultOption,
+    datasets,
+    pictures,
+    results,
+    say_written,
 )
 from pindrive.cli.progress import points_bar
 
@@ -23,7 +28,9 @@ from pindrive.cli.progress import points_bar
 @command("Studies", "pindrive sensitivity study.toml --tolerances --plot matters.png")
 def sensitivity(
     study: StudyArgument,
+    output: ResultOption = None,
     plot: PlotOption = None,
+    force: ForceOption = False,
     tolerances: Annotated[
         bool, option(ASKED, "Over [tolerances] instead of [axes].", "--tolerances")
     ] = False,
@@ -49,12 +56,15 @@ def sensitivity(
     What keeps its ratio to a varied value changes with it, as for `robustness`.
     """
     from pindrive.study.outputs import known_output
-    from pindrive.study.sensitivity import askable, sobol
+    from pindrive.study.sensitivity import Influence, askable, sobol
     from pindrive.study.study import load_study
 
     with refusing():
         plan = load_study(study, overrides or ())
-        with picturing(plot, plan.inputs) as draw:
+        targets = pictures(plot, Influence.plot)
+        title = "Sobol' indices"
+        targets += datasets(output, title, ("number", "key"), Influence.to_dataset)
+        with results(targets, plan.inputs, force=force) as write:
             among = askable(plan)
             with points_bar() as tell:
                 found = sobol(
@@ -67,11 +77,10 @@ def sensitivity(
                     progress=tell,
                     near=True,
                 )
-            draw(found.plot)
+            write(found)
     from pindrive.cli.study_tables import influence_report, say_coefficient
     from pindrive.cli.tables import show
 
     show(influence_report(found))
     say_coefficient(plan, tolerances=tolerances)
-    if plot:
-        typer.echo(f"Wrote {plot}")
+    say_written(targets)

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
-
-import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import ASKED, command
 from pindrive.cli.options import (
     DeviceArgument,
     OverridesOption,
-    PlotOption,
     measure,
     measures,
     option,
-    picturing,
+)
+from pindrive.cli.outputs import (
+    ForceOption,
+    PlotOption,
+    ResultOption,
+    datasets,
+    pictures,
+    results,
+    say_written,
 )
 from pindrive.cli.progress import bar
 
@@ -36,7 +42,9 @@ def speed(
     ] = 0.5,
     slowest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "5 mm/s",
     fastest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "1000 mm/s",
+    output: ResultOption = None,
     plot: PlotOption = None,
+    force: ForceOption = False,
     overrides: OverridesOption = None,
 ) -> None:
     """Say how fast the hand may move before two lines run into one."""
@@ -55,9 +63,12 @@ def speed(
             measure(fastest, "speed.fastest", "1000 mm/s", "--fastest"),
         )
 
-        from pindrive.evaluation.resolution import largest_speeds
+        from pindrive.evaluation.resolution import SpeedLimits, largest_speeds
 
-        with picturing(plot, [file]) as draw:
+        targets = pictures(plot, partial(SpeedLimits.plot, device=device_file.name))
+        title = "Largest speeds of a hand"
+        targets += datasets(output, title, ("speed_pitch [m]",), SpeedLimits.to_dataset)
+        with results(targets, [file], force=force) as write:
             device = device_file.device
             criteria = device_file.criteria
             with bar("Pitches") as progress:
@@ -71,10 +82,9 @@ def speed(
                     criteria=criteria,
                     progress=progress,
                 )
-            draw(lambda: limits.plot(device_file.name))
+            write(limits)
     from pindrive.cli.scan_tables import speed_report
     from pindrive.cli.tables import show
 
     show(speed_report(limits, part, criteria))
-    if plot:
-        typer.echo(f"Wrote {plot}")
+    say_written(targets)

@@ -18,15 +18,16 @@ from pindrive.lazy import h5py
 from pindrive.quantities.names import label
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.status import Status
+from pindrive.quantities.table import digits
 from pindrive.study.distributions import base_value
 from pindrive.study.evaluate import why
 from pindrive.study.outputs import NUMBERS, points_that_meet
 from pindrive.study.runner import human_bytes
-from pindrive.study.slices import elasticity
+from pindrive.study.slices import QUANTITY, elasticity, words
 from pindrive.study.validation import coefficient_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from rich.console import RenderableType
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from pindrive.study.robustness import Robustness, WorstCase
     from pindrive.study.runner import Sweep
     from pindrive.study.sensitivity import Influence
+    from pindrive.study.slices import Panel
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
 _SLICE = 1 << 24
@@ -106,6 +108,36 @@ def _statuses(done: Sweep) -> list[tuple[str, int, int]]:
                 found[int(flag)] = (before + int(number), place)
     named = [(Status(flag).name, *of) for flag, of in found.items() if flag]
     return sorted(named, key=lambda of: -of[1])
+
+
+def slice_words(panel: Panel) -> str:
+    """The least and the largest value of a slice, where they are, and how many points lack one."""
+    exists, held = ~np.isnan(panel.values), _where(panel.at)
+    name = f"{words(panel.number)} at {held}" if held else words(panel.number)
+    lacking = int((~exists).sum())
+    without = f"; without one: {percent(lacking, exists.size)}" if lacking else ""
+    if not exists.any():
+        return f"{name}{without}"
+
+    def place(index: int) -> str:
+        at = np.unravel_index(index, panel.values.shape)
+        found = _short(panel.number, float(panel.values[at]))
+        places = (float(along[i]) for along, i in zip(panel.along, at, strict=True))
+        return f"{found} ({_where(dict(zip(panel.keys, places, strict=True)))})"
+
+    least, largest = int(np.nanargmin(panel.values)), int(np.nanargmax(panel.values))
+    return f"{name}: {place(least)} to {place(largest)}{without}"
+
+
+def _where(at: Mapping[str, float]) -> str:
+    """Values of keys, in a line."""
+    return ", ".join(f"{words(key)} {_short(key, value)}" for key, value in at.items())
+
+
+def _short(name: str, value: float) -> str:
+    """The value of a variable with its unit."""
+    quantity = QUANTITY[name]
+    return f"{digits(value * quantity.display_scale)} {quantity.display_unit}".rstrip()
 
 
 def influence_report(found: Influence) -> RenderableType:

@@ -15,22 +15,18 @@ from pindrive.cli.options import (
     StudyArgument,
     ThreadsOption,
     count_option,
-    file_option,
     option,
 )
+from pindrive.cli.outputs import ForceOption, output_option
 from pindrive.cli.progress import points_bar
 
 
 @command("Studies", "pindrive sweep study.toml -o study.nc")
 def sweep(
     study: StudyArgument,
-    output: Annotated[
-        Path | None, file_option("NetCDF; STUDY.nc unless given.", "--output", "-o")
-    ] = None,
+    output: Annotated[Path | None, output_option("All points: .nc; STUDY.nc unless given.")] = None,
+    force: ForceOption = False,
     resume: Annotated[bool, option(COMPUTED, "Go on with a run cut short.", "--resume")] = False,
-    restart: Annotated[
-        bool, option(COMPUTED, "Replace an earlier study, or a run cut short.", "--restart")
-    ] = False,
     stop_after: Annotated[
         int | None, count_option("--stop-after", "Stop there; --resume continues.", "POINTS")
     ] = None,
@@ -54,8 +50,8 @@ def sweep(
         return f"stopped; {words if kept else 'no chunk was finished yet'}"
 
     with refusing(stopped):
-        if resume and restart:
-            raise ValueError("give --resume or --restart, not both")
+        if resume and force:
+            raise ValueError("give --resume or --force, not both")
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
         plan = load_study(study, overrides or ())
@@ -66,7 +62,7 @@ def sweep(
                 plan,
                 target,
                 resume=resume,
-                restart=restart,
+                force=force,
                 stop_after=stop_after,
                 work=on_cluster(cluster) if cluster else on_threads(threads),
                 tell=tell,

@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from io import BytesIO
-from math import isfinite, isnan
+from math import isnan
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.device.scanning import PinScan, Scan
+from pindrive.files.dataset import finite
 from pindrive.files.device import DeviceFile
 from pindrive.files.output import (
     EVENT_HEADINGS,
@@ -65,7 +66,7 @@ def even_times(begin: float, end: float, rate: float | str, curves: int = 1) -> 
     count = (end - begin) * per_second + 1.0
     budgets.MOTION_SAMPLES.check(curves * count, f"{end - begin:g} s at {per_second:g} Hz")
     # A count that is whole but for rounding is whole.
-    return begin + np.arange(int(count * (1.0 + 1e-15))) / per_second
+    return np.minimum(begin + np.arange(int(count * (1.0 + 1e-15))) / per_second, end)
 
 
 def to_csv(motion: Motion, path: str | PathLike[str], rate: float | str) -> Path:
@@ -208,7 +209,7 @@ def write_json(motion: Motion, device: DeviceFile, path: Path) -> None:
         "events": [asdict(event) for event in motion.events],
         "segments": [asdict(segment) for segment in motion.segments],
     }
-    text = json.dumps(_finite(document), indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(finite(document), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
 
 
@@ -218,14 +219,3 @@ def _units(name: str, value: object) -> str | list[str]:
     if not isinstance(value, tuple):
         return unit
     return [QUANTITIES[COLUMNS[QUANTITIES[name].rows_of][0]].unit, unit]
-
-
-def _finite(value: Any) -> Any:
-    """`value` with null for NaN and the text "Infinity" for infinity, which JSON lacks."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    if not isinstance(value, float) or isfinite(value):
-        return value
-    return None if isnan(value) else "Infinity" if value > 0 else "-Infinity"

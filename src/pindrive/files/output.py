@@ -1,7 +1,7 @@
 """Files that are written whole or not at all, and replace files of their own kind only; the kinds.
 
 They are written beside their target and renamed when complete. A file that is there is replaced
-only if it is of the kind that is written, and never if the command reads it.
+only if it is of the kind that is written, or on request, and never if the command reads it.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Kind:
 
     name: str
     holds: Callable[[Path], bool]
-    consent: str = ""
-    """The option with which one is replaced, as it took long to make; none where it did not."""
+    costly: bool = False
+    """Whether one took long to make, and is replaced by `--force` only."""
     library: str = ""
     """That of the extra "complete" which writes one."""
 
@@ -58,18 +58,18 @@ class Output:
 
 
 def check_outputs(
-    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, force: bool = False
 ) -> None:
     """Refuse to write over what is needed.
 
     Args:
         outputs: what is to be written.
         inputs: what the command reads; compared as files, through links of any sort.
-        consent: whether files may be replaced that took long to make.
+        force: whether files may be replaced that are of another kind, or took long to make.
 
     Raises:
-        OutputError: two outputs are one file, an output is an input, a file is there that is of
-            another kind, or takes consent, or the library that writes it is not installed.
+        OutputError: two outputs are one file, an output is an input, a file is there that may not
+            be replaced, or the library that writes it is not installed.
     """
     read = [*inputs]
     for i, output in enumerate(outputs):
@@ -82,7 +82,7 @@ def check_outputs(
             raise OutputError(f"{output}: is named twice; give each file a name of its own")
         check_unread(output.path, read, str(output))
         with naming(output.path):
-            if not output.path.is_file() or not output.path.stat().st_size:
+            if force or not output.path.is_file() or not output.path.stat().st_size:
                 continue
         try:
             alike = output.kind.holds(output.path)
@@ -90,10 +90,10 @@ def check_outputs(
             raise OutputError(f"{output}: is there, and cannot be read: {error.strerror}") from None
         if not alike:
             raise OutputError(
-                f"{output}: is there and is no {output.kind.name}; it stays, give another name"
+                f"{output}: is there and is no {output.kind.name}; give another name, or --force"
             )
-        if output.kind.consent and not consent:
-            raise OutputError(f"{output}: exists already; {output.kind.consent} replaces it")
+        if output.kind.costly:
+            raise OutputError(f"{output}: exists already; --force replaces it")
 
 
 def check_unread(path: Path, inputs: Iterable[Path], label: str = "") -> None:
@@ -111,13 +111,13 @@ def _are_one(one: Path, other: Path) -> bool:
 
 @contextmanager
 def writing(
-    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, consent: bool = False
+    outputs: Sequence[Output], inputs: Iterable[Path] = (), *, force: bool = False
 ) -> Iterator[dict[Path, Path]]:
     """For the path of each output a path to write to, as `atomic_write` gives it.
 
     Arguments and errors as for `check_outputs` and `atomic_write`.
     """
-    check_outputs(outputs, inputs, consent=consent)
+    check_outputs(outputs, inputs, force=force)
     with ExitStack() as stack:
         yield {output.path: stack.enter_context(atomic_write(output.path)) for output in outputs}
 
@@ -190,19 +190,23 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
             raise PermissionError(f"{path} is read-only")
 
 
-def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+def write_files(
+    folder: str | os.PathLike[str], files: Mapping[str, bytes], *, force: bool = False
+) -> None:
     """Write files into a folder that need not be there: all, or none.
 
     Args:
         folder: where; other files in it stay as they are.
         files: what, by the path in the folder. One that is there is replaced if it begins with the
             same line, and has the same title.
+        force: whether any other that is there is replaced too.
 
     Raises:
         OutputError: a file or a folder cannot be written, or would replace something else.
     """
     top, made = Path(folder), []
-    check_outputs([Output(top / name, _like(name, content)) for name, content in files.items()])
+    outputs = [Output(top / name, _like(name, content)) for name, content in files.items()]
+    check_outputs(outputs, force=force)
     try:
         with ExitStack() as stack:
             for name, content in files.items():
@@ -226,7 +230,7 @@ def _beginning(name: str, *beginnings: bytes, library: str = "") -> Kind:
     return Kind(name, lambda path: _head(path).startswith(beginnings), library=library)
 
 
-def _headed(name: str, headings: Sequence[str]) -> Kind:
+def headed(name: str, headings: Sequence[str]) -> Kind:
     """A CSV whose first columns are headed so."""
     return _beginning(name, ",".join(headings).encode())
 
@@ -236,7 +240,7 @@ def _head(path: Path) -> bytes:
         return file.read(_HEAD)
 
 
-def _titled(name: str, beginning: str) -> Kind:
+def titled(name: str, beginning: str) -> Kind:
     """A NetCDF file of pindrive by the beginning of its title."""
     return Kind(
         name, lambda path: _attribute(path, "title").startswith(beginning), library="h5netcdf"
@@ -284,22 +288,22 @@ FILMS: Final = {
     ".gif": _beginning("GIF film", b"GIF87a", b"GIF89a", library="matplotlib"),
     ".mp4": Kind("MP4 film", lambda path: _head(path)[4:8] == b"ftyp", library="matplotlib"),
 }
-MOTION_CSV: Final = _headed("CSV file of a motion", _ALWAYS)
-EVENTS_CSV: Final = _headed("CSV file of the events of a motion", EVENT_HEADINGS)
-SCAN_CSV: Final = _headed("CSV file of a scan", ("pin", *_ALWAYS))
-SCAN_EVENTS_CSV: Final = _headed("CSV file of the events of a scan", ("pin", *EVENT_HEADINGS))
-MOTION_JSON: Final = _beginning("JSON file of a motion", b'{\n  "pindrive": ')
-MOTION_NETCDF: Final = _titled("NetCDF file of a motion", "Motion of ")
-LINES_CSV: Final = _headed("CSV file of lines", ("pin", "fate", "cue_on"))
-SCAN_NETCDF: Final = _titled("NetCDF file of a scan", "Scan of ")
+MOTION_CSV: Final = headed("CSV file of a motion", _ALWAYS)
+EVENTS_CSV: Final = headed("CSV file of the events of a motion", EVENT_HEADINGS)
+SCAN_CSV: Final = headed("CSV file of a scan", ("pin", *_ALWAYS))
+SCAN_EVENTS_CSV: Final = headed("CSV file of the events of a scan", ("pin", *EVENT_HEADINGS))
+JSON: Final = _beginning("JSON file of pindrive", b'{\n  "pindrive": ')
+MOTION_NETCDF: Final = titled("NetCDF file of a motion", "Motion of ")
+LINES_CSV: Final = headed("CSV file of lines", ("pin", "fate", "cue_on"))
+SCAN_NETCDF: Final = titled("NetCDF file of a scan", "Scan of ")
 FMU: Final = Kind("FMU", lambda path: b"modelDescription.xml" in _head(path))
 STUDY_NETCDF: Final = Kind(
     "NetCDF file of a study",
     lambda path: _attribute(path, "identity") != "",
-    "--restart",
+    costly=True,
     library="h5netcdf",
 )
-DEVICE_FILE: Final = Kind("device file", _is_device_file, "--force")
-STUDY_FILE: Final = Kind("study file", _is_study_file, "--force")
-WISH_FILE: Final = Kind("wish file", lambda path: "goals" in _tables(path), "--force")
+DEVICE_FILE: Final = Kind("device file", _is_device_file, costly=True)
+STUDY_FILE: Final = Kind("study file", _is_study_file, costly=True)
+WISH_FILE: Final = Kind("wish file", lambda path: "goals" in _tables(path), costly=True)
 REPORT: Final = Kind("report of the paper", lambda path: b"Dynamics of tactile" in _head(path))

@@ -146,7 +146,7 @@ class Report:
         )
 
     def files(self, step: Callable[[str], None] = lambda _: None) -> dict[str, bytes]:
-        """Everything that `pindrive paper --out` writes, by its path in the folder.
+        """Everything that `pindrive paper -o` writes, by its path in the folder.
 
         Args:
             step: told what comes next, once for each exhibit.
@@ -236,7 +236,7 @@ _EQUATIONS: Final = "Its equations, corrected"
 
 
 _DOCS: Final = (
-    "`pindrive paper --out DIR` writes all this as one page, with every figure as SVG and PNG and "
+    "`pindrive paper -o DIR` writes all this as one page, with every figure as SVG and PNG and "
     "its data as NetCDF. `pindrive.paper` has the equations as functions."
 )
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -96,7 +96,7 @@ def sweep(
     target: Path,
     *,
     resume: bool = False,
-    restart: bool = False,
+    force: bool = False,
     stop_after: int | None = None,
     work: Work | None = None,
     tell: Progress = lambda done, total: None,
@@ -109,7 +109,7 @@ def sweep(
         plan: the study.
         target: a NetCDF file.
         resume: continue an interrupted run, if there is one.
-        restart: discard an interrupted run; an earlier study at `target` is replaced
+        force: discard an interrupted run; an earlier study at `target` is replaced
             when the new one is whole.
         stop_after: stop when at least so many points are done; `resume` continues.
         work: how chunks are computed; on all cores unless given.
@@ -117,20 +117,21 @@ def sweep(
 
     Raises:
         OutputError: an interrupted run or an earlier study is there and neither `resume` nor
-            `restart` is given, it is of another study, another file is there, or the disk is full
+            `force` is given, it is of another study, another file is there, or the disk is full
             or cannot be written. Finished chunks are kept.
     """
     started = perf_counter()
     if target.exists() and not target.is_file():
         raise OutputError(f"{target}: cannot be written: not a regular file")
     part, notes = (target.with_name(f"{target.name}.{end}") for end in ("partial", "journal"))
-    check_outputs([Output(target, STUDY_NETCDF)], plan.inputs, consent=resume or restart)
+    kind = replace(STUDY_NETCDF, costly=not resume)
+    check_outputs([Output(target, kind)], plan.inputs, force=force)
     for path in (part, notes):
         check_unread(path, plan.inputs)
     if resume and not notes.exists() and _is_complete(target, plan):
         return Sweep(target, plan.size, 0, *_counted(target, plan), 0.0, True)
-    _check_target(target, notes, resume or restart)
-    with _journal(notes, part, plan, restart) as journal:
+    _check_target(target, notes, resume or force)
+    with _journal(notes, part, plan, force) as journal:
         if not (journal.done and part.exists()):
             journal.done.clear()
             _begin(part, plan, target)
@@ -228,16 +229,16 @@ def _check_target(target: Path, notes: Path, may_be_there: bool) -> None:
         raise OutputError(f"{target}: cannot be written: there is no folder {target.parent}")
     if notes.exists() and not may_be_there:
         raise OutputError(
-            f"{notes}: an unfinished run is there; --resume continues it, --restart begins anew"
+            f"{notes}: an unfinished run is there; --resume continues it, --force begins anew"
         )
 
 
 @contextmanager
-def _journal(notes: Path, part: Path, plan: Plan, restart: bool) -> Iterator[Journal]:
+def _journal(notes: Path, part: Path, plan: Plan, force: bool) -> Iterator[Journal]:
     """The study's journal; where it ends without a finished chunk nothing is left behind."""
     empty = False
     try:
-        with Journal(notes, plan.identity(), restart) as journal:
+        with Journal(notes, plan.identity(), force) as journal:
             try:
                 yield journal
             finally:
@@ -299,10 +300,10 @@ def _is_complete(target: Path, plan: Plan) -> bool:
             found: Any = file.attrs.get("identity")
         written = json.loads(found)
     except (OSError, ValueError, TypeError):
-        raise OutputError(f"{target}: is damaged; --restart replaces it") from None
+        raise OutputError(f"{target}: is damaged; --force replaces it") from None
     if written != plan.identity():
         what = difference(written, plan.identity())
-        raise OutputError(f"{target}: holds another study: {what}; --restart replaces it")
+        raise OutputError(f"{target}: holds another study: {what}; --force replaces it")
     return True
 
 

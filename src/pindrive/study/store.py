@@ -71,7 +71,7 @@ class Store:
                 found = {name: (file[name].id.get_offset(), file[name].dtype) for name in names}
         except (OSError, KeyError) as error:
             reason = str(error).strip("'").replace("\n", " ")
-            raise OutputError(f"{path}: is damaged: {reason}; --restart begins anew") from None
+            raise OutputError(f"{path}: is damaged: {reason}; --force begins anew") from None
         self._places = found
         with naming(path):
             self._file = path.open("r+b", buffering=0)
@@ -199,8 +199,8 @@ class Tally(NamedTuple):
 class Journal:
     """The open journal of a study: held by one process at a time."""
 
-    def __init__(self, path: Path, identity: dict[str, Any], restart: bool = False) -> None:
-        """Open it, or begin it; what it holds is thrown away where `restart`.
+    def __init__(self, path: Path, identity: dict[str, Any], force: bool = False) -> None:
+        """Open it, or begin it; what it holds is thrown away where `force`.
 
         Raises:
             OutputError: it is another study's, another process holds it, or it cannot be written.
@@ -210,7 +210,7 @@ class Journal:
             self._file = path.open("a+b", buffering=0)
         try:
             self._hold()
-            if restart:
+            if force:
                 self._file.truncate(0)
             self.done = self._read(identity)
         except BaseException as error:
@@ -256,7 +256,7 @@ class Journal:
         if begun != identity:
             what = difference(begun, identity)
             raise OutputError(
-                f"{self._path}: another study was begun there: {what}; --restart begins anew"
+                f"{self._path}: another study was begun there: {what}; --force begins anew"
             )
         return done
 

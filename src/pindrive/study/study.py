@@ -112,7 +112,7 @@ class Study(Plan):
         path: str | PathLike[str] | None = None,
         *,
         resume: bool = False,
-        restart: bool = False,
+        force: bool = False,
         threads: int | None = None,
         cluster: str | None = None,
         progress: Callable[[int, int], None] = lambda done, total: None,
@@ -126,7 +126,7 @@ class Study(Plan):
             path: a NetCDF file that keeps the points; an interrupted run continues from it. None: a
                 temporary file.
             resume: go on with an interrupted run of the same study.
-            restart: replace an interrupted run, or an earlier study.
+            force: replace an interrupted run, or an earlier study.
             threads: how many work, at least 1; as many as there are cores unless given.
             cluster: the address of a Dask scheduler, whose workers do the work instead.
             progress: called with the points done and the points in all.
@@ -151,7 +151,7 @@ class Study(Plan):
                 sweep(self, target, work=work, tell=progress)
                 return xr.load_dataset(target, engine="h5netcdf")
         target = Path(path)
-        done = sweep(self, target, resume=resume, restart=restart, work=work, tell=progress)
+        done = sweep(self, target, resume=resume, force=force, work=work, tell=progress)
         return done.to_dataset()
 
 
