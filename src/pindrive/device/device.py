@@ -16,8 +16,10 @@ from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.drive import Drive
 from pindrive.quantities.part import Number
 from pindrive.quantities.table import checked, default
+from pindrive.quantities.value import concise
 
 
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Device:
     """A tactile device: pins that are all alike, each with its own magnet and spot.

@@ -15,6 +15,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing
 from pindrive.quantities.table import check, default
+from pindrive.quantities.value import concise, equal_by_value
 
 PEAK: Final = 1.875
 """Peak speed of a minimum-jerk stroke over its mean (Flash & Hogan 1985, J. Neurosci. 5:1688)."""
@@ -26,6 +27,8 @@ RECORDED: Final = "time [s], x [m], y [m]"
 Point = tuple[float, float]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, eq=False)
 class HandPath:
     """Where the hand is over time. Made by `strokes`, `lines`, `through` or `read_csv`.

@@ -29,6 +29,7 @@ from pindrive.lazy import Image, ImageDraw, ImageFont, ImageOps, features, ft2fo
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import check_whole, quoted, refusal
 from pindrive.quantities.table import check, default
+from pindrive.quantities.value import concise, equal_by_value
 
 LUMA: Final = (0.299, 0.587, 0.114)
 """Weights of red, green and blue (ITU-R BT.601-7)."""
@@ -43,6 +44,8 @@ FINER: Final = 4.0
 """A scene is looked at for lines so many times in each pixel of the way."""
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """A page. Made by `from_image`, `from_text`, `from_grating`, or from an array.

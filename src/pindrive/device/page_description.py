@@ -14,6 +14,7 @@ from pindrive.device.reading import Reading
 from pindrive.device.recording import read_csv
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check
+from pindrive.quantities.value import concise
 
 
 def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:
@@ -26,6 +27,7 @@ def recorded(file: str | PathLike[str], reading: Reading) -> HandPath:
     )
 
 
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page:
     """What is on a page, one of `text`, `image` and `grating`, and how the hand moves over it.

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import check, default
+from pindrive.quantities.value import concise
 
 Places = tuple[tuple[float, float], ...]
 Place = tuple[float | str, float | str]
@@ -33,6 +34,7 @@ class Neighbours:
     overlap."""
 
 
+@concise
 @dataclass(frozen=True, slots=True, init=False)
 class PinArray:
     """Any number of pins in a mouse.

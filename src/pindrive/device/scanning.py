@@ -44,11 +44,14 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import SimulationError, Status
 from pindrive.quantities.table import check, default
+from pindrive.quantities.value import concise, equal_by_value
 
 Progress = Callable[[int, int], None]
 """Called after each part of a computation: how many are done, of how many."""
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PinState:
     """All there is to know of a pin and its magnet at one time: a scan can go on from it."""
@@ -65,6 +68,8 @@ class PinState:
     """Where the control block stands."""
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PinScan:
     """One pin in a scan: its inputs, and the motion to which they lead, computed when first asked.
@@ -201,6 +206,7 @@ class SlotRoom:
     """m; negative where it would go beyond."""
 
 
+@equal_by_value
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scan(lazy.NotebookHtml):
     """What a device did while a hand moved it over a scene."""

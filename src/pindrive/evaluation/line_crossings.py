@@ -15,6 +15,7 @@ from pindrive.device.hand import HandPath
 from pindrive.device.page import AT_ONCE, FINER, Scene
 from pindrive.device.trajectory import Way, roots
 from pindrive.quantities import budgets
+from pindrive.quantities.value import concise, equal_by_value
 
 GRAZED: Final = 0.5
 """What is shorter than this part of a pixel is an edge that the way grazes, no line and no gap."""
@@ -140,6 +141,8 @@ CUES: Final[tuple[Cue, ...]] = ("none", "felt", "direction", "sure")
 FATES: Final[tuple[Fate, ...]] = ("shown", "unseen", "merged", "faint")
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Edge:
     """One end of a printed line under one pin, and what became of it. NaN: it did not."""
@@ -166,6 +169,8 @@ class Edge:
         return self.response - self.time
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
     """One printed line under one pin."""
@@ -209,6 +214,8 @@ class Line:
         }
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Echo:
     """A swing of a pin that feels like a line and is none."""

@@ -61,8 +61,10 @@ from pindrive.quantities.quantity import counted
 from pindrive.quantities.results import BAD_WHEN_SMALL, EDGES, LINE, last_part
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.value import equal_by_value
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Judgement(lazy.NotebookHtml):
     """What the finger was shown in a scan."""

@@ -44,6 +44,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, check, default
+from pindrive.quantities.value import concise, equal_by_value
 
 PHASES: Final = 4
 TRIED: Final = 32
@@ -61,6 +62,8 @@ LONGEST: Final = 200.0
 Band = tuple[float, float]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Trial:
     """Two lines at one speed: the worst of all phases."""
@@ -79,6 +82,8 @@ class Trial:
         return self.back >= part and self.skin >= direction
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpeedLimit:
     """How fast a hand may go over two lines."""
@@ -110,6 +115,7 @@ class SpeedLimit:
         return self.settled[0][1] if self.settled else nan
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class SpeedLimits(lazy.NotebookHtml, Sequence[SpeedLimit]):
     """How fast a hand may go over two lines of each of several pitches; a sequence of limits.

@@ -50,6 +50,7 @@ from pindrive.motion.release import Release
 from pindrive.quantities.quantity import Quantity, Rows, counted
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import warn_of
+from pindrive.quantities.value import equal_by_value
 
 
 class Setting(NamedTuple):
@@ -71,6 +72,7 @@ class ConfigError(ValueError):
         super().__init__("\n".join(self.problems))
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviceFile:
     """A device file as `load_device` reads it, in SI units.

@@ -16,6 +16,7 @@ from pindrive.motion.drive import Contact
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import check_whole, refusal
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import equal_by_value
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,7 @@ CLOSEST: Final = 1e-3
 """Part of the range of speeds by which rows are at least apart."""
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class FrictionCurve(lazy.NotebookHtml):
     """A friction curve: rows (speed, force), linear between them and beyond the last.

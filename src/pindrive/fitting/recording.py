@@ -18,6 +18,7 @@ from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.results import CHANNELS, SERIES
 from pindrive.quantities.table import QUANTITIES, check
 from pindrive.quantities.units import to_si
+from pindrive.quantities.value import equal_by_value
 
 __all__ = ["Recording", "read_recording"]
 
@@ -30,6 +31,7 @@ INPUT_TOLERANCE: Final = 1e-3
 """Part of its largest value by which an input with fewer rows may differ from the samples."""
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, init=False)
 class Recording:
     """Samples of one release, and what is known of it.

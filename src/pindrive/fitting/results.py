@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import exp, isfinite, log, pi
 from typing import Any
@@ -26,12 +26,15 @@ from pindrive.motion.simulate import simulated
 from pindrive.quantities.quantity import counted, significant
 from pindrive.quantities.results import CHANNELS
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import concise, equal_by_value
 
 Array = NDArray[np.float64]
 
 __all__ = ["Estimate", "Fit", "ModelComparison"]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Estimate:
     """One fitted parameter.
@@ -82,6 +85,7 @@ class Estimate:
         return f"open below, to {low}" if below else f"open above, to {high}"
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit(lazy.NotebookHtml):
     """What `fit` found.
@@ -98,7 +102,7 @@ class Fit(lazy.NotebookHtml):
         converged: whether the last refinement ended at an optimum.
     """
 
-    model: Model
+    model: Model = field(compare=False)
     theta: Array
     estimates: tuple[Estimate, ...]
     covariance: Array
@@ -284,6 +288,7 @@ class Fit(lazy.NotebookHtml):
         return rows
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class ModelComparison(lazy.NotebookHtml):
     """Fits of several laws of friction to the same recordings.

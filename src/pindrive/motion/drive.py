@@ -14,6 +14,7 @@ from pindrive.quantities.part import Part
 from pindrive.quantities.quantity import brief
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.rows import check_increasing, check_slopes, slopes_of
+from pindrive.quantities.value import concise
 
 __all__ = ["Contact", "Drive"]
 
@@ -22,6 +23,7 @@ check: Final = _TABLE.check
 default: Final = _TABLE.default
 
 
+@concise
 @dataclass(frozen=True, slots=True, init=False)
 class Contact:
     """Dry friction between the pin drive and a surface: the plate or the fingertip.
@@ -140,6 +142,7 @@ class Contact:
         return isinf(self.stiffness)
 
 
+@concise
 @dataclass(frozen=True, init=False)
 class Drive:
     """A mass on a spring and a damper, rubbed by a plate and a fingertip.

@@ -84,6 +84,13 @@ class Motion(lazy.NotebookHtml):
         duration = None if asked == inf else asked
         return Motion, (self.drive, self.release, duration, self.settling_band)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether the same was simulated."""
+        return type(self) is type(other) and self.__reduce__() == other.__reduce__()
+
+    def __hash__(self) -> int:
+        return hash(self.__reduce__())
+
     def __repr__(self) -> str:
         """How it ends, and after how long, in a line."""
         return (

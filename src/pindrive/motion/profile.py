@@ -18,10 +18,12 @@ from pindrive.quantities.part import Part
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.rows import check_slopes, check_times
 from pindrive.quantities.units import UnitError, to_si
+from pindrive.quantities.value import concise
 
 _TABLE: Final = Part((*INPUTS, *PARTS))
 
 
+@concise
 @dataclass(frozen=True, slots=True, init=False)
 class Profile:
     """A quantity over time: linear between its rows, constant before the first and after the last.

@@ -15,6 +15,7 @@ from pindrive.motion.drive import (
 from pindrive.motion.profile import Profile, check_continuous
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.table import QUANTITIES, check, default
+from pindrive.quantities.value import concise
 
 INPUTS: Final = ("mouse_velocity", "plate_load", "force", "across_velocity", "finger_load")
 """What a release has over time: a number or a `Profile` each."""
@@ -23,6 +24,7 @@ CONTINUOUS: Final = ("mouse_velocity", "across_velocity")
 """Those of them that may not have steps."""
 
 
+@concise
 @dataclass(frozen=True, slots=True, init=False)
 class Release:
     """The initial state of a pin, and the inputs that act on it from t = 0 on.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pindrive.quantities.status import End
+from pindrive.quantities.value import concise, equal_by_value
 
 ContactName = Literal["plate", "finger", "stop"]
 
@@ -44,6 +45,7 @@ _AT_STOP: tuple[EventKind, ...] = ("stop", "leave", "stop")
 _SLIDING = {-1: -1, 0: 0, 1: 1, 2: None, 3: 0, 4: 2}
 
 
+@concise
 @dataclass(frozen=True, slots=True)
 class Event:
     """A change of mode."""
@@ -61,6 +63,7 @@ class Event:
     """m/s"""
 
 
+@concise
 @dataclass(frozen=True, slots=True)
 class Segment:
     """A stretch of time in one mode, where the motion is one closed form."""
@@ -176,6 +179,8 @@ _CYCLE: dict[End, Cycle] = {
 }
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class ContactUse:
     """Use of one contact in the transient, SI; the peak force is that of the whole motion.
@@ -190,6 +195,8 @@ class ContactUse:
     peak_force: float
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Afterwards:
     """Use of one contact after the transient, in one period of a steady motion, SI.
@@ -205,6 +212,8 @@ class Afterwards:
     power: float
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Transient:
     """The transient after the release, SI.
@@ -237,6 +246,8 @@ class Transient:
         return not isnan(self.settling_time)
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Ending:
     """How a motion ends."""
@@ -282,6 +293,8 @@ class Ending:
         return _CYCLE.get(self.end)
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Ledger:
     """Where the energy came from and where it went, J.
@@ -308,6 +321,8 @@ class Ledger:
     residual: float
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Certificate:
     """The worst violation of each law over the motion, found without using the solver.

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pindrive.optimisation.catalogue import Catalogue
 from pindrive.quantities.names import label
+from pindrive.quantities.value import concise
 from pindrive.study.design import Plan
 from pindrive.study.distributions import Distribution, Grid
 from pindrive.study.outputs import Demand
@@ -29,6 +30,7 @@ YIELD: Final = "design_yield"
 SPEED: Final = "design_distinct_speed"
 
 
+@concise
 @dataclass(frozen=True, slots=True)
 class Goal:
     """A number that is to be small, or large.
@@ -50,6 +52,7 @@ class Goal:
         return f"{'maximise' if self.maximise else 'minimise'} {label(self.name)}"
 
 
+@concise
 @dataclass(frozen=True, slots=True)
 class Variable:
     """What may be chosen, or what may occur: one key over a range, or keys with rows of values.

@@ -23,6 +23,7 @@ from pindrive.optimisation.effort import Count
 from pindrive.optimisation.goals import Goal, Variable, Wish
 from pindrive.quantities.names import label
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.distributions import with_links
 from pindrive.study.evaluate import follow
 from pindrive.study.outputs import NUMBERS, Demand, Share, attributes
@@ -32,6 +33,8 @@ __all__ = ["Alternative", "Demanded", "Design", "Front", "Map", "Reached"]
 Array = NDArray[np.float64]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Reached:
     """A goal, and how far the design reaches it.
@@ -47,6 +50,8 @@ class Reached:
     case: Mapping[str, float]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Demanded:
     """A demand, and how the design meets it.
@@ -76,6 +81,8 @@ class Demanded:
         return isfinite(self.relaxed) and self.relaxed != self.demand.limit
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Alternative:
     """Another part of a catalogue in place of the chosen one, everything else unchanged.
@@ -97,6 +104,8 @@ class Alternative:
     misses: tuple[tuple[Demand, float], ...]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Front:
     """Designs of which none is better than another in all goals.
@@ -112,6 +121,8 @@ class Front:
     chosen: int
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Map:
     """The first goal over two variables, all others as the design has them.
@@ -142,6 +153,7 @@ class Map:
         return float(self.met.mean())
 
 
+@equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Design(lazy.NotebookHtml):
     """What `optimise` found.

@@ -11,6 +11,7 @@ from typing import Any, Final, Protocol, SupportsFloat, TypeVar, cast, dataclass
 
 from pindrive.quantities.quantity import Quantity
 from pindrive.quantities.refusal import quoted, refusal
+from pindrive.quantities.value import concise
 
 T = TypeVar("T")
 
@@ -135,7 +136,7 @@ def checked_class(cls: type[T], part: Part) -> type[T]:
             then(self)
 
     cls.__post_init__ = check_fields  # type: ignore[attr-defined]
-    made = dataclass(frozen=True, kw_only=True)(cls)
+    made = concise(dataclass(frozen=True, kw_only=True)(cls))
     given: tuple[Field[Any], ...] = fields(made)  # type: ignore[arg-type]
     taken += [(field.name, field.default is None) for field in given if field.name in part.rows]
     return made

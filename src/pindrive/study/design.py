@@ -23,6 +23,7 @@ from pindrive.files.device import DeviceFile, Setting, device_of
 from pindrive.files.keys import has_part, number, written
 from pindrive.quantities.refusal import quoted, refusal
 from pindrive.quantities.table import QUANTITIES
+from pindrive.quantities.value import equal_by_value
 from pindrive.study.distributions import (
     Axis,
     Distribution,
@@ -188,6 +189,7 @@ class Dimension:
         }
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
     """A study: its points are the product of its dimensions, the last one changing fastest."""

@@ -16,6 +16,7 @@ from pindrive.motion.friction import COEFFICIENTS
 from pindrive.motion.simulate import motion_of
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import equal_by_value
 from pindrive.study.design import Plan, ranges_of
 from pindrive.study.distributions import Linked, base_value, exponents
 
@@ -23,6 +24,7 @@ _WITHOUT: Final = ("motion.duration", "motion.settling_band")
 """Keys along which the core has no derivatives."""
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class Elasticities(lazy.NotebookHtml):
     """By how many per cent each number changes when a key grows by one per cent."""

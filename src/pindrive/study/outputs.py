@@ -31,6 +31,7 @@ from pindrive.quantities.results import (
 from pindrive.quantities.status import OUTCOMES, outcome_attributes
 from pindrive.quantities.table import QUANTITIES
 from pindrive.quantities.units import UnitError, to_si
+from pindrive.quantities.value import concise, equal_by_value
 
 
 def _median(quantity: Quantity) -> Quantity:
@@ -162,6 +163,7 @@ LARGEST: Final = 1e100
 _AT_MOST: Final = ("<=", "≤")
 
 
+@concise
 @dataclass(frozen=True, slots=True)
 class Demand:
     """A limit on one number: at most, or at least, `limit` (SI)."""
@@ -246,6 +248,8 @@ _SLICE: Final = 1 << 22
 """Points that are read at a time."""
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Share:
     """A part of the designs that exist, with its exact 95 % confidence interval.

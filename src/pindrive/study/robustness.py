@@ -17,6 +17,7 @@ from pindrive.motion.simulate import motion_of
 from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.design import Plan, Ranges, ranges_of
 from pindrive.study.distributions import Sample
 from pindrive.study.evaluate import RefusedPoints, evaluate, evaluate_all, exist, follow
@@ -34,6 +35,8 @@ _POPULATION_OF_SCANS: Final = 5
 _GENERATIONS_OF_SCANS: Final = 10
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class WorstCase:
     """Where a demand is missed by the most, or met by the least."""
@@ -49,6 +52,7 @@ class WorstCase:
     """The same point followed by itself; None of a scan."""
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class Robustness(lazy.NotebookHtml):
     """What `robustness` found."""

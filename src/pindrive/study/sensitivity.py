@@ -16,6 +16,7 @@ from pindrive.quantities import budgets
 from pindrive.quantities.quantity import counted
 from pindrive.quantities.refusal import refusal
 from pindrive.quantities.status import Status
+from pindrive.quantities.value import concise, equal_by_value
 from pindrive.study.design import Plan, Ranges, ranges_of
 from pindrive.study.distributions import Distribution
 from pindrive.study.evaluate import RefusedPoints, evaluate_all, exist
@@ -42,6 +43,8 @@ class Interval:
     high: NDArray[np.float64]
 
 
+@equal_by_value
+@concise
 @dataclass(frozen=True, slots=True)
 class Indices:
     """Sobol' indices of one number; NaN where it is constant or exists too rarely."""
@@ -163,6 +166,7 @@ USUAL_ROWS_OF_SCANS: Final = 256
 """A scan takes some ten thousand times as long as a release."""
 
 
+@equal_by_value
 @dataclass(frozen=True, slots=True, repr=False)
 class Influence(lazy.NotebookHtml):
     """Which key matters to which number: Sobol' indices, and elasticities beside them if wanted."""
