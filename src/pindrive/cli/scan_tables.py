@@ -16,7 +16,7 @@ from pindrive.cli.tables import (
     whole_lines,
 )
 from pindrive.device.dataset import gap_words, numbers, peak_warming
-from pindrive.evaluation.resolution import criterion
+from pindrive.evaluation.resolution import STUDIED, criterion
 from pindrive.quantities.device import PIN
 from pindrive.quantities.results import LINE
 from pindrive.quantities.table import QUANTITIES
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from pindrive.device.device import Criteria
     from pindrive.device.scanning import PinScan, Scan
+    from pindrive.evaluation.page_speed import PageSpeeds
     from pindrive.evaluation.perception import Judgement
     from pindrive.evaluation.resolution import Band, SpeedLimit
 
@@ -45,6 +46,7 @@ HEADINGS: Final = {
     "pin.peak_stretch": "peak\nstretch",
     "pin_gap": "least\ngap",
 }
+COUNTED_OVER_SPEED: Final = ("lines", "shown", "unsettled", "sure", "echoes")
 COUNTED: Final = (
     *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
 )
@@ -209,9 +211,56 @@ def speed_report(limits: Sequence[SpeedLimit], part: float, criteria: Criteria) 
     words = [
         criterion(part, criteria.direction),
         "Settled: besides, what the first line alone leaves swinging is over before the second.",
+        hands_words([limit.speed for limit in limits]),
         f"Tried: {speed.text(tried[0])} to {speed.text(tried[1])}, each speed an exact simulation.",
     ]
     return Group(table, *whole_lines(words))
+
+
+def page_speed_report(found: PageSpeeds) -> RenderableType:
+    """What becomes of the lines of a page at each speed, and up to which speed all is well."""
+    speed = QUANTITIES["hand_speed"]
+    headings = (
+        ">hand speed",
+        ">lines",
+        ">shown",
+        ">not settled",
+        ">direction sure",
+        ">false lines",
+    )
+    table = new_table(f"How fast the hand may move over {found.title}", *headings)
+    table.add_row(speed.display_unit, style="dim")
+    for tried, counts in found.counts.items():
+        numbers = (str(counts[f"judged.{name}"]) for name in COUNTED_OVER_SPEED)
+        table.add_row(speed.digits(tried), *numbers)
+    words = [
+        f"{said}: {_up_to(limit, found.tried)}."
+        for said, limit in (
+            ("All lines are shown and none is false", found.shown_speed),
+            ("The pin also settles after each", found.settled_speed),
+        )
+    ]
+    return Group(table, *whole_lines([*words, hands_words([found.shown_speed])]))
+
+
+def _up_to(limit: float, tried: Band) -> str:
+    """Up to which speed something holds, in words."""
+    if isnan(limit):
+        return "not at the slowest speed tried"
+    text = QUANTITIES["hand_speed"].text(limit)
+    return f"up to {text}, the fastest tried" if limit >= tried[1] else f"up to {text}"
+
+
+def hands_words(limits: Sequence[float]) -> str:
+    """How fast hands move that read, beside the limits (m/s) of a device."""
+    speed = QUANTITIES["hand_speed"]
+    slow, fast = STUDIED
+    among = f"Hands in finger studies move at {speed.digits(slow)} to {speed.text(fast)}"
+    above = sum(limit > fast for limit in limits)
+    if not above:
+        return f"{among} (arXiv 2505.11162)."
+    which = "the limit is" if len(limits) == 1 else f"{above} of {len(limits)} limits are"
+    return f"{among} (arXiv 2505.11162): {which} beyond them."
 
 
 def _band(bands: tuple[Band, ...], limit: SpeedLimit) -> str:

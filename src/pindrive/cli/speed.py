@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Protocol
 
 from pindrive.cli.errors import refusing
-from pindrive.cli.help import ASKED, command
+from pindrive.cli.help import ASKED, PAGE, command
 from pindrive.cli.options import (
     DeviceArgument,
     OverridesOption,
@@ -18,12 +20,20 @@ from pindrive.cli.outputs import (
     ForceOption,
     PlotOption,
     ResultOption,
+    Target,
     datasets,
     pictures,
     results,
     say_written,
 )
 from pindrive.cli.progress import bar
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+    from pindrive.files.device import DeviceFile
 
 USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 
@@ -32,59 +42,124 @@ USUAL = "1 mm, 1.5 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm, 8 mm"
 def speed(
     file: DeviceArgument,
     pitch: Annotated[
-        list[str] | None, option(ASKED, f"From line to line; {USUAL} if none.", metavar="LENGTHS")
+        list[str] | None, option(PAGE, f"From line to line; {USUAL} if none.", metavar="LENGTHS")
     ] = None,
     width: Annotated[
-        str | None, option(ASKED, "Of the lines; half the pitch if none.", metavar="LENGTH")
+        str | None, option(PAGE, "Of the lines; half the pitch if none.", metavar="LENGTH")
+    ] = None,
+    text: Annotated[
+        str | None, option(PAGE, r"A text instead of two lines; \n begins a line.", metavar="TEXT")
     ] = None,
     part: Annotated[
         float, option(ASKED, "Part of its way that the pin must be back in between.")
     ] = 0.5,
     slowest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "5 mm/s",
     fastest: Annotated[str, option(ASKED, "Hand tried.", metavar="SPEED")] = "1000 mm/s",
+    overrides: OverridesOption = None,
     output: ResultOption = None,
     plot: PlotOption = None,
     force: ForceOption = False,
-    overrides: OverridesOption = None,
 ) -> None:
-    """Say how fast the hand may move before two lines run into one."""
+    """Say how fast the hand may move before two lines run into one.
+
+    Or, of a text, up to which peak speed of its strokes all lines of the letters are shown.
+    """
+    from pindrive.cli.tables import show
     from pindrive.files.device import load_device
 
     with refusing():
-        device_file = load_device(file, overrides or (), whole=True)
-        pitches = [
-            step
-            for text in pitch or [USUAL]
-            for step in measures(text, "speed.pitch", "2 mm", "--pitch")
-        ]
-        line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
+        device = load_device(file, overrides or (), whole=True)
         tried = (
             measure(slowest, "speed.slowest", "5 mm/s", "--slowest"),
             measure(fastest, "speed.fastest", "1000 mm/s", "--fastest"),
         )
-
-        from pindrive.evaluation.resolution import SpeedLimits, largest_speeds
-
-        targets = pictures(plot, partial(SpeedLimits.plot, device=device_file.name))
-        title = "Largest speeds of a hand"
-        targets += datasets(output, title, ("speed_pitch [m]",), SpeedLimits.to_dataset)
-        with results(targets, [file], force=force) as write:
-            device = device_file.device
-            criteria = device_file.criteria
-            with bar("Pitches") as progress:
-                limits = largest_speeds(
-                    device,
-                    pitches,
-                    width=line,
-                    part=part,
-                    slowest=tried[0],
-                    fastest=tried[1],
-                    criteria=criteria,
-                    progress=progress,
-                )
-            write(limits)
-    from pindrive.cli.scan_tables import speed_report
-    from pindrive.cli.tables import show
-
-    show(speed_report(limits, part, criteria))
+        files = partial(_files, output, plot, device.name)
+        if text is not None:
+            if pitch or width:
+                raise ValueError("give --text or --pitch and --width, not both")
+            report, targets = _over_text(device, text, tried, files, force)
+        else:
+            pitches = [
+                step
+                for lengths in pitch or [USUAL]
+                for step in measures(lengths, "speed.pitch", "2 mm", "--pitch")
+            ]
+            line = None if width is None else measure(width, "speed.width", "1 mm", "--width")
+            report, targets = _over_lines(device, pitches, line, part, tried, files, force)
+    show(report)
     say_written(targets)
+
+
+class _Speeds(Protocol):
+    """What both kinds of speeds can do."""
+
+    def plot(self, device: str = "") -> Figure: ...
+    def to_dataset(self) -> xr.Dataset: ...
+
+
+def _files(
+    output: list[Path] | None, plot: Path | None, name: str, column: str
+) -> list[Target[_Speeds]]:
+    """The files to write, of a device with this name; the first column of the CSV is `column`."""
+    targets: list[Target[_Speeds]] = pictures(plot, lambda found: found.plot(name))
+    title = "Largest speeds of a hand"
+    return targets + datasets(output, title, (column,), lambda found: found.to_dataset())
+
+
+def _over_lines(
+    device: DeviceFile,
+    pitches: list[float],
+    width: float | None,
+    part: float,
+    tried: tuple[float, float],
+    files: Callable[[str], list[Target[_Speeds]]],
+    force: bool,
+) -> tuple[RenderableType, list[Target[_Speeds]]]:
+    from pindrive.cli.scan_tables import speed_report
+    from pindrive.evaluation.resolution import largest_speeds
+
+    targets = files("speed_pitch [m]")
+    with results(targets, [device.path], force=force) as write:
+        with bar("Trials") as progress:
+            found = largest_speeds(
+                device.device,
+                pitches,
+                width=width,
+                part=part,
+                slowest=tried[0],
+                fastest=tried[1],
+                criteria=device.criteria,
+                progress=progress,
+            )
+        write(found)
+    return speed_report(found, part, device.criteria), targets
+
+
+def _over_text(
+    device: DeviceFile,
+    text: str,
+    tried: tuple[float, float],
+    files: Callable[[str], list[Target[_Speeds]]],
+    force: bool,
+) -> tuple[RenderableType, list[Target[_Speeds]]]:
+    from pindrive.cli.scan_tables import page_speed_report
+    from pindrive.device.page_description import Page
+    from pindrive.evaluation.page_speed import speeds_over_page
+
+    page = Page(text=text.replace("\\n", "\n"))
+    page.check("--{}")
+    targets = files("hand_speed [m/s]")
+    with results(targets, [device.path], force=force) as write:
+        with bar("Scans") as progress:
+            found = speeds_over_page(
+                device.device,
+                device.reading,
+                page,
+                touch=device.touch,
+                criteria=device.criteria,
+                slowest=tried[0],
+                fastest=tried[1],
+                progress=progress,
+            )
+        write(found)
+    return page_speed_report(found), targets

@@ -46,9 +46,15 @@ from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, check, default
 from pindrive.quantities.value import concise, equal_by_value
 
+Band = tuple[float, float]
+
 PHASES: Final = 4
 TRIED: Final = 32
 """Speeds in the grid."""
+_TRIALS: Final = 3 * TRIED
+"""Trials of one pitch: of the grid, of borders, and of single lines."""
+STUDIED: Final[Band] = (0.020, 0.100)
+"""Hand speeds in finger studies, m/s (arXiv 2505.11162)."""
 PRECISION: Final = 1e-3
 """Of a border, a part of it."""
 FINE: Final = 40.0
@@ -58,8 +64,6 @@ MOMENT: Final = 0.002
 
 LONGEST: Final = 200.0
 """A transient is followed for so many radians of its natural frequency at most."""
-
-Band = tuple[float, float]
 
 
 @equal_by_value
@@ -196,7 +200,7 @@ def largest_speeds(
         slowest: hand tried, m/s, greater than 0.
         fastest: hand tried, m/s, greater than `slowest`.
         criteria: what counts as felt; the literature's unless given.
-        progress: told after each pitch.
+        progress: told after each trial.
 
     Raises:
         ValueError: no pitch, a value is no number or out of its range, or there is more to do than
@@ -206,14 +210,7 @@ def largest_speeds(
     steps = [check("speed.pitch", pitch, label="pitch") for pitch in pitches]
     if not steps:
         raise ValueError(refusal("pitches", "at least one", "none"))
-    least, most = (
-        check(f"speed.{name}", value, label=name)
-        for name, value in (("slowest", slowest), ("fastest", fastest))
-    )
-    if not least < most:
-        raise ValueError(
-            refusal("fastest", f"greater than the slowest, {least!r} m/s", f"{most!r}")
-        )
+    tried = check_tried(slowest, fastest)
     needed = check("speed.part", part, label="part")
     limits = criteria or Criteria()
     lines = [
@@ -223,13 +220,35 @@ def largest_speeds(
     for pitch, line in zip(steps, lines, strict=True):
         if not line < pitch:
             raise ValueError(refusal("width", f"less than the pitch, {pitch!r} m", f"{line!r} m"))
-    check_work(device, steps, lines, (least, most))
-    found = []
+    check_work(device, steps, lines, tried)
+    found: list[SpeedLimit] = []
     for pitch, line in zip(steps, lines, strict=True):
-        found.append(_limit(device, pitch, line, needed, (least, most), limits))
-        if progress:
-            progress(len(found), len(steps))
+        done = len(found)
+
+        def tell(trials: int, done: int = done) -> None:
+            if progress:
+                progress(done * _TRIALS + min(trials, _TRIALS), len(steps) * _TRIALS)
+
+        found.append(_limit(device, pitch, line, needed, tried, limits, tell))
+        tell(_TRIALS)
     return SpeedLimits(tuple(found), needed, limits)
+
+
+def check_tried(slowest: float, fastest: float) -> Band:
+    """The slowest hand and the fastest that are to be tried, m/s.
+
+    Raises:
+        ValueError: one is no speed, or the slowest is not less than the fastest.
+    """
+    least, most = (
+        check(f"speed.{name}", value, label=name)
+        for name, value in (("slowest", slowest), ("fastest", fastest))
+    )
+    if not least < most:
+        raise ValueError(
+            refusal("fastest", f"greater than the slowest, {least!r} m/s", f"{most!r}")
+        )
+    return least, most
 
 
 def check_work(
@@ -275,18 +294,30 @@ def _followed(drive: Drive) -> float:
 
 
 def _limit(
-    device: Device, pitch: float, width: float, part: float, tried: Band, criteria: Criteria
+    device: Device,
+    pitch: float,
+    width: float,
+    part: float,
+    tried: Band,
+    criteria: Criteria,
+    tell: Callable[[int], None],
 ) -> SpeedLimit:
-    """The limit for one pitch."""
+    """The limit for one pitch; tells the number of trials after each."""
     speeds = np.geomspace(*tried, TRIED).tolist()
-    trials = {speed: two_lines(device, pitch, width, speed, criteria) for speed in speeds}
+    trials: dict[float, Trial] = {}
     calm: dict[float, bool] = {}
+
+    def trial(speed: float) -> Trial:
+        if speed not in trials:
+            trials[speed] = two_lines(device, pitch, width, speed, criteria)
+            tell(len(trials) + len(calm))
+        return trials[speed]
 
     def bands(holds: Callable[[Trial], bool]) -> list[Band]:
         """The intervals in which something holds: from the grid, with borders by bisection."""
-        borders = [-inf] if holds(trials[speeds[0]]) else []
+        borders = [-inf] if holds(trial(speeds[0])) else []
         for slow, fast in pairwise(speeds):
-            if holds(trials[slow]) != holds(trials[fast]):
+            if holds(trial(slow)) != holds(trial(fast)):
                 borders.append(border(slow, fast, holds))
         if holds(trials[speeds[-1]]):
             borders.append(inf)
@@ -297,11 +328,7 @@ def _limit(
         """The speed at which it begins or ceases to hold, on the side on which it holds."""
 
         def sign(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
-            new = [speed for speed in speeds.ravel().tolist() if speed not in trials]
-            trials.update(
-                (speed, two_lines(device, pitch, width, speed, criteria)) for speed in new
-            )
-            return np.array([[1.0 if holds(trials[v]) else -1.0 for v in speeds.ravel().tolist()]])
+            return np.array([[1.0 if holds(trial(v)) else -1.0 for v in speeds.ravel().tolist()]])
 
         before = holds(trials[slow])
         ends = np.array([slow]), np.array([fast])
@@ -314,6 +341,7 @@ def _limit(
     def settled(trial: Trial) -> bool:
         if distinct(trial) and trial.speed not in calm:
             calm[trial.speed] = settles(device, pitch, width, trial, criteria)
+            tell(len(trials) + len(calm))
         return calm.get(trial.speed, False)
 
     apart = bands(distinct)

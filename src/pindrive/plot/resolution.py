@@ -9,7 +9,7 @@ import matplotlib.style
 import numpy as np
 from matplotlib.patches import Patch
 
-from pindrive.evaluation.resolution import criterion
+from pindrive.evaluation.resolution import STUDIED, criterion
 from pindrive.plot.style import GREY, HANDS, MM, PALETTE, STYLE, Figure, new_figure, plain
 
 if TYPE_CHECKING:
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
     from pindrive.device.device import Criteria
+    from pindrive.evaluation.page_speed import PageSpeeds
     from pindrive.evaluation.resolution import SpeedLimit
 
 CURVE: Final[dict[str, Any]] = {"color": PALETTE["curve"], "mfc": "white", "mew": 1.0}
-STUDIED: Final = (20.0, 100.0)
-"""Hand speeds in finger studies, mm/s (arXiv 2505.11162)."""
+_STUDIED: Final = tuple(speed * MM for speed in STUDIED)
 
 
 def plot_speeds(
@@ -45,10 +45,10 @@ def plot_speeds(
         pitch = np.array([limit.pitch for limit in ordered]) * MM
         apart = np.array([limit.speed for limit in ordered]) * MM
         settled = np.array([limit.settled_speed for limit in ordered]) * MM
-        top = 1.12 * float(np.nanmax([*apart, STUDIED[1]]))
+        top = 1.12 * float(np.nanmax([*apart, _STUDIED[1]]))
         blue = PALETTE["curve"]
         slowest = np.array([_from(limit) for limit in ordered]) * MM
-        axes.axhspan(*STUDIED, **HANDS, zorder=0, gid="hands")
+        axes.axhspan(*_STUDIED, **HANDS, zorder=0, gid="hands")
         axes.fill_between(pitch, slowest, apart, alpha=0.12, color=blue, lw=0.0, gid="distinct")
         axes.fill_between(pitch, slowest, settled, alpha=0.22, color=blue, lw=0.0, gid="settled")
         handles: list[Artist] = []
@@ -75,6 +75,38 @@ def plot_speeds(
         title = f"How fast the hand may move{f': {device}' if device else ''}"
         words = fill(criterion(part, criteria.direction), 78)
         figure.head(f"{plain(title, 66)}\n{words}")
+    return figure
+
+
+def plot_page_speeds(found: PageSpeeds, device: str = "") -> Figure:
+    """Draw what becomes of the lines of a page over the hand speed, for a page 120 mm wide.
+
+    Args:
+        found: what `speeds_over_page` found.
+        device: its name, for the title.
+    """
+    with matplotlib.style.context(STYLE, after_reset=True):
+        figure = new_figure(120, 90)
+        axes = figure.add_subplot(label="page")
+        speed = np.array([*found.counts]) * MM
+        counts = [*found.counts.values()]
+        lines = np.array([max(1, each["judged.lines"]) for each in counts])
+        shown = np.array([each["judged.shown"] for each in counts])
+        calm = shown - np.array([each["judged.unsettled"] for each in counts])
+        axes.axvspan(*_STUDIED, **HANDS, zorder=0, gid="hands")
+        handles: list[Artist] = []
+        for part, marker, said in ((shown, "o", "shown"), (calm, "s", "shown and settled")):
+            style = CURVE | {"marker": marker, "label": said, "gid": said}
+            handles += axes.plot(speed, 100.0 * part / lines, **style)
+        handles.append(Patch(**HANDS, label="hands in finger studies"))
+        figure.legend(handles=handles, loc="outside lower left", ncols=3)
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_ylim(-3.0, 106.0)
+        axes.set_xlabel("hand speed (mm/s)")
+        axes.set_ylabel("lines (%)")
+        about = f"How fast the hand may move over {found.title}{f': {device}' if device else ''}"
+        figure.head(plain(about, 66))
     return figure
 
 

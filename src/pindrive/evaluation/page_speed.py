@@ -1,0 +1,159 @@
+"""How fast a hand may move over a page: what becomes of its lines at each of many speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import nan, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pindrive.device.device import Criteria, Device
+from pindrive.device.page_description import Page
+from pindrive.device.reading import Reading
+from pindrive.device.scanning import Progress, scan
+from pindrive.evaluation.perception import judge
+from pindrive.evaluation.resolution import check_tried
+from pindrive.lazy import xr
+from pindrive.quantities.table import QUANTITIES, default
+from pindrive.quantities.value import equal_by_value
+
+if TYPE_CHECKING:
+    from pindrive.lazy import mpl_figure
+    from pindrive.motion.profile import Profile
+
+TRIED: Final = 12
+"""Speeds in the grid."""
+PRECISION: Final = 1e-2
+"""Of a border, a part of it."""
+_MOST: Final = TRIED + 14
+"""Trials at most: the grid, and two bisections of one of its intervals."""
+COUNTED: Final = ("lines", "shown", "unsettled", "sure", "echoes")
+
+
+@equal_by_value
+@dataclass(frozen=True, eq=False, repr=False)
+class PageSpeeds:
+    """What becomes of the lines of a page, by the speed of the hand.
+
+    Attributes:
+        title: of the page.
+        tried: the slowest hand and the fastest, m/s.
+        counts: for each speed that was tried, m/s in ascending order, how many lines and false
+            lines there were, by the names of `Judgement.counts`.
+    """
+
+    title: str
+    tried: tuple[float, float]
+    counts: Mapping[float, Mapping[str, int]]
+
+    def __repr__(self) -> str:
+        """The two limits, in a line."""
+        shown, settled = (f"{1e3 * v:.4g} mm/s" for v in (self.shown_speed, self.settled_speed))
+        return f"<PageSpeeds of {self.title}: shown up to {shown}, settled up to {settled}>"
+
+    @property
+    def shown_speed(self) -> float:
+        """The largest speed up to which all lines are shown and none is false, m/s; or NaN."""
+        return self._largest(all_shown)
+
+    @property
+    def settled_speed(self) -> float:
+        """The largest up to which the pin also settles after each line, m/s; or NaN."""
+        return self._largest(all_settled)
+
+    def _largest(self, holds: Callable[[Mapping[str, int]], bool]) -> float:
+        found = nan
+        for speed, counts in self.counts.items():
+            if not holds(counts):
+                break
+            found = speed
+        return found
+
+    def to_dataset(self) -> xr.Dataset:
+        """The counts over `hand_speed`, and the two limits, with units."""
+        speed = QUANTITIES["hand_speed"].attributes
+        data = {
+            name: ("hand_speed", [counts[f"judged.{name}"] for counts in self.counts.values()])
+            for name in COUNTED
+        }
+        limits = {
+            "shown_speed": ((), self.shown_speed, {"units": "m/s"}),
+            "settled_speed": ((), self.settled_speed, {"units": "m/s"}),
+        }
+        coords = {"hand_speed": ("hand_speed", [*self.counts], speed)}
+        return xr.Dataset({**data, **limits}, coords=coords)
+
+    def plot(self, device: str = "") -> mpl_figure.Figure:
+        """The part of the lines shown over the speed; `device` is a name for the title."""
+        from pindrive.plot.resolution import plot_page_speeds
+
+        return plot_page_speeds(self, device)
+
+
+def all_shown(counts: Mapping[str, int]) -> bool:
+    """Whether all lines are shown and none is false."""
+    return counts["judged.shown"] == counts["judged.lines"] and not counts["judged.echoes"]
+
+
+def all_settled(counts: Mapping[str, int]) -> bool:
+    """Whether the pin also settles after each line."""
+    return all_shown(counts) and not counts["judged.unsettled"]
+
+
+def speeds_over_page(
+    device: Device,
+    reading: Reading,
+    page: Page,
+    *,
+    touch: float | Profile | None = None,
+    criteria: Criteria | None = None,
+    slowest: float = default("speed.slowest"),
+    fastest: float = default("speed.fastest"),
+    progress: Progress | None = None,
+) -> PageSpeeds:
+    """Scan a page at many hand speeds, and judge its lines at each.
+
+    Args:
+        device: what is moved over the page.
+        reading: how the hand reads; its speed is what varies.
+        page: a page that the hand reads in strokes.
+        touch: how the finger lies on it; always if none.
+        criteria: what counts as felt; the literature's unless given.
+        slowest: peak speed of the slowest hand, m/s, greater than 0.
+        fastest: that of the fastest, m/s, greater than `slowest`.
+        progress: told after each scan.
+
+    Raises:
+        ValueError: the speeds are out of their ranges, or the page is followed by a recorded hand.
+    """
+    tried = check_tried(slowest, fastest)
+    if page.path is not None:
+        raise ValueError(f"page must be read in strokes, whose speed can vary, got {page.path}")
+    found: dict[float, Mapping[str, int]] = {}
+
+    def trial(speed: float) -> Mapping[str, int]:
+        if speed not in found:
+            at_speed = replace(reading, hand_speed=speed)
+            scene = page.scene(at_speed, device.array)
+            hand = page.hand(at_speed, scene, device.array)
+            done = scan(device, scene, hand, touch=touch, max_angle=reading.max_angle)
+            found[speed] = judge(done, criteria or Criteria()).counts
+            if progress:
+                progress(min(len(found), _MOST - 1), _MOST)
+        return found[speed]
+
+    grid = np.geomspace(*tried, TRIED).tolist()
+    for holds in (all_shown, all_settled):
+        every = [holds(trial(speed)) for speed in grid]
+        for (slow, before), (fast, after) in pairwise(zip(grid, every, strict=True)):
+            if before and not after:
+                while fast > (1.0 + PRECISION) * slow:
+                    middle = sqrt(slow * fast)
+                    slow, fast = (middle, fast) if holds(trial(middle)) else (slow, middle)
+                break
+    if progress:
+        progress(_MOST, _MOST)
+    return PageSpeeds(page.words, tried, dict(sorted(found.items())))
