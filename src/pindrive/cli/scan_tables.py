@@ -16,6 +16,7 @@ from pindrive.cli.tables import (
     whole_lines,
 )
 from pindrive.device.dataset import gap_words, numbers, peak_warming
+from pindrive.evaluation import page_speed
 from pindrive.evaluation.resolution import STUDIED, criterion
 from pindrive.quantities.device import PIN
 from pindrive.quantities.results import LINE
@@ -46,7 +47,6 @@ HEADINGS: Final = {
     "pin.peak_stretch": "peak\nstretch",
     "pin_gap": "least\ngap",
 }
-COUNTED_OVER_SPEED: Final = ("lines", "shown", "unsettled", "sure", "echoes")
 COUNTED: Final = (
     *("lines", "shown", "direction", "sure", "unsettled", "unseen", "merged", "faint", "echoes"),
 )
@@ -231,7 +231,7 @@ def page_speed_report(found: PageSpeeds) -> RenderableType:
     table = new_table(f"How fast the hand may move over {found.title}", *headings)
     table.add_row(speed.display_unit, style="dim")
     for tried, counts in found.counts.items():
-        numbers = (str(counts[f"judged.{name}"]) for name in COUNTED_OVER_SPEED)
+        numbers = (str(counts[f"judged.{name}"]) for name in page_speed.COUNTED)
         table.add_row(speed.digits(tried), *numbers)
     words = [
         f"{said}: {_up_to(limit, found.tried)}."
