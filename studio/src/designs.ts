@@ -1,24 +1,15 @@
 // The named designs: tabs, one of them current; which others are drawn; the ghost.
 import { button, h, refill } from "./dom";
-import { currentDesign, type State, withDesign } from "./state";
+import { currentDesign, type State, type Step, withDesign } from "./state";
 import type { Look } from "./theme";
-
-type Change = (state: State, kind: string) => void;
 
 export class Designs {
   readonly element = h("div", { class: "designs" });
   private shown = "";
-  private state!: State;
 
-  constructor(private readonly set: Change) {}
-
-  /** A step from the newest state, which is another one than when the parts were made. */
-  private change(next: (state: State) => State): void {
-    this.set(next(this.state), "");
-  }
+  constructor(private readonly change: (step: Step) => void) {}
 
   update(state: State, look: Look): void {
-    this.state = state;
     const structure = JSON.stringify([
       state.current,
       state.ghost !== null,

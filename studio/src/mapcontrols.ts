@@ -2,12 +2,10 @@
 import { isRows } from "./design";
 import { button, h, option, refill } from "./dom";
 import { nameOf } from "./results";
-import type { Limit, State } from "./state";
+import type { Limit, State, Step } from "./state";
 import { DRIVE, label, NUMBERS, type Quantity, text, unitOf } from "./table";
 import { toSi } from "./units";
 import { fieldText } from "./write";
-
-type Change = (state: State, kind: string) => void;
 
 /** The numbers that a map can show. */
 export function mapNumbers(): Quantity[] {
@@ -32,17 +30,10 @@ export class MapControls {
   readonly element = h("div", { class: "map-controls" });
   readonly specification = h("div", { class: "specification" });
   private shown = "";
-  private state!: State;
 
-  constructor(private readonly set: Change) {}
-
-  /** A step from the newest state, which is another one than when the parts were made. */
-  private change(next: (state: State) => State): void {
-    this.set(next(this.state), "");
-  }
+  constructor(private readonly change: (step: Step) => void) {}
 
   update(state: State): void {
-    this.state = state;
     const structure = JSON.stringify([mapKeys(state), state.map, state.number, state.specification]);
     if (structure === this.shown) return;
     this.shown = structure;

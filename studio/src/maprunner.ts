@@ -1,8 +1,6 @@
 // The map kept up to date: the newest task goes to a thread of its own as soon as that is idle.
 
 import type { Core } from "./core";
-import { withValue } from "./design";
-import type { Values } from "./friction";
 import { axesOf, mapTask } from "./map";
 import { computeMap, type MapResult, type MapTask } from "./mapgrid";
 import { MapView } from "./mapview";
@@ -26,12 +24,11 @@ export class MapRunner {
     private readonly core: Core,
     wasm: ArrayBuffer,
     look: Look,
-    change: (values: Values, kind: string) => void,
+    choose: (point: Readonly<Record<string, number>>) => void,
   ) {
     this.view = new MapView(look, (x, y) => {
       const { map } = this.state!;
-      const { values } = currentDesign(this.state!);
-      change(withValue(withValue(values, map.x, x), map.y, y), "map");
+      choose({ [map.x]: x, [map.y]: y });
     });
     try {
       this.worker = new Worker(URL.createObjectURL(new Blob([MAP_WORKER], { type: "text/javascript" })));

@@ -3,6 +3,7 @@ import { Animation } from "./animation";
 import { Charts } from "./charts";
 import { problemOf } from "./checks";
 import { type Core, CoreError } from "./core";
+import { withValue } from "./design";
 import { Designs } from "./designs";
 import { DeviceError, decodeText, readDevice } from "./device";
 import { button, card, download, fileName, h, option } from "./dom";
@@ -36,9 +37,12 @@ export class Page {
   private readonly phase: PhasePlane;
   private readonly animation: Animation;
   private readonly player: Player;
-  private readonly panel = new Panel((values, kind) => this.setValues(values, kind));
-  private readonly designs = new Designs((state, kind) => this.change(state, kind));
-  private readonly controls = new MapControls((state, kind) => this.change(state, kind));
+  private readonly panel = new Panel(
+    () => this.values,
+    (values, kind) => this.setValues(values, kind),
+  );
+  private readonly designs = new Designs((step) => this.change(step(this.state), ""));
+  private readonly controls = new MapControls((step) => this.change(step(this.state), ""));
   private readonly numbers = new NumbersTable((number) => this.change({ ...this.state, number }, ""));
   private readonly events = new EventsTable((time) => this.setCursor(time));
   private readonly bars = new Bars();
@@ -63,7 +67,12 @@ export class Page {
       (time) => this.setCursor(time),
       () => ({ curves: currentCurves(this.view), end: this.view.end }),
     );
-    this.map = new MapRunner(core, wasm, this.look, (values, kind) => this.setValues(values, kind));
+    this.map = new MapRunner(core, wasm, this.look, (point) =>
+      this.setValues(
+        Object.entries(point).reduce((values, [key, value]) => withValue(values, key, value), this.values),
+        "map",
+      ),
+    );
     this.fitting = new FitPanel({
       open: () => choose(".csv,.txt", (file) => void this.takeFile(file)),
       remove: () => this.setOverlay(null),
@@ -71,7 +80,7 @@ export class Page {
       fitOffset: () =>
         this.setOverlay({
           ...this.overlay!,
-          offset: fitOffset(this.core, this.overlay!.recording, currentValues(this.view)),
+          offset: fitOffset(this.core, this.overlay!.recording, this.values),
         }),
       fit: (keys, freeOffset) => this.fit(keys, freeOffset),
     });
@@ -82,6 +91,10 @@ export class Page {
 
   get state(): State {
     return this.history.now;
+  }
+
+  private get values(): Values {
+    return currentDesign(this.state).values;
   }
 
   mount(parent: HTMLElement): void {
@@ -197,7 +210,7 @@ export class Page {
       const found = fit(
         this.core,
         this.overlay.recording,
-        currentValues(this.view),
+        this.values,
         keys,
         this.overlay.offset,
         freeOffset,

@@ -17,8 +17,6 @@ const GROUPS: readonly (readonly [string, string])[] = [
 ];
 const STEPS = 1000;
 
-type Change = (values: Values, kind: string) => void;
-
 interface Control {
   readonly element: HTMLElement;
   readonly update: (values: Values) => void;
@@ -27,11 +25,13 @@ interface Control {
 export class Panel {
   readonly element = h("div", { class: "parameters" });
   private readonly controls: Control[] = [];
-  private values: Values = {};
   /** Before the first of the last changes, where all of them are of one key. */
   private base: { key: string; values: Values; now: string } | null = null;
 
-  constructor(private readonly change: Change) {
+  constructor(
+    private readonly now: () => Values,
+    private readonly change: (values: Values, kind: string) => void,
+  ) {
     for (const [table, title] of GROUPS) {
       const rows = [...DRIVE.values()]
         .filter(({ key }) => key.startsWith(`${table}.`))
@@ -47,15 +47,14 @@ export class Panel {
   }
 
   update(values: Values): void {
-    this.values = values;
     for (const control of this.controls) control.update(values);
   }
 
   /** What a change of a key starts from: ratios survive a slider that is dragged to 0 and back. */
   private before(key: string): Values {
-    const { base } = this;
-    const same = base?.key === key && base.now === JSON.stringify(this.values);
-    return same ? base.values : this.values;
+    const now = this.now();
+    const same = this.base?.key === key && this.base.now === JSON.stringify(now);
+    return same ? this.base!.values : now;
   }
 
   private set(key: string, value: Value | null, kind: string): void {
@@ -74,7 +73,7 @@ export class Panel {
       option("coefficient", "coefficients"),
     );
     select.addEventListener("change", () =>
-      this.change(withKind(this.values, contact, select.value === "coefficient"), ""),
+      this.change(withKind(this.now(), contact, select.value === "coefficient"), ""),
     );
     return {
       element: h("label", { class: "kind", for: select.id }, "friction as", select),
@@ -181,13 +180,14 @@ export class Panel {
 
   /** What holds usually, or what holds now. */
   private usual(quantity: Quantity): number {
+    const values = this.now();
     const [contact, name] = quantity.key.split(".") as [string, string];
-    if (name.startsWith("static")) return givenFriction(this.values, contact).kinetic * 1.2;
+    if (name.startsWith("static")) return givenFriction(values, contact).kinetic * 1.2;
     if (name === "skin_stretch") {
-      const limit = frictionOf(this.values, "finger").still;
-      return limit / 2 / ((this.values["finger.stiffness"] as number | undefined) ?? Infinity);
+      const limit = frictionOf(values, "finger").still;
+      return limit / 2 / ((values["finger.stiffness"] as number | undefined) ?? Infinity);
     }
-    if (name === "travel") return Math.max(quantity.example!, Math.abs(startOf(this.values)));
+    if (name === "travel") return Math.max(quantity.example!, Math.abs(startOf(values)));
     return quantity.default ?? quantity.example ?? quantity.absent ?? 0;
   }
 

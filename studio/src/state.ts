@@ -23,6 +23,9 @@ export interface State {
   readonly cursor: number;
 }
 
+/** A change, from the newest state: two may come before anything is drawn anew. */
+export type Step = (now: State) => State;
+
 export function initialState(): State {
   const device = readDevice(TABLES.template, "the template");
   return {

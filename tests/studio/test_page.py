@@ -77,6 +77,29 @@ def test_sliders_fields_keys_and_undo_change_the_motion(page: Any) -> None:
     assert value(page, "plate.kinetic") == 0.03
 
 
+def test_two_changes_before_a_drawing_are_both_kept(page: Any) -> None:
+    page.evaluate(
+        """() => {
+          const set = (id, value, event) => {
+            const input = document.getElementById(id);
+            input.value = value;
+            input.dispatchEvent(new Event(event));
+          };
+          set("map-x", "drive.mass", "change");
+          set("map-y", "drive.stiffness", "change");
+          set("drive-mass", "3", "change");
+          set("drive-stiffness", "200", "change");
+          document.getElementById("design-name").value = "two";
+          document.getElementById("design-name").dispatchEvent(new Event("change"));
+        }"""
+    )
+    settled(page)
+    state = page.evaluate("pindrive.page.state")
+    assert state["map"] == {"x": "drive.mass", "y": "drive.stiffness"}
+    assert state["designs"][0]["name"] == "two"
+    assert (value(page, "drive.mass"), value(page, "drive.stiffness")) == (0.003, 200)
+
+
 def test_a_ratio_survives_a_value_of_zero(page: Any) -> None:
     for given in ("0 N", "22 mN"):
         page.fill("#plate-kinetic", given)
