@@ -6,8 +6,10 @@
 - `Judgement`: what the finger was shown in a scan
 - `largest_speeds`: the largest hand speed at which two lines stay distinct
 - `Line`: one printed line under one pin
+- `PageSpeeds`: what becomes of the lines of a page at each hand speed
 - `SpeedLimit`: how fast a hand may go over two lines
 - `SpeedLimits`: the same of each of several pitches
+- `speeds_over_page`: the hand speeds at which a page can be read
 """
 
 import lazy_loader

@@ -6,23 +6,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import nan, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+import pindrive
 from pindrive.device.device import Criteria, Device
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
 from pindrive.device.scanning import Progress, scan
 from pindrive.evaluation.perception import judge
 from pindrive.evaluation.resolution import check_tried
-from pindrive.lazy import xr
+from pindrive.lazy import mpl_figure, xr
 from pindrive.quantities.table import QUANTITIES, default
 from pindrive.quantities.value import equal_by_value
-
-if TYPE_CHECKING:
-    from pindrive.lazy import mpl_figure
-    from pindrive.motion.profile import Profile
 
 TRIED: Final = 12
 """Speeds in the grid."""
@@ -108,7 +105,7 @@ def speeds_over_page(
     reading: Reading,
     page: Page,
     *,
-    touch: float | Profile | None = None,
+    touch: float | pindrive.Profile | None = None,
     criteria: Criteria | None = None,
     slowest: float = default("speed.slowest"),
     fastest: float = default("speed.fastest"),
