@@ -12,7 +12,8 @@
 /// works for one of them alone.
 ///
 /// A release is given up, and left to the general core, where it is not plain, where rounding could
-/// decide what comes next, and where it repeats a cycle of carrying and sliding for ever.
+/// decide what comes next, where it repeats a cycle of carrying and sliding for ever, and where it
+/// takes too many half turns or rounds.
 #pragma once
 
 #include "pindrive/kernel_progress.hpp"
@@ -25,6 +26,8 @@ inline namespace PINDRIVE_TARGET {
 inline constexpr double near_grazing = 1e-9;
 /// Half turns that are followed; each costs a few operations, of a whole pack if one drive needs it.
 inline constexpr int most_half_turns = 4096;
+/// Rounds of a release: some ten milliseconds of a pack.
+inline constexpr int most_rounds = 1 << 18;
 
 /// A round, from and to a progress. `Later`: not the first one.
 template <class V, bool Later, bool Measured>

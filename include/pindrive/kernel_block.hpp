@@ -255,7 +255,12 @@ void follow_all(KernelBlock& block, int* list, int count, bool settling, bool kn
   SlotList lists[2];
   using First = typename FirstRound<V, Measured>::type;
   follow_round<First, false, Measured>(block, list, count, settling, knows_rest, lists[0], again);
-  for (int now = 0; lists[now].size > 0; now = 1 - now) {
+  int now = 0;
+  for (int round = 1; lists[now].size > 0; ++round, now = 1 - now) {
+    if (round == most_rounds) {
+      for (int i = 0; i < lists[now].size; ++i) block.given_up[lists[now].slots[i]] = true;
+      break;
+    }
     fill(lists[now]);
     lists[1 - now].size = 0;
     follow_round<V, true, Measured>(block, lists[now].slots, lists[now].size, settling, false,

@@ -74,7 +74,7 @@ struct ForwardRelease {
   V between, outside;  ///< the centre while it slides slower than the plate, and backward, m
   V size;              ///< of the forces, N
   Oscillation<V> swing;
-  MaskOf<V> plain;  ///< those that the kernel follows
+  MaskOf<V> plain;  ///< those that the kernel follows: what loses no energy never comes to rest
 
   explicit ForwardRelease(const PlainRelease<V>& r) noexcept
       : mirror(with_sign(V(1.0), r.mouse_velocity)),
@@ -98,7 +98,7 @@ struct ForwardRelease {
     const V reach = absolute(start) + (speed + vp) * swing.per_omega;
     size = stiffness * reach + fp + sp + ff + sf + drag + r.damping * speed;
     plain = (r.finger_stiffness == V(__builtin_inf())) & (zero < vp) & (zero < sp) & (zero < sf) &
-            swing.oscillates;
+            (zero < fp + ff + r.damping) & swing.oscillates;
   }
 
   /// The force on the plate while it carries the pin.

@@ -91,10 +91,24 @@ void times_do_not_drift() {
          "thousands of rounds later times are those of the general core");
 }
 
+/// Without damping and kinetic friction a pin passes the plate's velocity for ever; and with little of them
+/// oftener than the kernel follows.
+void what_never_rests_is_given_up() {
+  const Release lossless{0.01, 200, 0, 0, 0.1, 0, 0.02, inf, 0.2, 2e-3, 0.2, inf, 0.05};
+  bool left = followed({lossless}, pk::Asked::settling)[0].given_up;
+  for (const int loss : {2, 3, 5}) {
+    Release lossy = lossless;
+    lossy[loss] = 1e-12;
+    left = left && followed({lossy}, pk::Asked::state)[0].given_up;
+  }
+  expect(left, "a release that nearly loses no energy is left to the general core");
+}
+
 }  // namespace
 
 int main() {
   times_do_not_drift();
+  what_never_rests_is_given_up();
   const std::vector<Release> all = releases();
   const auto together = followed(all, pk::Asked::settling);
   const auto backward = followed({all.rbegin(), all.rend()}, pk::Asked::settling);
