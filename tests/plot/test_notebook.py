@@ -15,6 +15,7 @@ import pytest
 import pindrive as pd
 from command import EXAMPLE
 from notebook_reading import Parts, check_faces
+from pindrive.evaluation import speeds_over_page
 from pindrive.quantities.quantity import significant
 from pindrive.study.runner import sweep
 from recordings import RELEASE, START, recorded
@@ -45,6 +46,7 @@ def results(motion: pd.Motion, tmp_path_factory: pytest.TempPathFactory) -> dict
         "sobol": pd.sobol(study, rows=128),
         "fit": pd.fit(recorded(rate=1e3), START, RELEASE, free=["damping"], profiles=False),
         "friction curve": pd.fit_friction(SPEEDS, 0.02 + 0.1 * SPEEDS),
+        "page speeds": speeds_over_page(reader.device, reader.reading, pd.Page(text=".")),
         "sweep": sweep(pd.Study(device, axes={"mass": ["9 g", "10 g", "11 g"]}), file),
     }
 
@@ -55,7 +57,7 @@ SPEEDS = np.linspace(0.0, 0.2, 30)
 READER = EXAMPLE.parent / "tactile-reader.toml"
 RESULTS = (
     *("motion", "sensitivity", "scan", "judgement", "robustness", "local sensitivity", "sobol"),
-    *("fit", "friction curve", "sweep"),
+    *("fit", "friction curve", "sweep", "page speeds"),
 )
 
 

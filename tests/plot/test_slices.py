@@ -106,15 +106,38 @@ def test_a_map_is_a_slice_of_the_file(grid: View) -> None:
 def test_what_did_not_settle_is_hatched_and_what_cannot_be_is_grey(grid: View) -> None:
     (key,) = draw(grid, ["swing"]).legends
     words = [text.get_text() for text in key.get_texts()]
-    assert words == ["not settled in the time followed", "no motion: contradictory values"]
+    assert words == [
+        "not settled in the time followed",
+        "has no swing",
+        "no motion: contradictory values",
+    ]
     panels = list(grid.panels("transient_swing", *grid.axes(None, None, {}), {}))
     for panel, refused in zip(panels, (False, False, True), strict=True):
         assert panel.refused.all() == panel.refused.any() == refused
         assert panel.unsettled.any() != refused
-        assert (panel.unsettled | panel.refused)[np.isnan(panel.values)].all()
+        assert (panel.unsettled | panel.absent | panel.refused)[np.isnan(panel.values)].all()
         assert refused or not np.isnan(panel.values[panel.unsettled]).all(), "some have a swing"
     settled = list(grid.panels("transient_swing", "mouse_velocity", "", {"stiffness": 500.0}))
     assert all(panel.unsettled.mean() < 1.0 for panel in settled)
+
+
+def test_a_steady_motion_without_the_number_is_not_called_unsettled(folder: Path) -> None:
+    (folder / "steady.toml").write_text(
+        BASE + '[axes]\nmouse_velocity = { lin = ["0 mm/s", "200 mm/s"], count = 9 }\n'
+        'displacement = { lin = ["-1 mm", "3 mm"], count = 9 }\nfinger.kinetic = ["0 mN"]\n'
+        "damping_ratio = [0]\n"
+    )
+    sweep(load_study(folder / "steady.toml"), folder / "steady.nc")
+    with View(folder / "steady.nc") as view:
+        (panel,) = view.panels("transient_swing", *view.axes(None, None, {}), {})
+        assert not panel.unsettled.any()
+        assert 0 < panel.absent.sum() < panel.values.size
+        np.testing.assert_array_equal(panel.absent, np.isnan(panel.values))
+        assert list(legend_of(draw(view, ["swing"]))) == ["has no swing"]
+        figure = draw(view, ["swing"], "mouse_velocity", None, displacement=0.0)
+        assert list(legend_of(figure)) == ["has no swing"]
+        panels = view.panels("transient_settling_time", *view.axes(None, None, {}), {})
+        assert not any(panel.absent.any() or panel.unsettled.any() for panel in panels)
 
 
 def test_refused_points_are_grey_and_unsettled_ones_hatched(grid: View) -> None:

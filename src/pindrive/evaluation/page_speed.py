@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import nan, sqrt
+from math import isnan, nan, sqrt
 from typing import Final
 
 import numpy as np
 
 import pindrive
+from pindrive import lazy
 from pindrive.device.device import Criteria, Device
 from pindrive.device.page_description import Page
 from pindrive.device.reading import Reading
@@ -18,6 +19,7 @@ from pindrive.device.scanning import Progress, scan
 from pindrive.evaluation.perception import judge
 from pindrive.evaluation.resolution import check_tried
 from pindrive.lazy import mpl_figure, xr
+from pindrive.quantities.status import Status
 from pindrive.quantities.table import QUANTITIES, default
 from pindrive.quantities.value import equal_by_value
 
@@ -32,7 +34,7 @@ COUNTED: Final = ("lines", "shown", "unsettled", "sure", "echoes")
 
 @equal_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class PageSpeeds:
+class PageSpeeds(lazy.NotebookHtml):
     """What becomes of the lines of a page, by the speed of the hand.
 
     Attributes:
@@ -49,7 +51,13 @@ class PageSpeeds:
     def __repr__(self) -> str:
         """The two limits, in a line."""
         shown, settled = (f"{1e3 * v:.4g} mm/s" for v in (self.shown_speed, self.settled_speed))
-        return f"<PageSpeeds of {self.title}: shown up to {shown}, settled up to {settled}>"
+        limits = f"shown up to {shown}, settled up to {settled}"
+        return f"<PageSpeeds of {self.title}: {limits}, {self.status}>"
+
+    @property
+    def status(self) -> Status:
+        """`incomplete` where all lines are shown at no speed."""
+        return Status.incomplete if isnan(self.shown_speed) else Status.ok
 
     @property
     def shown_speed(self) -> float:

@@ -15,7 +15,7 @@ from pindrive._core import settling_band
 from pindrive.plot.contours import MAP, draw_contours, jump_key, line_colours
 from pindrive.plot.style import CURVES, GREY, PALETTE, SMALL, STYLE, Figure, new_figure, plain
 from pindrive.study.outputs import MEASURED, is_stepped
-from pindrive.study.slices import QUANTITY, View, axis_label, value, values
+from pindrive.study.slices import QUANTITY, View, axis_label, value, values, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,6 +33,7 @@ _HATCH: Final[dict[str, Any]] = {
     "hatch": "/////",
     "lw": 0.0,
 }
+_ABSENT: Final[dict[str, Any]] = {**_HATCH, "hatch": "xxx"}
 _REFUSED: Final = "0.72"
 _LEVELS: Final = 8
 _FLAT: Final = 0.25
@@ -187,15 +188,21 @@ def _draw_map(
             shading="nearest",
             rasterized=True,
         )
-    over = panel.unsettled & ~missing
-    if over.any() and min(shown.shape) > 1:
-        axes.contourf(x, y, over, levels=[0.5, 1.5], colors="none", hatches=["/////"])
-    if (panel.unsettled & ~panel.refused).any() and min(shown.shape) > 1:
-        border = (panel.unsettled | panel.refused).astype(float)
+    if min(shown.shape) > 1:
+        _hatch(axes, x, y, panel.unsettled & ~missing, "none", _HATCH["hatch"])
+        _hatch(axes, x, y, panel.absent, _ABSENT["facecolor"], _ABSENT["hatch"])
+    if (panel.unsettled | panel.absent).any() and min(shown.shape) > 1:
+        border = (panel.unsettled | panel.absent | panel.refused).astype(float)
         axes.contour(x, y, border, levels=[0.5], colors="black", linewidths=0.7)
     if panel.met is not None and min(shown.shape) > 1:
         _shade_met(axes, x, y, panel.met >= 0.5)
     return drawn
+
+
+def _hatch(axes: Axes, x: Any, y: Any, where: Any, colour: str, hatch: str) -> None:
+    """Hatches the points that are marked."""
+    if where.any():
+        axes.contourf(x, y, where, levels=[0.5, 1.5], colors=colour, hatches=[hatch])
 
 
 def _shade_met(axes: Axes, x: Any, y: Any, met: Any) -> None:
@@ -244,12 +251,16 @@ def _draw_curves(panels: Sequence[Panel], axes: Axes, named: bool) -> None:
 
 
 def _shade_gaps(axes: Axes, x: Any, panel: Panel) -> None:
-    """Where the motion did not settle, or could not be simulated."""
+    """Where the motion did not settle, the number does not exist, or there is no motion."""
     edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
-    for i in np.flatnonzero(panel.unsettled):
-        axes.axvspan(edges[i], edges[i + 1], **_HATCH, zorder=0)
-    for i in np.flatnonzero(panel.refused):
-        axes.axvspan(edges[i], edges[i + 1], color=_REFUSED, lw=0.0, zorder=0)
+    grey = {"color": _REFUSED, "lw": 0.0}
+    for where, look in (
+        (panel.unsettled, _HATCH),
+        (panel.absent, _ABSENT),
+        (panel.refused, grey),
+    ):
+        for i in np.flatnonzero(where):
+            axes.axvspan(edges[i], edges[i + 1], **look, zorder=0)
 
 
 def _key(panels: Sequence[Panel]) -> list[Artist]:
@@ -259,22 +270,22 @@ def _key(panels: Sequence[Panel]) -> list[Artist]:
     median = panels[0].low is not None
     motions = panels[0].number in MEASURED
     marked = maps or len(panels) == len({panel.number for panel in panels})
+    most = " by most draws" if median else ""
     if marked and any(panel.unsettled.any() for panel in panels):
-        most = " by most draws" if median else ""
-        words = f"not settled{most} in the time followed" if motions else f"has no value{most}"
-        handles.append(Patch(**_HATCH, label=words))
+        handles.append(Patch(**_HATCH, label=f"not settled{most} in the time followed"))
+    lacking = dict.fromkeys(words(panel.number) for panel in panels if panel.absent.any())
+    if marked and lacking:
+        handles.append(Patch(**_ABSENT, label=f"has no {' or '.join(lacking)}{most}"))
     if marked and any(panel.refused.any() for panel in panels):
         what = "motion" if motions else "scan"
         handles.append(Patch(color=_REFUSED, label=f"no {what}: contradictory values"))
     if not marked and any((p.unsettled & ~np.isnan(p.values)).any() for p in panels):
-        handles.append(
-            Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled in the time followed")
-        )
+        handles.append(Line2D([], [], color=GREY, lw=0.7, ls=":", label="not settled"))
     if any(panel.met is not None and (panel.met >= 0.5).any() for panel in panels):
-        words = f"the specification is met{' by most draws' if median else ''}"
+        met = f"the specification is met{most}"
         look: dict[str, Any] = {"facecolor": "white", "edgecolor": PALETTE["stick"], "hatch": "..."}
-        band = Line2D([], [], color=GREY, lw=5.0, alpha=0.3, label=words)
-        handles.append(Patch(**look, label=words) if maps else band)
+        band = Line2D([], [], color=GREY, lw=5.0, alpha=0.3, label=met)
+        handles.append(Patch(**look, label=met) if maps else band)
     if median and not maps:
         handles.append(Line2D([], [], color=GREY, label="median"))
         handles.append(

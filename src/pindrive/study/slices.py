@@ -136,6 +136,8 @@ class Panel:
     """The values of each key."""
     values: NDArray[np.float64]
     unsettled: NDArray[np.bool_]
+    absent: NDArray[np.bool_]
+    """Where the number does not exist although the motion settles."""
     refused: NDArray[np.bool_]
     low: NDArray[np.float64] | None = None
     """Of many draws the 5 % quantile, where `values` are their median."""
@@ -327,9 +329,10 @@ class View:
             dims.append("sample")
         part = part.squeeze([d for d in part.dims if d not in dims]).load().transpose(*dims)
         values, refused = part[number].values, part["status"].values != 0
-        unsettled = _unsettled(part, number) & ~refused
+        unsettled = _unsettled(part) & ~refused
+        absent = np.isnan(values) & ~unsettled & ~refused
         met = [demand.met(part[demand.name].values) for demand in self.demands]
-        every = np.logical_and.reduce([*met, ~refused])
+        flags = np.array([unsettled, absent, refused, np.logical_and.reduce([*met, ~refused])])
         at = {
             key: float(self.data[key][choice[self.dimension(key)]])
             for key in self.keys
@@ -338,25 +341,22 @@ class View:
         along = [part[key] for key in keys]
         if any(key in self.sampled for key in keys):
             spread = [np.broadcast_to(_beside(c, dims), values.shape).ravel() for c in along]
-            flags = [flag.ravel() for flag in (unsettled, refused, every)]
-            found: tuple[Any, ...] = _binned(spread, values.ravel(), *flags)
+            found: tuple[Any, ...] = _binned(spread, values.ravel(), flags.reshape(4, -1))
         elif "sample" in dims:
-            found = _summed_up([c.values for c in along], values, unsettled, refused, every)
+            found = _summed_up([c.values for c in along], values, flags)
         else:
-            found = ([c.values for c in along], values, unsettled, refused, None, None, every * 1.0)
+            found = ([c.values for c in along], values, *flags[:3], None, None, flags[3] * 1.0)
         panel = Panel(number, keys, at, *found)
         return panel if self.demands else replace(panel, met=None)
 
 
-def _unsettled(part: xr.Dataset, number: str) -> NDArray[np.bool_]:
-    """Where the motion did not settle, or the number does not exist."""
+def _unsettled(part: xr.Dataset) -> NDArray[np.bool_]:
+    """Where a motion did not settle, as far as the file knows."""
     if "transient_settled" in part:
-        found = ~part["transient_settled"].values
-    elif "transient_settling_time" in part:
-        found = np.isnan(part["transient_settling_time"].values)
-    else:
-        found = np.zeros(part[number].shape, np.bool_)
-    return np.asarray(found | np.isnan(part[number].values))
+        return np.asarray(~part["transient_settled"].values)
+    if "transient_settling_time" in part:
+        return np.asarray(np.isnan(part["transient_settling_time"].values))
+    return np.zeros(part["status"].shape, np.bool_)
 
 
 def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> NDArray[np.float64]:
@@ -368,24 +368,20 @@ def _beside(coordinate: xr.DataArray, dims: Sequence[str]) -> NDArray[np.float64
 def _summed_up(
     places: Sequence[NDArray[np.float64]],
     values: NDArray[np.float64],
-    unsettled: NDArray[np.bool_],
-    refused: NDArray[np.bool_],
-    met: NDArray[np.bool_],
+    flags: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
     """Of a panel, from its places on: quantiles over the draws, which are the last axis."""
     shape = values.shape[:-1]
     group = np.repeat(np.arange(values[..., 0].size), values.shape[-1])
     low, middle, high = quantiles(group, values.ravel(), values[..., 0].size).reshape(3, *shape)
-    draws = (unsettled.mean(axis=-1) > 0.5, refused.mean(axis=-1) > 0.5)
-    return places, middle, *draws, low, high, met.mean(axis=-1)
+    parts = flags.mean(axis=-1)
+    return places, middle, *(parts[:3] > 0.5), low, high, parts[3]
 
 
 def _binned(
     along: Sequence[NDArray[np.float64]],
     values: NDArray[np.float64],
-    unsettled: NDArray[np.bool_],
-    refused: NDArray[np.bool_],
-    met: NDArray[np.bool_],
+    flags: NDArray[np.bool_],
 ) -> tuple[Any, ...]:
     """Of a panel, from its places on: quantiles over the draws that fall into each of many bins."""
     most = _BINS if len(along) == 1 else int(np.clip(np.sqrt(len(values) / 200), 4, _BINS))
@@ -404,11 +400,10 @@ def _binned(
     count = int(np.prod(shape))
     low, middle, high = quantiles(group, values, count).reshape(3, *shape)
     drawn = np.maximum(np.bincount(group, minlength=count), 1)
-    loose, refused_part, meet = (
-        (np.bincount(group, weights=flag, minlength=count) / drawn).reshape(shape)
-        for flag in (unsettled, refused, met)
-    )
-    return middles, middle, loose > 0.5, refused_part > 0.5, low, high, meet
+    parts = [
+        (np.bincount(group, weights=flag, minlength=count) / drawn).reshape(shape) for flag in flags
+    ]
+    return middles, middle, *(part > 0.5 for part in parts[:3]), low, high, parts[3]
 
 
 def quantiles(
