@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import pindrive
-from command import EXAMPLE, SKIN, refused, run
+from command import EXAMPLE, EXAMPLES, SKIN, refused, run
 from pindrive.files.device import load_device
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
@@ -39,7 +39,39 @@ def test_init_check_simulate() -> None:
     assert "underdamped, natural frequency 15.92 Hz" in checked.stdout
     simulated = run("simulate", "new.toml")
     assert simulated.exit_code == 0
-    assert simulated.stdout == run("simulate", EXAMPLE).stdout, "the example is what init writes"
+    example = run("simulate", EXAMPLE).stdout.replace("tactile mouse:", "my pin drive:")
+    assert simulated.stdout == example, "the example is what init writes"
+
+
+def test_simulate_says_what_follows_from_other_values() -> None:
+    def said(*arguments: str | Path) -> list[str]:
+        lines = run("simulate", *arguments).stdout.splitlines()
+        return [line for line in lines if line.startswith("Follow from other values: ")]
+
+    damping = "Follow from other values: drive.damping 0.3200 N*s/m"
+    assert said(EXAMPLE) == [f"{damping}."]
+    kept = said(EXAMPLE, "--set", "plate.kinetic=25 mN")
+    assert kept == [f"{damping}, plate.static 30.11 mN."], "the ratio of the file holds on"
+    assert said(EXAMPLE, "--set", "plate.kinetic=25 mN", "--set", "plate.static=30 mN") == [
+        f"{damping}."
+    ]
+    (coefficients,) = said(EXAMPLES / "tactile-reader.toml")
+    assert coefficients.endswith(
+        "plate.kinetic 2.206 mN, plate.static 2.648 mN, finger.kinetic 30.00 mN, "
+        "finger.static 45.00 mN."
+    )
+    Path("least.toml").write_text((Path(__file__).parents[1] / "minimal.toml").read_text())
+    assert said("least.toml") == [
+        "Follow from other values: drive.damping_ratio 0.2000, plate.static 20.00 mN, "
+        "finger.static 5.000 mN."
+    ]
+
+
+def test_simulate_warns_of_what_check_warns_of() -> None:
+    given = (EXAMPLE, "--set", "plate.kinetic=60 mN")
+    simulated, checked = run("simulate", *given), run("check", *given)
+    assert simulated.stderr == checked.stderr
+    assert simulated.stderr.startswith("warning: the plate's kinetic friction coefficient is 0.612")
 
 
 def test_init_keeps_a_file_unless_forced() -> None:

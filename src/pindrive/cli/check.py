@@ -44,14 +44,7 @@ def check(
 
     with refusing():
         device = load_device(file, overrides or ())
-    from pindrive.cli.tables import device_report, show
-    from pindrive.motion.coefficients import Coefficients
+    from pindrive.cli.tables import device_report, show, warn_of
 
-    found = [Coefficients.of(device.drive).doubt]
-    if device.whole:
-        from pindrive.device.geometry import doubts
-
-        found += doubts(device.device)
-    for doubt in filter(None, found):
-        typer.echo(f"warning: {doubt}", err=True)
+    warn_of(device)
     show(device_report(device))

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import FILES, command
 from pindrive.cli.options import DeviceArgument, OverridesOption, RateOption, count_option
@@ -27,7 +25,7 @@ if TYPE_CHECKING:
     from pindrive.motion.motion import Motion
 
 
-@command("One release", 'pindrive simulate device.toml --set mass="1.2 g" --plot pin.png')
+@command("One release", "pindrive simulate device.toml --set damping_ratio=0.3 --plot pin.png")
 def simulate(
     file: DeviceArgument,
     overrides: OverridesOption = None,
@@ -78,9 +76,8 @@ def simulate(
         with results(targets, device.inputs, force=force) as write:
             motion = motion_of(device)
             write(motion)
-    from pindrive.cli.tables import motion_report, show
+    from pindrive.cli.tables import motion_report, release_words, show, warn_of
 
-    show(motion_report(motion))
-    if device.recording_words:
-        typer.echo(device.recording_words)
+    warn_of(device)
+    show(motion_report(motion, release_words(device)))
     say_written(targets)

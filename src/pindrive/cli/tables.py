@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from math import degrees, isfinite, tau
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pindrive.device.geometry import COPPER, IRON, heaviest
+from pindrive.device.geometry import COPPER, IRON, doubts, heaviest
 from pindrive.motion.coefficients import Coefficients
 from pindrive.motion.profile import Profile
 from pindrive.quantities.drive import COLUMNS
@@ -73,9 +74,7 @@ def device_report(device: DeviceFile) -> RenderableType:
         elif value is not None:
             _add_number(table, name, value, key)
     _add_number(table, "natural_frequency", drive.natural_frequency, "")
-    hertz = significant(drive.natural_frequency / tau)
-    words = f"{regime(drive.damping_ratio)}, natural frequency {hertz} Hz"
-    lines = [f"{device.name or 'The drive'}: {words}."]
+    lines = [drive_words(device)]
     if device.whole:
         whole, hand = device.device, device.reading
         lines += device_words(whole) + touch_words(device.touch)
@@ -84,6 +83,37 @@ def device_report(device: DeviceFile) -> RenderableType:
         lines.append(f"The plate: {Coefficients.of(drive).words}.")
     lines += [device.recording_words] if device.recording_words else []
     return Group(table, *whole_lines(lines))
+
+
+def warn_of(device: DeviceFile) -> None:
+    """Say what cannot be built as a device file describes it, or is implausible."""
+    found = [Coefficients.of(device.drive).doubt]
+    if device.whole:
+        found += doubts(device.device)
+    for doubt in filter(None, found):
+        print(f"warning: {doubt}", file=sys.stderr)
+
+
+def drive_words(device: DeviceFile) -> str:
+    """The damping regime and the natural frequency of a drive."""
+    hertz = significant(device.drive.natural_frequency / tau)
+    words = f"{regime(device.drive.damping_ratio)}, natural frequency {hertz} Hz"
+    return f"{device.name or 'The drive'}: {words}."
+
+
+def release_words(device: DeviceFile) -> list[str]:
+    """The drive, the values that its file does not give as they are, and what is recorded."""
+    values = device.values_of_drive()
+    for name, contact in (("plate", device.drive.plate), ("finger", device.drive.finger)):
+        values[f"{name}.static"] = contact.static_friction
+    words, said = [drive_words(device)], []
+    for key in device.followed:
+        value = values[key]
+        if isinstance(value, float) and value:
+            name = key if key in QUANTITIES else key.partition(".")[2]
+            said.append(f"{key} {QUANTITIES[name].text(value)}")
+    words += [f"Follow from other values: {', '.join(said)}."] if said else []
+    return words + ([device.recording_words] if device.recording_words else [])
 
 
 def regime(damping_ratio: float) -> str:
@@ -95,9 +125,9 @@ def regime(damping_ratio: float) -> str:
     return "underdamped" if damping_ratio < 1.0 else "overdamped"
 
 
-def motion_report(motion: Motion) -> RenderableType:
-    """Phases, numbers, and how the motion ends."""
-    words = [ending(motion), trust(motion)]
+def motion_report(motion: Motion, about: Iterable[str] = ()) -> RenderableType:
+    """Phases, numbers, lines `about` the device, and how the motion ends."""
+    words = [*about, ending(motion), trust(motion)]
     if motion.status:
         words.append(f"The simulation {motion.status.explanation}.")
     lines = whole_lines(words)

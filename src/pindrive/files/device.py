@@ -115,6 +115,24 @@ class DeviceFile:
             ),
         )
 
+    @property
+    def followed(self) -> tuple[str, ...]:
+        """The keys that are not given as they are.
+
+        `derived` ones, static friction that is the kinetic one, and what keeps its ratio to a value
+        that was set otherwise.
+        """
+        given = {key for setting in self.settings for key in NAMES.matches(setting.key)}
+        moved, found = {*given}, {*self.derived}
+        for key, quantity in DRIVE.items():
+            if key not in given and moved.intersection(quantity.follows):
+                moved.add(key)
+                found.add(key)
+        for table, contact in (("plate", self.drive.plate), ("finger", self.drive.finger)):
+            if contact.static is None:
+                found.add(f"{table}.static")
+        return tuple(key for key in DRIVE if key in found)
+
     def __repr__(self) -> str:
         """Which file, and what it describes, in a line."""
         pins = f", {counted(len(self.whole.array()), 'pin')}" if self.whole else ""
