@@ -86,6 +86,21 @@ def test_no_page_is_wider_than_a_telephone(address: str, telephone: Any) -> None
     assert {name: said for name, said in found.items() if said != expected} == {}
 
 
+@pytest.mark.parametrize("width", [WIDTH, 1280])
+def test_no_table_of_the_report_is_wider_than_its_page(
+    address: str, telephone: Any, width: int
+) -> None:
+    telephone.set_viewport_size({"width": width, "height": 844})
+    telephone.goto(f"{address}paper.html")
+    found = telephone.evaluate(
+        "[...document.querySelectorAll('table')]"
+        ".map(table => table.scrollWidth - table.parentElement.clientWidth)"
+    )
+    telephone.set_viewport_size({"width": WIDTH, "height": 844})
+    assert len(found) == 7
+    assert max(found) <= 0
+
+
 def test_a_search_without_a_network_finds_the_page(address: str, telephone: Any) -> None:
     telephone.goto(f"{address}search.html?q=settling+time")
     first = telephone.locator("#search-results ul.search li > a").first

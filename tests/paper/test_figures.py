@@ -98,10 +98,14 @@ def test_the_device_is_labelled() -> None:
     arrows = {p.get_gid(): p for p in axes.patches if isinstance(p, FancyArrowPatch)}
     ways = {}
     for words, arrow in arrows.items():
-        (begin, _), (end, _) = arrow._posA_posB  # type: ignore[attr-defined]
-        ways[words] = end > begin
-    right = {name: True for name in ("$x$", "$v_p$", "$F_p$", "$F_f$")}  # the pin returns, ẋ < 0
-    assert ways == {**right, "the hand's motion": False}
+        ways[words] = tuple(np.sign(np.subtract(*arrow._posA_posB[::-1])))  # type: ignore[attr-defined]
+    right = ("$x$", "$v_p$", "$F_p$ on 1", "$F_f$ on 5")  # the pin returns, ẋ < 0
+    assert ways == {
+        **dict.fromkeys(right, (1, 0)),
+        "the hand's motion": (-1, 0),
+        "$N_p$ on 1": (0, 1),
+        "$N_f$ on 5": (0, -1),
+    }
 
 
 # ---- motions -------------------------------------------------------------------------------------
@@ -310,7 +314,7 @@ def test_the_first_reversal() -> None:
     for axes in (left, right):
         assert axes.get_xlabel() == r"mouse speed $v_p/\omega_0(x_0 - x_d)$"
     places = {text.get_text(): text.xy for text in right.texts}  # type: ignore[attr-defined]
-    for words, above in (("friction reverses", False), ("it never does", True)):
+    for words, above in (("reaches the plate's velocity", False), ("it never does", True)):
         speed, ratio = places[words]
         assert (ratio > np.interp(speed, found.speed_of_map, found.limit)) == above
 

@@ -207,8 +207,8 @@ def test_print_lets_nothing_scroll(page: str) -> None:
     """What scrolls on the screen would be cut off on paper."""
     screen, _, print_rules = page.partition("@media print")
     scrolling = re.findall(r"([^{}\n]+) \{[^}]*overflow-x: auto", screen)
-    assert sorted(scrolling) == [".wide", "figure > div"]
-    assert ".wide, figure > div { overflow: visible }" in print_rules.replace("; }", " }")
+    assert scrolling == ["figure > div"], "tables are stacked where they find no room"
+    assert "figure > div { overflow: visible }" in print_rules.replace("; }", " }")
     assert "figure svg { min-width: 0" in print_rules
     assert "white-space: normal" in print_rules
     assert "td:first-child { overflow-wrap: normal; }" in print_rules, "numbers of equations"
@@ -250,7 +250,9 @@ def test_progress_is_told_as_often_as_announced(
 def test_the_corrected_equations_are_exact_and_the_printed_ones_not(made: Report) -> None:
     for row in made.rows:
         assert row.off_right < 1e-13, row.number
-        if row.right:
+        if row.number == "10":
+            assert np.isnan(row.off_printed), "its units do not agree"
+        elif row.right:
             assert row.off_printed > 0.01, row.number
         else:
             assert row.off_printed == row.off_right
@@ -269,18 +271,19 @@ VERDICTS = {
     "In that case law of motion of the pin": "not judged",
     "During the investigation a significant": "not judged",
     "The relationship of transitional process": "not judged",
-    "The absolutely largest pin velocity": "holds when friction reverses",
+    "The absolutely largest pin velocity": "holds when the pin reaches",
+    "The pin will stop and dry friction force": "holds when the plate does not catch",
     "The first friction force direction change": "does not hold",
-    "Becomes clear that the analytical solution": "holds when analytical means an elementary",
+    "Becomes clear that the analytical solution": "not proved",
     "because nor pin acceleration": "does not hold",
-    "It is available only in the limit case": "holds when there is damping",
-    "For the general case equation (1)": "holds when friction reverses",
+    "It is available only in the limit case": "not proved",
+    "For the general case equation (1)": "not proved",
     "Model of tactile device pin interaction": "done here",
     "The law of damped pin motion": "done here",
     "It was defined what initial phase angle": "holds when x_0 > x_d",
     "and φ_0 = 0, when v_p = 0": "holds when there is no damping",
     "Higher mouse velocity causes greater": "holds",
-    "Friction forces are influencing": "holds when ω, α and φ′_0",
+    "Friction forces are influencing": "does not hold",
     "The greater displacement x_d": "holds",
     "and reducing the amplitude": "holds when x_0 − x_d > −ζ v_p / ω_0",
     "The initial pin displacement x_0": "holds when v_p <",
@@ -290,7 +293,7 @@ VERDICTS = {
     "which would be stabilized": "does not hold",
     "If the friction between": "holds when x_d is F_f / k",
     "The dynamics of tactile device": "not judged",
-    "It was defined that the law": "holds when friction reverses",
+    "It was defined that the law": "not proved",
     "The model for the pin drive": "done here",
 }
 
@@ -309,9 +312,15 @@ def test_every_sentence_has_the_verdict_that_was_derived(made: Report) -> None:
         assert claim.true is None or (claim.true.size > 1 and re.search(r"\d", claim.finding))
 
 
-def claim(true: list[bool] | None, meets: list[bool] | None = None, done: bool = False) -> str:
+def claim(
+    true: list[bool] | None,
+    meets: list[bool] | None = None,
+    *,
+    done: bool = False,
+    excludes: bool = False,
+) -> str:
     trials, condition = (None if x is None else np.array(x) for x in (true, meets))
-    return Claim("", "", trials, "", "", "it rains", condition, done).verdict
+    return Claim("", "", trials, "", "", "it rains", condition, done, excludes).verdict
 
 
 def test_a_verdict_follows_from_the_trials() -> None:
@@ -323,6 +332,9 @@ def test_a_verdict_follows_from_the_trials() -> None:
     assert claim(None) == "not judged"
     assert claim([True, True], done=True) == "done here"
     assert claim([True, False], done=True) == "not done here"
+    assert claim([True, True], excludes=True) == "not proved"
+    assert claim([True, False], [True, False], excludes=True) == "not proved"
+    assert claim([True, False], excludes=True) == "does not hold"
 
 
 def test_a_closed_form_of_the_reversal_is_there_without_damping_and_in_the_limit_alone() -> None:
@@ -333,6 +345,24 @@ def test_a_closed_form_of_the_reversal_is_there_without_damping_and_in_the_limit
     limit = population.limit_cases(200)
     assert has_closed_form(limit).all()
     assert has_closed_form(limit.replace(damping=0.0)).all()
+
+
+def test_the_printed_lag_changes_with_the_unit_of_time() -> None:
+    """So (10) has no value; the right form has one."""
+    m, b, k = 0.01, 0.32, 100.0
+    for printed in (True, False):
+        lags = []
+        for unit in (1.0, 0.1):  # s
+            damping, stiffness = b * unit, k * unit**2
+            rate = (stiffness / m) ** 0.5 if printed else 1.0
+            square = stiffness**2 if printed else m * stiffness
+            lags.append(np.arctan(damping * rate / np.sqrt(4 * square - damping**2)))
+        assert (abs(lags[1] / lags[0] - 1) > 1e-6) == printed
+
+
+def test_at_the_plates_velocity_the_pin_passes_or_is_caught(made: Report) -> None:
+    (said,) = (c.finding for c in made.claims if c.sentence.startswith("The pin will stop"))
+    assert re.findall(r"(\d+) of (\d+)", said) == [("523", "605"), ("82", "605"), ("45", "82")]
 
 
 def test_where_a_printed_form_is_good() -> None:
@@ -533,10 +563,13 @@ def test_a_page_is_made_from_markdown() -> None:
         ("holds", "holds"),
         ("holds when x", "part"),
         ("does not hold", "not"),
+        ("not proved", "part"),
         ("done here", "done"),
         ("not judged", "open"),
     ):
         assert as_html(f"**{verdict}**") == f'<strong class="{kind}">{verdict}</strong>'
+    table = as_page("# t\n\n| a | b<br>c |\n|---|---|\n| 1 | 2 |\n", {})
+    assert re.findall(r'<td data-of="(\w)">(\d)</td>', table) == [("a", "1"), ("b", "2")]
     svg = b'<?xml?><svg id="a"><use href="#a"/></svg>'
     page = as_page("# Title\n\n## A _part_, (1)\n\n![what](folder/name.png)\n", {"name": svg})
     assert '<nav><a href="#a-part-1">A <em>part</em>, (1)</a></nav>\n<h2 id="a-part-1">' in page
@@ -561,7 +594,7 @@ def test_the_command_writes_the_report(tmp_path: Path, files: dict[str, bytes]) 
     out, docs = tmp_path / "new" / "report", tmp_path / "docs"
     result = CliRunner().invoke(app, ["paper", "-o", str(out), "--docs", str(docs)])
     assert result.exit_code == 0, result.output
-    assert "3 hold, 13 hold under a condition" in result.stdout
+    assert "3 hold, 9 hold under a condition" in result.stdout
     written = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert written == {str(Path(name)) for name in files}
     assert (out / report.PAGE).read_bytes() == files[report.PAGE]

@@ -128,11 +128,11 @@ def _draw_phase_and_amplitude(data: xr.Dataset) -> Figure:
     return figure
 
 
-# ---- the first reversal of friction: (21) to (26) ------------------------------------------------
+# ---- when the plate's velocity is reached: (21) to (26) ------------------------------------------
 
 
 def first_reversal() -> Exhibit:
-    """When friction first reverses, and which drives never see it."""
+    """When the pin first reaches the plate's velocity, and which drives never do."""
     ratios = np.array([0.0, 0.04, 0.16])
     speed = np.linspace(0.005, 2.0, POINTS)
     r = release(ratios[:, None], speed, 0.2, 1.2)  # d = 1
@@ -173,7 +173,7 @@ def first_reversal() -> Exhibit:
     slow = [float(data.speed[b].max()) if b.any() else 0.0 for b in below.values[1:]]
     return Exhibit(
         "first-reversal",
-        "When friction first reverses (21), and where it never does (26)",
+        "When the pin first reaches the plate's velocity (21), and where it never does (26)",
         "In units of x_0 − x_d and 1/ω_0, the finger frictionless. Left: the exact root, the "
         "paper's bound π + 2φ_0 (dashed) and the right one π + 2(φ_0 − φ′_0) (dotted). Right: "
         f"{found.sizes['ratio_of_map']} × {found.sizes['speed_of_map']} exact simulations, and "
@@ -184,7 +184,7 @@ def first_reversal() -> Exhibit:
             "The paper's bound, below which ωt_1 should never be, is above it for mouse speeds up "
             f"to {slow[0]:.2g} at ζ = 0.04 and {slow[1]:.2g} at ζ = 0.16 (in units of "
             "ω_0 (x_0 − x_d)).",
-            "The line from (26) parts the simulations that reverse from those that do not: "
+            "The line from (26) parts the simulations that reach it from those that do not: "
             f"{int((reverses == foretold).sum())} of {reverses.size} lie on its right side.",
         ),
     )
@@ -219,7 +219,7 @@ def _draw_first_reversal(data: xr.Dataset) -> Figure:
         gid="reverses",
     )
     right.plot(data.speed_of_map, data.limit, color="black", gid="limit")
-    right.annotate("friction reverses", (0.04, 0.1), fontsize=SMALL)
+    right.annotate("reaches the plate's velocity", (0.04, 0.1), fontsize=SMALL)
     right.annotate("it never does", (1.1, 0.4), fontsize=SMALL)
     right.annotate("limit case (26)", (0.3, 0.29), fontsize=SMALL)
     right.set_ylabel(r"damping ratio $\zeta$")

@@ -1,7 +1,8 @@
 """The paper's equations as they are printed, where that differs from the corrected ones.
 
 For the comparison alone: each has the name of its corrected twin in `formulas.py`. What a printed
-equation refers to is taken right, so that each answers for its own slip.
+equation refers to is taken right, so that each answers for its own slip. (10) is not here: its
+units do not agree, so that it has no value.
 """
 
 from __future__ import annotations
@@ -18,13 +19,6 @@ def initial_phase(r: Releases) -> Array:
     w = formulas.damped_frequency(r)
     with np.errstate(divide="ignore"):
         return np.arctan(r.mouse_velocity / (w * d) - formulas.decay_rate(r) / w)
-
-
-def velocity_phase(r: Releases) -> Array:
-    """(10): arctg(b ω_0 / sqrt(4k² - b²)), whose units do not agree; SI values are put in."""
-    square = 4 * r.stiffness**2 - r.damping**2
-    root = np.sqrt(np.where(square > 0.0, square, np.nan))
-    return np.arctan(r.damping * formulas.natural_frequency(r) / root)
 
 
 def peak_displacement(r: Releases) -> Array:

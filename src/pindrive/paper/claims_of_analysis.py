@@ -33,7 +33,7 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
     r = facts.r
     back, start = np.abs(facts.number("return_velocity")), r.mouse_velocity
     t_1 = facts.number("first_reversal_time")
-    reverses = np.isfinite(t_1)
+    reaches = np.isfinite(t_1)
     yield Claim(
         _PLACE,
         "The absolutely largest pin velocity value (negative, v_m,b) will be obtained at the "
@@ -41,13 +41,14 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         back >= start,
         "printed-forms",
         f"v_m,b is in size at least v_p, the velocity at the release, in {share(back >= start)} "
-        f"releases; of those whose friction reverses, in {share((back >= start)[reverses])}. "
+        f"releases; of those that reach it again, in {share((back >= start)[reaches])}. "
         "Heavily damped, or from x_0 near x_d, the pin is never again as fast as at its release.",
-        "friction reverses afterwards",
-        reverses,
+        "the pin reaches the plate's velocity afterwards",
+        reaches,
     )
-    angle = (formulas.damped_frequency(r) * t_1)[reverses]
-    phase, lag = formulas.initial_phase(r)[reverses], formulas.velocity_phase(r)[reverses]
+    yield _change_of_direction(r.take(reaches), t_1[reaches])
+    angle = (formulas.damped_frequency(r) * t_1)[reaches]
+    phase, lag = formulas.initial_phase(r)[reaches], formulas.velocity_phase(r)[reaches]
     above, right = angle > np.pi + 2 * phase, angle >= np.pi + 2 * (phase - lag) - TINY
     yield Claim(
         _PLACE,
@@ -55,10 +56,10 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "which is larger, than π + 2φ_0.",
         above,
         "first-reversal",
-        f"True of {share(above)} releases that reverse: not of slow mice. ωt_1 ≥ π + 2(φ_0 − φ′_0) "
-        f"is true of {share(right)}.",
+        f"True of {share(above)} releases that reach v_p again: not of slow mice. "
+        f"ωt_1 ≥ π + 2(φ_0 − φ′_0) is true of {share(right)}.",
     )
-    yield from _first_reversal(r.take(reverses), t_1[reverses])
+    yield from _first_reversal(r.take(reaches), t_1[reaches])
     whole = whole_motion(facts)
     solved = r.batch()["status"].to_numpy() == 0
     yield Claim(
@@ -66,17 +67,41 @@ def of_the_analysis(facts: Facts) -> Iterator[Claim]:
         "For the general case equation (1) is to be solved by computer methods.",
         ~whole,
         "first-reversal",
-        f"(6) is the whole motion in {share(whole[~reverses])} releases whose friction never "
-        f"reverses, and elementary forms give it in {share(whole[reverses])} of the others. By "
-        f"computer, with closed forms from event to event, {share(solved[reverses])} of these are "
-        "solved.",
-        "friction reverses",
-        reverses,
+        f"(6) is the whole motion in {share(whole[~reaches])} releases that never reach v_p again. "
+        f"Of the others, the general case, the elementary forms that are known give "
+        f"{share(whole[reaches])}; that there is no other is not proved. By computer, with closed "
+        f"forms from event to event, {share(solved[reaches])} of these are solved.",
+        meets=reaches,
+        excludes=True,
+    )
+
+
+def _change_of_direction(r: Releases, t_1: Array) -> Claim:
+    """What is said to happen at t_1; `r` are the releases that reach v_p then."""
+    passes, keeps = np.zeros(t_1.size, dtype=bool), np.zeros(t_1.size, dtype=bool)
+    for i in range(t_1.size):
+        motion = population.motion_of(r, i)
+        time, kind = next((e.time, e.kind) for e in motion.events if e.contact == "plate")
+        passes[i] = kind == "reverse"
+        pull = r.stiffness[i] * motion.position(time) + r.damping[i] * r.mouse_velocity[i]
+        keeps[i] = not passes[i] and pull > 0.0
+    caught = ~passes
+    return Claim(
+        _PLACE,
+        "The pin will stop and dry friction force will change the direction at t_1, when pin "
+        "velocity in respect of the mouse will reach value v_p",
+        ~keeps,
+        "first-reversal",
+        f"t_1 is when the pin first reaches the plate's velocity. {share(passes)} releases pass "
+        f"it, and friction turns; {share(caught)} are caught by the plate and carried, and in "
+        f"{share(keeps[caught])} of these friction keeps its direction as it holds the pin.",
+        "the plate does not catch the pin",
+        passes,
     )
 
 
 def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
-    """What is said of t_1; `damped` are the releases whose friction reverses, at `t_1`."""
+    """What is said of t_1; `damped` are the releases that reach v_p again, at `t_1`."""
     undamped = damped.replace(damping=0.0)
     beyond = undamped.displacement > formulas.friction_offset(undamped)
     undamped = undamped.take(beyond & (undamped.mouse_velocity > 0.0))
@@ -89,13 +114,14 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
         "Becomes clear that the analytical solution is impossible",
         ~np.concatenate([without, with_form, at_limit]),
         "first-reversal",
-        "(22) holds t_1 in an exponential and in a sine: no elementary closed form is known. The "
-        f"two that exist, ωt_1 = π + 2φ_0 and (26), solve it in {share(with_form)} releases "
+        "(22) holds t_1 in an exponential and in a sine: no elementary closed form is known, and "
+        "that there is none is not proved, neither in the paper nor here. The two that are known, "
+        f"ωt_1 = π + 2φ_0 and (26), solve it in {share(with_form)} releases "
         f"without damping and {share(at_limit)} limit cases, and in {share(without)} others. It is "
         f"computable all the same: t_1 is a root that can be isolated and found to rounding, and "
         f"{t_1.size} of them satisfy (21) to ${at_most(float(residual.max()))}$ of ω_0 X_m,0.",
-        "analytical means an elementary closed form, there is damping, and it is no limit case",
-        np.arange(without.size + with_form.size + at_limit.size) < without.size,
+        meets=np.arange(without.size + with_form.size + at_limit.size) < without.size,
+        excludes=True,
     )
     own = formulas.first_reversal_time(damped)
     unknown = np.abs(own - t_1) * formulas.natural_frequency(damped) > TINY
@@ -121,45 +147,48 @@ def _first_reversal(damped: Releases, t_1: Array) -> Iterator[Claim]:
         "thus dry friction force do not change its direction.",
         np.concatenate([at_limit & both, ~without, ~with_form]),
         "first-reversal",
-        f"By (26), corrected, in {share(at_limit)} limit cases; there 0.1 % more damping ends the "
-        f"reversal and 0.1 % less does not in {share(stops['damping'])}, the same of mouse "
-        f"velocity in {share(stops['mouse_velocity'])}. With damping in {share(without)} others; "
-        f"without damping in {share(with_form)} outside the limit case too.",
-        "there is damping",
-        np.arange(both.size + without.size + with_form.size) < both.size + without.size,
+        f"Available it is there, by (26), corrected, in {share(at_limit)} limit cases; there 0.1 % "
+        f"more damping keeps the pin below v_p and 0.1 % less does not in "
+        f"{share(stops['damping'])}, the same of mouse velocity in "
+        f"{share(stops['mouse_velocity'])}. “Only” is not proved: with damping no other form is "
+        f"known, and (26) and ωt_1 = π + 2φ_0 solve {share(without)} others; without damping "
+        f"{share(with_form)} outside the limit case.",
+        meets=np.arange(both.size + without.size + with_form.size) < both.size + without.size,
+        excludes=True,
     )
 
 
 def whole_motion(facts: Facts) -> Truth:
     """Whether elementary expressions give the whole motion, of each release."""
     r = facts.r
-    reverses = np.isfinite(facts.number("first_reversal_time"))
-    one_piece = r.take(~reverses)
+    reaches = np.isfinite(facts.number("first_reversal_time"))
+    one_piece = r.take(~reaches)
     end = 3 * formulas.limit_reversal_time(one_piece)
     position = one_piece.batch(duration=end, outputs=["final_position"])["final_position"]
     off = np.abs(position.to_numpy() - formulas.position(end, one_piece))
     whole = np.zeros(r.shape, dtype=bool)
-    whole[~reverses] = off < TINY * formulas.amplitude(one_piece)
-    whole[reverses] = has_closed_form(r.take(reverses))
+    whole[~reaches] = off < TINY * formulas.amplitude(one_piece)
+    whole[reaches] = has_closed_form(r.take(reaches))
     return whole
 
 
 def no_closed_form(facts: Facts) -> Iterator[Claim]:
     """The conclusion on the law of motion."""
-    reverses, whole = np.isfinite(facts.number("first_reversal_time")), whole_motion(facts)
+    reaches, whole = np.isfinite(facts.number("first_reversal_time")), whole_motion(facts)
     yield Claim(
         "Conclusions",
         "It was defined that the law of motion of the pin can not be obtained analytically in "
         "general case when damping is taken into account.",
         ~whole,
         "first-reversal",
-        f"(6) is the whole motion in {share(whole[~reverses])} releases whose friction never "
-        f"reverses. Where it does, in {int(reverses.sum())}, (6) holds between two reversals, and "
-        f"their times have an elementary closed form in {share(whole[reverses])}: each is a root, "
-        "found to rounding with certainty, which is how `simulate` follows the pin without steps "
-        "or tolerances.",
-        "friction reverses, and analytically means by elementary closed forms throughout",
-        reverses,
+        f"(6) is the whole motion in {share(whole[~reaches])} releases that never reach v_p again. "
+        f"Where one does, in {int(reaches.sum())}, (6) and its like hold from event to event. No "
+        "elementary closed form of the times of the events is known, and that there is none is not "
+        f"proved; those that are known give {share(whole[reaches])}. Each is a root, found to "
+        "rounding with certainty, which is how `simulate` follows the pin without steps or "
+        "tolerances.",
+        meets=reaches,
+        excludes=True,
     )
 
 

@@ -22,7 +22,7 @@ PARTS: Final = {
     "steel plate": (1.2, 0.55),
     "pin": (4.6, 3.6),
     "damper": (2.6, 1.35),
-    "fingertip": (5.0, 5.55),
+    "fingertip": (5.15, 5.6),
     "control block": (8.0, 3.35),
 }
 """Where each part is named; the first five have the paper's numbers 1 to 5."""
@@ -34,6 +34,7 @@ SYMBOLS: Final = (
     ("$\\zeta$", "damping ratio, $b/2\\sqrt{mk}$", "1", "damping factor, perhaps"),
     ("$F_p$", "friction force of the plate, sliding", "N", "$F_1$ in (1), $F_2$ from (2) on"),
     ("$F_f$", "friction force of the finger, sliding", "N", "$F_2$ in (1), $F_1 = 0$ from (2) on"),
+    ("$N_p$", "normal force of the plate: weight, preload and pull", "N", "none"),
     ("$N_f$", "touch force of the finger on the pin", "N", "system load"),
     ("$v_p$", "velocity of the plate past the mouse", "m/s", "$v_p$, defined twice"),
     ("$x_0$", "deflection at the release", "m", "$x_0$"),
@@ -52,7 +53,7 @@ SYMBOLS: Final = (
     ("$t_a,\\ x_{m,a}$", "first maximum of the displacement", "s, m", "the same"),
     ("$t_b,\\ v_{m,b}$", "extreme return velocity", "s, m/s", "the same"),
     ("$t_c,\\ x_{m,c}$", "minimum that follows", "s, m", "the same"),
-    ("$t_1$", "friction of the plate first reverses", "s", "$t_1$"),
+    ("$t_1$", "when the pin first reaches the plate's velocity", "s", "$t_1$"),
     ("$t_s,\\ x_{end}$", "time of the transitional period; where the pin ends", "s, m", "words"),
     ("$t_f$", "fall time of the magnet's pull", "s", "none"),
 )
@@ -83,8 +84,11 @@ def device() -> Exhibit:
             "Frame: x and all velocities are seen from the mouse. Positive is the way in which "
             "the plate passes under it, against the mouse's own motion. The pin is released at "
             "x_0 with the plate's velocity v_p.",
-            "Friction opposes sliding: the plate's force F_p is against ẋ − v_p, the finger's F_f "
-            "against ẋ. The arrows show both as the pin returns, ẋ < 0.",
+            "All forces drawn act on the moving body, electromagnet and pin. From the plate: its "
+            "normal force N_p, which carries weight, preload and the magnet's pull, and its "
+            "friction F_p, against ẋ − v_p. From the fingertip: the touch force N_f and its friction F_f, "
+            "against ẋ; the arrows of friction show the pin as it returns, ẋ < 0. Plate and finger "
+            "feel the opposite of each.",
         ),
         (("symbol", "meaning", "unit", "in the paper"), *SYMBOLS),
     )
@@ -129,8 +133,11 @@ def _draw(data: xr.Dataset) -> Figure:
     axes.plot([5.15, 5.15], [-0.55, -0.15], color="black", lw=0.7)
     _arrow(axes, (8.2, 0.55), (9.8, 0.55), "$v_p$", (10.0, 0.55), PALETTE["curve"])
     _arrow(axes, (1.0, 5.2), (0.2, 5.2), "the hand's motion", (0.2, 5.55), GREY)
-    _arrow(axes, (6.25, 1.08), (7.2, 1.08), "$F_p$", (7.3, 1.12), PALETTE["stick"])
-    _arrow(axes, (5.35, 4.55), (6.2, 4.55), "$F_f$", (6.3, 4.6), PALETTE["stick"])
+    force = PALETTE["stick"]
+    _arrow(axes, (6.2, 0.97), (7.1, 0.97), "$F_p$ on 1", (7.2, 1.12), force)
+    _arrow(axes, (4.6, 0.3), (4.6, 0.95), "$N_p$ on 1", (3.35, 0.45), force)
+    _arrow(axes, (5.3, 4.3), (6.15, 4.3), "$F_f$ on 5", (6.15, 4.72), force)
+    _arrow(axes, (5.15, 5.2), (5.15, 4.4), "$N_f$ on 5", (5.3, 4.95), force)
     return figure
 
 

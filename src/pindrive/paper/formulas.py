@@ -316,15 +316,14 @@ def _extreme(r: Releases, t: Array) -> Array:
     return _fading(r, t) * amplitude(r) * np.cos(velocity_phase(r))
 
 
-# ---- the first reversal of friction: (21) to (26) ------------------------------------------------
+# ---- when the plate's velocity is reached: (21) to (26) ------------------------------------------
 
 
 def first_reversal_time(r: Releases) -> Array:
     """t_1, s, the root of (21) and (22): the pin comes back to the plate's velocity.
 
     The paper calls it analytically impossible; it is the exact root that the core isolates, in
-    every case. NaN where friction does not reverse: the velocity does not come up to v_p again, or
-    there is no friction.
+    every case. NaN where the velocity does not come up to v_p again, or there is no friction.
     """
     late = limit_reversal_time(r) * (1 + 1e-9)
     found = r.batch(duration=np.where(late > 0.0, late, 1.0))
@@ -344,27 +343,27 @@ def limit_reversal_time(r: Releases) -> Array:
 def forward_velocity(r: Releases) -> Array:
     """The extreme velocity on the way forward, m/s: (21) at the time (26).
 
-    Friction reverses if it reaches v_p; in the limit case it is v_p. (23) is meant to say so but
+    In the limit case it is v_p. (23) is meant to say so but
     has 2 φ'_0 where (9) and (21) have φ'_0.
     """
     return natural_frequency(r) * _extreme(r, limit_reversal_time(r))
 
 
 def limit_damping_ratio(r: Releases) -> Array:
-    """The damping ratio of the limit case: with more, friction never reverses after this release.
+    """The damping ratio of the limit case: with more, v_p is never reached after this release.
 
     Where the extreme (26) of the velocity is v_p, by bisection: (26) gives t_1 there, but not when
-    the case occurs. It depends on v_p / (ω_0 d) alone. 0 where no drive with damping reverses
+    the case occurs. It depends on v_p / (ω_0 d) alone. 0 where no drive with damping reaches v_p
     (x_0 <= x_d), 1 for v_p = 0. The damping of `r` does not matter.
     """
     each = r.replace(**{f.name: getattr(r, f.name).reshape(-1, 1) for f in fields(r)})
 
-    def reverses(ratio: Array) -> Array:
+    def beyond(ratio: Array) -> Array:
         damped = each.replace(damping=2 * ratio * np.sqrt(each.mass * each.stiffness))
         return np.where(forward_velocity(damped) >= each.mouse_velocity, 1.0, -1.0)
 
     least, most = np.full(each.mass.size, np.finfo(float).eps), np.ones(each.mass.size)
-    return roots(reverses, least, most, most).reshape(r.shape)
+    return roots(beyond, least, most, most).reshape(r.shape)
 
 
 # ---- the steady state, and rest ------------------------------------------------------------------

@@ -34,20 +34,23 @@ figure > div { background: #fff; border: 1px solid var(--line); border-radius: 6
   padding: .75rem; overflow-x: auto; }
 figure svg { display: block; width: 100%; height: auto; min-width: 34rem; }
 ul { padding-left: 1.2rem; max-width: 46rem; } li { margin: .3rem 0; }
-.wide { overflow-x: auto; margin: 1rem 0; }
-table { border-collapse: collapse; font-size: .9rem; width: 100%; }
+table { margin: 1rem 0; border-collapse: collapse; font-size: .9rem; width: 100%; }
 th { text-align: left; font-weight: 600; color: var(--soft); }
 th, td { padding: .45rem .8rem .45rem 0; border-bottom: 1px solid var(--line);
   vertical-align: top; }
 tbody tr:hover { background: var(--wash); }
 td math { white-space: nowrap; line-height: 2; }
 math { font-size: 1.08em; } mover > mo { font-weight: bold; }
-td:nth-child(n+4) { white-space: nowrap; font-variant-numeric: tabular-nums; }
-td:nth-child(3) { min-width: 9rem; }
+td:nth-child(n+4) { font-variant-numeric: tabular-nums; }
 td em { display: block; color: var(--soft); font-size: .82rem; font-style: normal; }
 td strong { font-weight: 600; }
 .holds { color: var(--good); } .part { color: var(--part); } .not { color: var(--bad); }
 .done { color: var(--link); } .open { color: var(--soft); }
+@media screen and (max-width: 52rem) {
+  table, tbody, tr, td { display: block; } thead { display: none; }
+  tr { border-bottom: 1px solid var(--line); padding: .5rem 0; }
+  td { border: 0; padding: .1rem 0; } td math { font-size: .82em; } td:empty { display: none; }
+  td[data-of]:not([data-of=""])::before { content: attr(data-of) ": "; color: var(--soft); } }
 @page { size: A4; margin: 12mm; }
 @media print {
   :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #444; --line: #bbb;
@@ -55,13 +58,13 @@ td strong { font-weight: 600; }
   body { font-size: 9pt; } nav { display: none; }
   main, p, ul { max-width: none; } main { padding: 0; }
   h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; }
-  .wide, figure > div { overflow: visible; } figure svg { min-width: 0; }
+  figure > div { overflow: visible; } figure svg { min-width: 0; }
   table { font-size: 7pt; } th, td { padding-right: .5em; overflow-wrap: anywhere; }
   td:first-child { overflow-wrap: normal; }
   td:nth-child(n) { white-space: normal; min-width: 0; } td em { font-size: 1em; } }
 """
 _KINDS: Final = {
-    **{"holds when": "part", "holds": "holds", "does not hold": "not"},
+    **{"holds when": "part", "holds": "holds", "does not hold": "not", "not proved": "part"},
     **{"done here": "done", "not done here": "not", "not judged": "open"},
 }
 """The class of a verdict by how it begins."""
@@ -92,8 +95,7 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
         lambda found: f'<strong class="{_KINDS[found[1]]}">{found[1]}',
         body,
     )
-    body = body.replace("<table>", '<div class="wide"><table>')
-    body = body.replace("</table>", "</table></div>")
+    body = re.sub(r"<table>.*?</table>", lambda found: _labelled(found[0]), body, flags=re.DOTALL)
     sections = re.findall(r'<h2 id="([^"]*)">(.*)</h2>', body)
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title in sections)
     title = re.sub(r"<[^>]+>", "", re.findall(r"<h1[^>]*>(.*)</h1>", body)[0])
@@ -104,6 +106,18 @@ def page(text: str, pictures: Mapping[str, bytes]) -> str:
         + body.replace("<h2", f"<nav>{links}</nav>\n<h2", 1)
         + "</main>\n</body>\n</html>\n"
     )
+
+
+def _labelled(table: str) -> str:
+    """A table whose cells know their heading, which stands before each where rows are stacked."""
+    head, begin, rows = table.partition("<tbody>")
+    names = re.findall(r"<th>(.*?)(?:<br>.*?)?</th>", head, re.DOTALL)
+
+    def row(found: re.Match[str]) -> str:
+        of = iter(names)
+        return re.sub("<td>", lambda _: f'<td data-of="{next(of)}">', found[0])
+
+    return head + begin + re.sub(r"<tr>.*?</tr>", row, rows, flags=re.DOTALL)
 
 
 def anchor(title: str) -> str:

@@ -2,8 +2,9 @@
 
 Each set is drawn from one seed and therefore reproducible. A sentence holds if it is true of all;
 it holds under a condition if it is true of all that meet the condition and not of all others; else
-it does not hold. What the authors say that they did is no sentence about the drive: it is done here
-if it succeeds on all. What has no trial is not judged.
+it does not hold. That something cannot be, no trial shows: it is not proved. What the authors say
+that they did is no sentence about the drive: it is done here if it succeeds on all. What has no
+trial is not judged.
 """
 
 from __future__ import annotations
@@ -126,7 +127,7 @@ class Facts:
 
     @cached_property
     def until(self) -> Array:
-        """Until when the analysis holds, or (26) where friction never reverses."""
+        """Until when the analysis holds, or (26) where v_p is never reached."""
         t_1 = self.number("first_reversal_time")
         return np.where(np.isnan(t_1), formulas.limit_reversal_time(self.r), t_1)
 
@@ -209,19 +210,23 @@ class Claim:
     """Of each trial: whether it meets the condition."""
     done: bool = False
     """Whether it says what the authors did, so that the trials are of doing the same here."""
+    excludes: bool = False
+    """Whether it says that something cannot be, so that trials can contradict it alone."""
 
     @property
     def verdict(self) -> str:
-        """Holds, holds when …, does not hold; done here or not; or not judged."""
+        """Holds, holds when …, does not hold, not proved; done here or not; or not judged."""
         if self.true is None:
             return "not judged"
         if self.done:
             return "done here" if self.true.all() else "not done here"
-        if self.true.all():
-            return "holds"
-        if self.meets is not None and self.meets.any() and self.true[self.meets].all():
-            return f"holds when {self.condition}"
-        return "does not hold"
+        everywhere = self.true.all()
+        where = self.meets is not None and self.meets.any() and self.true[self.meets].all()
+        if self.excludes and (everywhere or where):
+            return "not proved"
+        return (
+            "holds" if everywhere else f"holds when {self.condition}" if where else "does not hold"
+        )
 
 
 def swing(found: xr.Dataset) -> Array:

@@ -69,18 +69,21 @@ class Report:
     def summary(self) -> str:
         """The result in a paragraph."""
         count = Counter(claim.verdict.split(" when ")[0] for claim in self.claims)
+        unproved = count["not proved"]
         whole = sum(c.verdict == "holds" for c in self.claims)
-        judged = count["holds"] + count["does not hold"]
+        judged = count["holds"] + count["does not hold"] + unproved
         wrong = [row.number for row in self.rows if row.right]
         return (
             f"Of {judged} statements about the drive, {whole} hold, {count['holds'] - whole} hold "
-            f"under a condition that they do not name, and {count['does not hold']} do not hold; "
+            f"under a condition that they do not name, {count['does not hold']} do not hold, and "
+            f"{unproved}, that there is no analytical solution, are not proved; "
             f"{count['done here']} say what its authors did and are done here, "
             f"{count['not judged']} are of scope and not judged. Of its equations, "
             f"({'), ('.join(wrong)}) need correction; corrected, all agree with the exact "
-            "simulator to rounding, until friction first reverses. When that is has no elementary "
-            "closed form, as the paper says; it is a root of (21) that can be isolated and is "
-            "found to rounding."
+            "simulator to rounding, until the pin first reaches the plate's velocity. For the time "
+            "of that no elementary closed form is known; it is a root of (21) that can be isolated "
+            "and is found to rounding. All this was worked from the paper's text, number 298 of "
+            "its journal, as it came: without its figures and without the names of its authors."
         )
 
     @property
@@ -95,26 +98,29 @@ class Report:
 
     def equation_cells(self) -> list[tuple[str, ...]]:
         """The table of equations: headings, and a row each; formulas as TeX between dollars."""
-        headings = (
-            *("", "as printed\nright form", "compared", "printed off by, at worst"),
-            *(f"for ζ ≤ {max(FACTORS):g}", f"by at most {GOOD:g}", "right off by"),
-        )
-        table: list[tuple[str, ...]] = [headings]
+        table: list[tuple[str, ...]] = [
+            ("", "as printed\nright form", "compared", "off by at worst")
+        ]
         for row in self.rows:
             forms = f"${row.printed}$\n" + (f"${row.right}$" if row.right else "as printed")
-            off = [
-                f"{x:.2g}" if row.right else "" for x in (row.off_printed, row.off_lightly_damped)
-            ]
-            right = f"${at_most(row.off_right)}$"
-            table.append((f"({row.number})", forms, row.against, *off, row.good, right))
+            off = f"${at_most(row.off_right)}$"
+            if row.good:
+                off = (
+                    f"printed: {row.off_printed:.2g}, {row.off_lightly_damped:.2g} for "
+                    f"ζ ≤ {max(FACTORS):g}; at most {GOOD:g}: {row.good}\nright: {off}"
+                )
+            elif row.right:
+                off = f"printed: no number\nright: {off}"
+            table.append((f"({row.number})", forms, row.against, off))
         return table
 
     def slips(self) -> str:
         """What else is wrong with the text around the equations."""
         return (
-            "Beside these: one clash of labels, (1) gives F_1 to the plate and F_2 to the finger, "
-            "the analysis then says F_1 = 0 and keeps the plate's friction as F_2; (22) is said to "
-            "follow from (17) and follows from (21); v_p is defined twice."
+            "(1) needs two corrections: the signs, and F_1 and F_2 exchanged. As printed F_1 is "
+            "the plate's friction; the analysis sets F_1 = 0 for a pin that does not slide along the "
+            "finger and keeps F_2 as the plate's. Beside these, (22) is said to follow from (17) "
+            "and follows from (21), and v_p is defined twice."
         )
 
     def trials(self) -> xr.Dataset:
