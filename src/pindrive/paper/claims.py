@@ -328,8 +328,8 @@ def _of_the_simulation(facts: Facts, equations: list[Row]) -> Iterator[Claim]:
         np.array([not row.right for row in equations] + [right < TINY]),
         "equations",
         f"As printed, {len(wrong)} of {len(equations)} rows of the table of equations are wrong, "
-        f"by up to {np.nanmax([row.off_printed for row in wrong]):.2g} where the error is a number; "
-        f"corrected, all are right to ${at_most(right)}$.",
+        f"by up to {np.nanmax([row.off_printed for row in wrong]):.2g} where the error is a "
+        f"number; corrected, all are right to ${at_most(right)}$.",
         "the equations are corrected, and until the pin first reaches the plate's velocity",
         np.array([False] * len(equations) + [True]),
     )

@@ -86,9 +86,9 @@ def device() -> Exhibit:
             "x_0 with the plate's velocity v_p.",
             "All forces drawn act on the moving body, electromagnet and pin. From the plate: its "
             "normal force N_p, which carries weight, preload and the magnet's pull, and its "
-            "friction F_p, against ẋ − v_p. From the fingertip: the touch force N_f and its friction F_f, "
-            "against ẋ; the arrows of friction show the pin as it returns, ẋ < 0. Plate and finger "
-            "feel the opposite of each.",
+            "friction F_p, against ẋ − v_p. From the fingertip: the touch force N_f and its "
+            "friction F_f, against ẋ; the arrows of friction show the pin as it returns, ẋ < 0. "
+            "Plate and finger feel the opposite of each.",
         ),
         (("symbol", "meaning", "unit", "in the paper"), *SYMBOLS),
     )

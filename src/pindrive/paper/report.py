@@ -118,9 +118,9 @@ class Report:
         """What else is wrong with the text around the equations."""
         return (
             "(1) needs two corrections: the signs, and F_1 and F_2 exchanged. As printed F_1 is "
-            "the plate's friction; the analysis sets F_1 = 0 for a pin that does not slide along the "
-            "finger and keeps F_2 as the plate's. Beside these, (22) is said to follow from (17) "
-            "and follows from (21), and v_p is defined twice."
+            "the plate's friction; the analysis sets F_1 = 0 for a pin that does not slide along "
+            "the finger and keeps F_2 as the plate's. Beside these, (22) is said to follow from "
+            "(17) and follows from (21), and v_p is defined twice."
         )
 
     def trials(self) -> xr.Dataset:
