@@ -175,7 +175,7 @@ enum {
 typedef int pindrive_end;
 enum {
   PINDRIVE_END_MOVING = 0,     /* not known within the duration */
-  PINDRIVE_END_RESTING = 1,    /* at rest for ever */
+  PINDRIVE_END_RESTING = 1,    /* at rest forever */
   PINDRIVE_END_DECAYING = 2,   /* free decay, no further event */
   PINDRIVE_END_FREE = 3,       /* undamped oscillation, no further event */
   PINDRIVE_END_GRAZING = 4,    /* the same, touching the plate's velocity once a period */
@@ -215,7 +215,7 @@ enum {
   PINDRIVE_STOP_FORCE = 7         /* of the end stops on the pin, N */
 };
 
-/* Which limit is asked for at an event. */
+/* Which limit is requested at an event. */
 typedef int pindrive_side;
 enum { PINDRIVE_LEFT = 0, PINDRIVE_RIGHT = 1 };
 
@@ -244,7 +244,7 @@ enum {
   PINDRIVE_CROSSES = 3 /* its sliding velocity changes its sign */
 };
 
-/* One mode of the motion from `begin` to `end` (infinite for one that lasts for ever). */
+/* One mode of the motion from `begin` to `end` (infinite for one that lasts forever). */
 typedef struct pindrive_segment {
   double begin, end;                       /* s */
   double position, velocity, acceleration; /* at its begin: m, m/s, m/s^2 */
@@ -342,17 +342,17 @@ PINDRIVE_API pindrive_error pindrive_stepper_differentiate(const pindrive_drive 
 PINDRIVE_API pindrive_error pindrive_stepper_derivative(const pindrive_stepper *stepper,
                                                         pindrive_stepper **derivative);
 
-/* A stepper in the same state, which goes on to the same bits: so a state is kept and gone back to. */
+/* A stepper in the same state, which continues to the same bits: it keeps a state to return to. */
 PINDRIVE_API pindrive_error pindrive_stepper_copy(const pindrive_stepper *stepper,
                                                   pindrive_stepper **copy);
 
 PINDRIVE_API void pindrive_stepper_free(pindrive_stepper *stepper);
 
 /* Sets "mouse_velocity" or "across_velocity" (m/s, rate m/s^2), "plate_load" or "finger_load" (>= 0, rate
- * 1/s) or "force" (N, rate N/s) from now on: it goes on at its rate until it is set again; a load that has
+ * 1/s) or "force" (N, rate N/s) from now on: it continues at its rate until it is set again; a load that has
  * fallen to zero stays there. A mouse velocity that jumps moves the housing in no time: beside it the pin keeps its
  * velocity, to the plate too, unless a rigid end stop takes it along. Where the velocity across jumps the pin keeps its velocity as well, and the
- * friction turns. A value that differs from the input as it went on by rounding is the same. Of derivatives
+ * friction turns. A value that differs from the continued input by rounding is the same. Of derivatives
  * it is a number, which does not change along the direction. */
 PINDRIVE_API pindrive_error pindrive_stepper_set(pindrive_stepper *stepper, const char *input,
                                                  double value, double rate);

@@ -22,7 +22,6 @@ extensions = [
     "mathml",
     "myst_nb",
     "offline",
-    "pindrive_reference",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
 ]

@@ -39,10 +39,12 @@ def pages() -> list[Path]:
 
 
 def blocks(page: Path) -> list[Block]:
-    """The blocks of a page in their order; directives, such as lists of pages, apart."""
+    """The blocks that a person wrote, in their order; directives, such as lists of pages, apart."""
     found = []
     before = ""
-    for token in MarkdownIt("commonmark").parse(page.read_text("utf-8")):
+    made = r"<!-- made of pindrive: .*?<!-- end -->"
+    text = re.sub(made, lambda m: "\n" * m[0].count("\n"), page.read_text("utf-8"), flags=re.DOTALL)
+    for token in MarkdownIt("commonmark").parse(text):
         if token.type == "fence" and not token.info.startswith("{"):
             assert token.map
             name = page.relative_to(ROOT).as_posix()

@@ -1,19 +1,18 @@
-"""Reference pages that are made of pindrive itself: its commands, its tables and its codes.
+"""The parts of the reference pages that are made of pindrive itself, to be read in a checkout.
 
-The directive `{from-pindrive} NAME` stands for the Markdown that one of `PARTS` makes.
+`python docs/_ext/reference.py` writes them anew, each between two comments that name its part.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
-from typing import Any, ClassVar
+from importlib import import_module
+from inspect import getdoc
+from pathlib import Path
+from typing import Any, Final
 
 import c_header
-from docutils import nodes
-from docutils.statemachine import StringList
-from sphinx.application import Sphinx
-from sphinx.errors import ExtensionError
-from sphinx.util.docutils import SphinxDirective
 from typer.main import get_command
 from typer.testing import CliRunner
 
@@ -46,7 +45,7 @@ def commands() -> str:
     for name in program.list_commands(None):
         said = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "80"})
         if said.exit_code:
-            raise ExtensionError(f"pindrive {name} --help ends with {said.exit_code}")
+            raise RuntimeError(f"pindrive {name} --help ends with {said.exit_code}")
         parts += [f"## {name}", code(said.stdout, "text")]
     return "\n\n".join(parts)
 
@@ -111,36 +110,56 @@ def status() -> str:
     return f"## Status\n\n{first}\n\n## Endings\n\n{table(('ending', 'code'), ends)}"
 
 
-PARTS: dict[str, Callable[[], str]] = {
+def python() -> str:
+    """What each public name is, by the module that has it."""
+    page = (PAGES / "python.md").read_text("utf-8")
+    module, groups = "", dict[str, list[tuple[str, str]]]()
+    for kind, name in re.findall(r"^\.\. (currentmodule|auto\w+):: ([\w.]+)$", page, re.M):
+        if kind == "currentmodule":
+            module = name
+        else:
+            said = getdoc(getattr(import_module(module), name)) or ""
+            groups.setdefault(module, []).append((f"`{name}`", said.partition("\n")[0]))
+    return "\n\n".join(table((f"`{of}`", ""), names) for of, names in groups.items())
+
+
+def wish_file() -> str:
+    """An example of a wish."""
+    return code((EXAMPLES / "tactile-mouse-wish.toml").read_text("utf-8"), "toml")
+
+
+PAGES: Final = Path(__file__).parents[1] / "reference"
+EXAMPLES: Final = Path(__file__).parents[2] / "examples"
+PARTS: Final[dict[str, Callable[[], str]]] = {
     "commands": commands,
     "device-file": device_file,
     "study-file": study_file,
+    "wish-file": wish_file,
     "dataset": dataset,
+    "python": python,
     "status": status,
     "c-header": c_header.reference,
 }
 
 
-class FromPindrive(SphinxDirective):
-    """The directive."""
+def whole(page: str) -> str:
+    """A page with its parts made anew."""
 
-    required_arguments: ClassVar[int] = 1
+    def made(found: re.Match[str]) -> str:
+        return f"{found[1]}\n\n{PARTS[found[2]]()}\n\n{found[3]}"
 
-    def run(self) -> list[nodes.Node]:
-        """The nodes of the Markdown."""
-        text = PARTS[self.arguments[0]]()
-        if "\n## " in text and not text.startswith("## "):
-            raise ExtensionError(
-                f"{self.arguments[0]}: what stands before its first heading would come last"
-            )
-        lines = StringList(text.splitlines(), source="pindrive")
-        inside = nodes.section()
-        inside.document = self.state.document
-        self.state.nested_parse(lines, self.content_offset, inside, match_titles=True)
-        return inside.children
+    begin, end = r"(<!-- made of pindrive: (\S+) -->)", "(<!-- end -->)"
+    return re.sub(f"{begin}.*?{end}", made, page, flags=re.DOTALL)
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
-    """Make the directive known."""
-    app.add_directive("from-pindrive", FromPindrive)
-    return {"parallel_read_safe": True, "env_version": 1}
+def main() -> None:
+    """Write the pages that have changed."""
+    for path in sorted(PAGES.glob("*.md")):
+        text = path.read_text("utf-8")
+        if (now := whole(text)) != text:
+            path.write_text(now, "utf-8")
+            print(f"Wrote {path}")
+
+
+if __name__ == "__main__":
+    main()
