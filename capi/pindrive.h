@@ -84,7 +84,7 @@ PINDRIVE_API pindrive_drive *pindrive_drive_new(void);
 PINDRIVE_API void pindrive_drive_free(pindrive_drive *drive);
 
 /* Sets a number of a drive. Names, units, and ranges, which pindrive_simulate() checks:
- *   mass              kg     > 0: electromagnet and pin
+ *   mass              kg     > 0: of the moving body, in a device electromagnet and pin
  *   stiffness         N/m    > 0: spring
  *   damping           N s/m  >= 0
  *   plate.kinetic     N      >= 0: kinetic friction; sets plate.static too, which may follow

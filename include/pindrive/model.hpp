@@ -109,7 +109,7 @@ struct Stops {
 
 template <class T>
 struct Drive {
-  T mass;                    ///< electromagnet and pin, kg; > 0
+  T mass;                    ///< of the moving body: in a device electromagnet and pin, kg; > 0
   T stiffness;               ///< spring, N/m; > 0
   T damping;                 ///< damper, N s/m; >= 0
   Contact<T> plate, finger;  ///< the plate is rigid

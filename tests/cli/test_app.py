@@ -67,6 +67,15 @@ def test_simulate_says_what_follows_from_other_values() -> None:
     ]
 
 
+def test_a_drive_without_a_device_is_a_body() -> None:
+    for command in ("check", "simulate"):
+        for file in (EXAMPLE, SKIN):
+            said = run(command, file)
+            assert "electromagnet" not in said.output + said.stderr
+    assert "the body" in run("check", EXAMPLE).stdout
+    assert "electromagnet" in run("check", EXAMPLES / "tactile-reader.toml").stdout
+
+
 def test_simulate_warns_of_what_check_warns_of() -> None:
     given = (EXAMPLE, "--set", "plate.kinetic=60 mN")
     simulated, checked = run("simulate", *given), run("check", *given)

@@ -150,14 +150,14 @@ class Drive:
     Every number may also be text with a unit, such as "12 g"; a bare number is SI.
 
     Args:
-        mass: electromagnet and pin, kg, from 1e-12 to 1e12.
+        mass: of the moving body, in a device electromagnet and pin, kg, from 1e-12 to 1e12.
         stiffness: of the spring, N/m, from 1e-12 to 1e12.
         damping: viscous, N*s/m, from 0 to 1e12.
         damping_ratio: in place of damping, b / (2 sqrt(m k)), 0 or from 1e-11 to 1e6.
-        plate: friction of the moving plate on the electromagnet; given by a coefficient it is
+        plate: friction of the moving plate on the body; given by a coefficient it is
             that of weight and preload (and the pull, by which a load multiplies it).
         finger: friction of the resting fingertip on the pin; by a coefficient, of `touch_force`.
-        preload: what presses the electromagnet on the plate beside weight and pull, N, from 0 to
+        preload: what presses the body on the plate beside weight and pull, N, from 0 to
             1e12.
         touch_force: with which the finger presses on the pin, N, from 0 to 1e12; for a finger
             given by a coefficient alone.
@@ -265,7 +265,7 @@ class Drive:
 
     @property
     def normal_force(self) -> float:
-        """What presses the electromagnet on the plate without any pull, N: weight and preload."""
+        """What presses the body on the plate without any pull, N: weight and preload."""
         return float(normal_force("plate", partial(getattr, self)))
 
     @property
