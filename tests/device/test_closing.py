@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from math import log, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -307,19 +305,6 @@ def test_a_scan_is_written_with_the_lift_and_without_what_is_not_given() -> None
         assert data.lift == 9e-5 and data.closing_force == 0.3
         assert "heat_capacity" not in data.attrs
         assert float(data.current.max()) > 0.99 and float(data.pull.max()) > 3.8
-
-
-def test_the_example_of_the_page_prints_what_it_says() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "devices.md").read_text("utf-8")
-    code, said = next(
-        part.split("```\n\n```text\n")
-        for part in page.split("```python\n")
-        if "closing_force=" in part
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", check=True
-    )
-    assert done.stdout == said.partition("```")[0]
 
 
 @pytest.mark.parametrize(
