@@ -26,7 +26,7 @@ inline namespace PINDRIVE_TARGET {
 inline constexpr double near_grazing = 1e-9;
 /// Half turns that are followed; each costs a few operations, of a whole pack if one drive needs it.
 inline constexpr int most_half_turns = 4096;
-/// Rounds of a release: some ten milliseconds of a pack.
+/// Rounds that are followed before a release is left to the general core.
 inline constexpr int most_rounds = 1 << 18;
 
 /// A round, from and to a progress. `Later`: not the first one.
