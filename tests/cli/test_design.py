@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -42,7 +43,9 @@ def inputs(in_empty_folder: None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
-    done = run("design", "wish.toml", "-o", "out")
+    files = ("design.toml", "design.nc", "design.json", "design.png")
+    outputs = [word for file in files[:3] for word in ("-o", file)]
+    done = run("design", "wish.toml", *outputs, "--plot", files[3])
     assert done.exit_code == 0, done.output
     for words in (
         "Design: short",
@@ -52,27 +55,28 @@ def test_a_design_is_printed_and_written_or_the_closest_to_it() -> None:
     ):
         assert words in done.stdout
     assert "Yield within the tolerances: " in done.stdout
-    assert done.stdout.endswith("Wrote out\n")
-    names = {path.name for path in Path("out").iterdir()}
-    assert names == {"design.toml", "design.nc", "design.png", "transient.png"}
-    text = Path("out/design.toml").read_text("utf-8")
+    assert done.stdout.endswith("".join(f"Wrote {file}\n" for file in files))
+    text = Path("design.toml").read_text("utf-8")
     assert text.startswith("# Designed by pindrive.\n# Wish: wish.toml, short; seed 1.\n")
-    device = load_device("out/design.toml")
-    with xr.open_dataset("out/design.nc", engine="h5netcdf") as data:
+    device = load_device("design.toml")
+    with xr.open_dataset("design.nc", engine="h5netcdf") as data:
         assert float(data.damping) == device.drive.damping
         assert float(data.transient_settling_time) > 0.0
         settling = float(data.transient_settling_time)
-    simulated = run("simulate", "out/design.toml")
+    numbers = json.loads(Path("design.json").read_text("utf-8"))
+    assert numbers["variables"]["transient_settling_time"]["values"] == settling
+    assert Path("design.png").read_bytes().startswith(b"\x89PNG")
+    simulated = run("simulate", "design.toml")
     assert f"{1e3 * settling:.4g}"[:5] in simulated.stdout
 
-    # No design is an answer too, with the closest and its own status; it replaces the earlier one.
+    # No design is an answer too, with the closest and its own status.
     Path("wish.toml").write_text(WISH.replace(">= 2.2 mm", ">= 5 mm"))
-    done = run("design", "wish.toml", "-o", "out")
+    done = run("design", "wish.toml", "-o", "design.toml", "--force")
     assert done.exit_code == NONE_MEETS == 1
     assert "No design meets this: the closest misses peak_displacement ≥ 5 mm by " in done.stdout
-    text = Path("out/design.toml").read_text("utf-8")
+    text = Path("design.toml").read_text("utf-8")
     assert "# No design meets the demands; the closest misses peak_displacement" in text
-    load_device("out/design.toml")
+    load_device("design.toml")
 
 
 def test_tables_show_values_in_their_units() -> None:
@@ -96,21 +100,23 @@ def test_tables_show_values_in_their_units() -> None:
     assert float(rows["minimise"][2]) == pytest.approx(1e3 * found.goals[0].value, rel=1e-3)
 
 
-def test_a_folder_that_holds_something_else_is_refused() -> None:
-    Path("out").mkdir()
-    Path("out/notes.txt").write_text("mine")
-    line = refused("design", "wish.toml", "-o", "out")
-    assert line == "-o out: holds notes.txt, which is of no design; give another folder, or --force"
-    Path("file").write_text("mine")
-    assert "file: cannot be written" in refused("design", "wish.toml", "-o", "file")
+def test_files_that_a_design_may_not_replace_are_refused() -> None:
+    for file, said in (
+        ("design.csv", "-o design.csv: must end in .toml, .nc, .json"),
+        ("wish.toml", "is read by this command"),
+        ("device.toml", "is read by this command"),
+    ):
+        assert said in refused("design", "wish.toml", "-o", file, "--force")
+    Path("mine.toml").write_text(GOOD)
+    assert "exists already; --force replaces it" in refused(
+        "design", "wish.toml", "-o", "mine.toml"
+    )
 
 
 def test_what_is_wrong_with_a_wish_is_said_in_a_line() -> None:
     Path("wish.toml").write_text(WISH.replace("minimise", "minimize"))
-    line = refused("design", "wish.toml", "-o", "out")
+    line = refused("design", "wish.toml")
     assert line == "wish.toml: unknown key goals.minimize; there are minimise and maximise"
-    assert "is a device file; a wish names" in refused("design", "device.toml", "-o", "out")
+    assert "is a device file; a wish names" in refused("design", "device.toml")
     Path("wish.toml").write_text(WISH)
-    assert "unknown key dampling" in refused(
-        "design", "wish.toml", "-o", "out", "--set", "dampling=1"
-    )
+    assert "unknown key dampling" in refused("design", "wish.toml", "--set", "dampling=1")

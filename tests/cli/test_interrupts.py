@@ -71,9 +71,9 @@ main()
 
 @pytest.mark.parametrize("name", WISHES)
 def test_ctrl_c_ends_a_design(name: str) -> None:
-    """Sent between the screening and the search; a folder is written at the end alone."""
+    """Sent between the screening and the search; files are written at the end alone."""
     wish, *options = WISHES[name].split()
-    words = ["design", str(EXAMPLES / wish), *options, "-o", "out"]
+    words = ["design", str(EXAMPLES / wish), *options, "-o", "design.toml"]
     ended = subprocess.run(
         [sys.executable, "-c", INTERRUPTED, *words],
         stderr=subprocess.PIPE,

@@ -16,7 +16,7 @@ from pindrive.evaluation import largest_speeds
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
 WRITE = ("simulate", "scan", "speed", "robustness", "sensitivity", "sweep", "design", "fit", "fmu")
-DRAW = ("simulate", "scan", "speed", "robustness", "sensitivity", "map", "fit")
+DRAW = ("simulate", "scan", "speed", "robustness", "sensitivity", "map", "design", "fit")
 STUDY = EXAMPLES / "tactile-mouse-study.toml"
 READER = EXAMPLES / "tactile-reader.toml"
 

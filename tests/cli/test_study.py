@@ -71,7 +71,7 @@ def test_rows_are_a_power_of_two(given: str) -> None:
         ("sweep", "Missing argument 'STUDY'."),
         ("sweep study.toml --treads 2", "No such option: --treads (Possible options: "),
         ("sweep study.toml more.toml", "Got unexpected extra argument(s) (more.toml)"),
-        ("fit device.toml pin.csv", "Missing option '--free'."),
+        ("fit device.toml pin.csv", "--free KEYS must say what is fitted, such as --free "),
         ("sweap study.toml", "No such command 'sweap'. Did you mean 'sweep'?"),
         (
             "simulate device.toml --samples 1",

@@ -16,10 +16,10 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 def test_a_wish_is_written_that_a_design_meets(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(effort, "BATCHED", SMALL)
     result = run("init", "wish.toml", "--wish")
-    assert result.stdout == "Wrote wish.toml; try: pindrive design wish.toml -o wish-design\n"
+    assert result.stdout == "Wrote wish.toml; try: pindrive design wish.toml --plot wish.png\n"
     text = Path("wish.toml").read_text("utf-8")
     assert all(len(line) <= 100 for line in text.splitlines())
-    done = run("design", "wish.toml", "-o", "wish-design")
+    done = run("design", "wish.toml", "--plot", "wish.png")
     assert (done.exit_code, done.stderr) == (0, ""), done.output
     assert "Design: my wish" in done.stdout
 

@@ -2,42 +2,41 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pindrive.cli.errors import refusing
 from pindrive.cli.help import command
-from pindrive.cli.options import (
-    ClusterOption,
-    OverridesOption,
-    ThreadsOption,
-    count_option,
-    file_option,
+from pindrive.cli.options import ClusterOption, OverridesOption, ThreadsOption, count_option
+from pindrive.cli.outputs import (
+    ForceOption,
+    PlotOption,
+    by_suffix,
+    dataset_writers,
+    output_option,
+    pictures,
+    results,
+    say_written,
 )
-from pindrive.cli.outputs import ForceOption
 from pindrive.cli.progress import bar
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from pindrive.cli.outputs import Writer
     from pindrive.optimisation.results import Design
 
 NONE_MEETS = 1
 """Exit status where no design meets the demands."""
-FILES = ("design.toml", "design.nc", "design.png", "transient.png", "speed.png")
 
 
-@command("Designs", "pindrive design wish.toml -o design")
+@command("Designs", "pindrive design wish.toml --plot design.png -o design.toml")
 def design(
     wish: Annotated[Path, typer.Argument(metavar="WISH", help="Wish file (TOML).")],
     output: Annotated[
-        Path | None,
-        file_option("A folder for the design and its figures.", "--output", "-o", metavar="DIR"),
+        list[Path] | None, output_option("Its device file: .toml; the numbers: .nc or .json.")
     ] = None,
+    plot: PlotOption = None,
     force: ForceOption = False,
     seed: Annotated[int, count_option("--seed", "Of all draws.", least=0)] = 1,
     threads: ThreadsOption = None,
@@ -50,79 +49,39 @@ def design(
     conditions, tolerances and one to three goals. Exit status 1: no design meets the demands, and
     what is printed and written is the closest.
     """
-    from pindrive.files.output import check_folder, write_files
     from pindrive.optimisation.designing import optimise
+    from pindrive.optimisation.results import Design
     from pindrive.optimisation.wish import read_wish
 
     with refusing():
         if threads and cluster:
             raise ValueError("give --threads or --cluster, not both: workers have their own")
         wanted = read_wish(wish, overrides or ())
-        if output:
-            if not force:
-                _check_folder(output)
-            check_folder(output)
-        with bar("Designs") as progress:
-            tell = progress or (lambda done, total: None)
-            found = optimise(
-                None, wanted, seed=seed, threads=threads, cluster=cluster, progress=tell
-            )
-        if output:
-            write_files(output, _files(found, output), force=force)
+        targets = by_suffix(output or [], _writers()) + pictures(plot, Design.plot)
+        with results(targets, wanted.inputs, force=force) as write:
+            with bar("Designs") as progress:
+                tell = progress or (lambda done, total: None)
+                found = optimise(
+                    None, wanted, seed=seed, threads=threads, cluster=cluster, progress=tell
+                )
+            write(found)
     from pindrive.cli.design_tables import design_report
     from pindrive.cli.tables import show
 
     show(design_report(found))
-    if output:
-        typer.echo(f"Wrote {output}")
+    say_written(targets)
     if not found.feasible:
         raise typer.Exit(NONE_MEETS)
 
 
-def _check_folder(folder: Path) -> None:
-    """Refuse a folder that holds something else than an earlier design."""
-    if folder.is_dir():
-        for path in sorted(folder.iterdir()):
-            if path.name not in FILES:
-                raise ValueError(
-                    f"-o {folder}: holds {path.name}, which is of no design; "
-                    "give another folder, or --force"
-                )
+def _writers() -> dict[str, Writer[Design]]:
+    """How a design is written, by the suffix of a file; it has no main table for a CSV."""
+    from pindrive.files.output import DEVICE_FILE
+    from pindrive.optimisation.results import Design, designed_file
 
+    def write_device(found: Design, part: Path) -> None:
+        part.write_text(designed_file(found, part), encoding="utf-8")
 
-def _files(found: Design, folder: Path) -> dict[str, bytes]:
-    """What is written, by name."""
-    from pindrive.optimisation.results import designed_file
-
-    files = {"design.toml": designed_file(found, folder / "design.toml").encode("utf-8")}
-    with TemporaryDirectory(prefix="pindrive-") as place:
-        path = Path(place) / "design.nc"
-        found.to_dataset().to_netcdf(path, engine="h5netcdf")
-        files["design.nc"] = path.read_bytes()
-    files["design.png"] = _png(found.plot())
-    if found.motion:
-        files["transient.png"] = _png(found.motion.plot())
-    else:
-        files["speed.png"] = _png(_speeds(found))
-    return files
-
-
-def _png(figure: Figure) -> bytes:
-    from pindrive.plot.style import save
-
-    file = BytesIO()
-    save(figure, file, "png")
-    return file.getvalue()
-
-
-def _speeds(found: Design) -> Figure:
-    """How fast a hand may move with the design, for pitches around those of the page."""
-    from pindrive.evaluation.resolution import largest_speeds
-
-    page = found.wish.plan.page
-    assert page
-    own = page.page.grating or (0.003,)
-    pitches = sorted({factor * pitch for pitch in own for factor in (0.5, 1.0, 2.0)})
-    criteria = found.device.criteria
-    limits = largest_speeds(found.device.device, pitches, criteria=criteria)
-    return limits.plot(found.device.name)
+    numbers = dataset_writers("A design", (), Design.to_dataset)
+    del numbers[".csv"]
+    return {".toml": (DEVICE_FILE, write_device), **numbers}

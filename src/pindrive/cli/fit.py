@@ -41,9 +41,9 @@ def fit(
         typer.Argument(metavar="RECORDING...", help="Of releases (CSV with units in its header)."),
     ],
     free: Annotated[
-        list[str],
+        list[str] | None,
         option(ASKED, f'What is fitted, with bounds or not: "{EXAMPLE}".', metavar="KEYS"),
-    ],
+    ] = None,
     output: Annotated[Path | None, output_option("The fitted device file: .toml.")] = None,
     mouse_velocity: Annotated[
         list[str] | None,
@@ -78,6 +78,8 @@ def fit(
     from pindrive.fitting.results import Fit
 
     with refusing():
+        if not free:
+            raise ValueError(f'--free KEYS must say what is fitted, such as --free "{EXAMPLE}"')
         loaded = load_device(device, overrides or ())
         keys, bounds = _free(free)
         given = _recordings(recordings, mouse_velocity or [], noise or [], window, loaded)
@@ -85,8 +87,7 @@ def fit(
         def write_device(found: Fit, part: Path) -> None:
             from pindrive.fitting.device_file import fitted_file
 
-            assert output
-            part.write_text(fitted_file(loaded, found, output), encoding="utf-8")
+            part.write_text(fitted_file(loaded, found, part), encoding="utf-8")
 
         targets = by_suffix([output] if output else [], {".toml": (DEVICE_FILE, write_device)})
         targets += pictures(plot, Fit.plot)

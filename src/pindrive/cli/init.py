@@ -41,7 +41,7 @@ def init(
     if study:
         made, kind, next_ = study_template, STUDY_FILE, f"sweep {file}"
     elif wish:
-        made, kind, next_ = wish_template, WISH_FILE, f"design {file} -o {file.stem}-design"
+        made, kind, next_ = wish_template, WISH_FILE, f"design {file} --plot {file.stem}.png"
     elif device:
         next_ = f"scan {file} --text A"
     with refusing():

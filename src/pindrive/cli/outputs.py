@@ -85,33 +85,39 @@ def pictures(
     return by_suffix([path] if path else [], writers, option)
 
 
-def datasets(
-    paths: Iterable[Path] | None,
-    title: str,
-    columns: Sequence[str],
-    dataset: Callable[[Result], xr.Dataset],
-) -> list[Target[Result]]:
-    """Files of a result that is a dataset: NetCDF and JSON of all, CSV of its main table.
+def dataset_writers(
+    title: str, columns: Sequence[str], dataset: Callable[[Result], xr.Dataset]
+) -> dict[str, Writer[Result]]:
+    """How a result that is a dataset is written: NetCDF and JSON of all, CSV of its main table.
 
     Args:
-        paths: where.
         title: what the files hold.
         columns: the first of the CSV.
         dataset: makes the dataset of a result.
-
-    Raises:
-        ValueError: a suffix asks for no such file.
     """
     from pindrive.files import dataset as files
 
     def writer(write: Callable[[xr.Dataset, Path], None]) -> Callable[[Result, Path], None]:
         return lambda result, part: write(dataset(result), part)
 
-    writers = {
+    return {
         suffix: (kind, writer(write))
         for suffix, (kind, write) in files.writers(title, columns).items()
     }
-    return by_suffix(paths or (), writers)
+
+
+def datasets(
+    paths: Iterable[Path] | None,
+    title: str,
+    columns: Sequence[str],
+    dataset: Callable[[Result], xr.Dataset],
+) -> list[Target[Result]]:
+    """Files of a result that is a dataset, arguments as for `dataset_writers`.
+
+    Raises:
+        ValueError: a suffix asks for no such file.
+    """
+    return by_suffix(paths or (), dataset_writers(title, columns, dataset))
 
 
 def with_events(
